@@ -1,8 +1,8 @@
-//! The buffers of `gateware/rtl/common`: skid buffer and FIFO.
+//! Tests of the buffers in `gateware/rtl/common`: skid buffer and FIFO.
 
 use glint_testbench::{Bits, Module, Sink, Source, Stalls, step};
 
-/// Sends numbers through a buffer with stalls on both sides, and expects all of them in order. Returns the clocks.
+/// Sends numbers through a buffer with stalls on both sides, and expects all of them in order. Returns the number of clocks.
 fn passes_all_in_order(name: &str, source_stalls: f64, sink_stalls: f64) -> u64 {
     const COUNT: u64 = 500;
     let mut module = Module::new(name, 1);

@@ -1,4 +1,4 @@
-//! The I2C engine with a virtual MPU-6050 on its wires, or with wires that the test drives.
+//! Tests of the I2C engine, with a virtual MPU-6050 on its wires or with wires that the test drives.
 
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
@@ -31,7 +31,7 @@ fn command(operation: u32, argument: u32) -> u32 {
     operation << 8 | argument
 }
 
-/// Makes the commands of a transaction: start, write of the bytes `sent`, read of `received` bytes, stop.
+/// Makes the commands of a transaction with the sensor: start, write of the bytes `sent`, read of `received` bytes, stop.
 fn transfer(sent: &[u32], received: u32) -> Vec<u32> {
     let mut commands = vec![command(START, 0), command(WRITE, WRITES)];
     commands.extend(sent.iter().map(|&byte| command(WRITE, byte)));
@@ -103,7 +103,7 @@ impl Bench {
         bench
     }
 
-    /// Resets the engine. During the reset the wires rise, before the engine samples them.
+    /// Resets the engine. The reset is long enough that the wires are high when the engine samples them again.
     fn reset(&mut self) {
         self.module.set(self.ports.rst, 1);
         for _ in 0..10 {
@@ -181,7 +181,7 @@ impl Bench {
         self.failure()
     }
 
-    /// Starts rounds of `commands` every `period` clocks, with an event per `batch` rounds.
+    /// Makes the engine run `commands` every `period` clocks (a round), with one event per `batch` rounds.
     fn repeat(&mut self, commands: &[u32], period: u64, batch: u64) {
         let [repeats, clocks, rounds] = self.ports.rounds;
         self.module.set(clocks, period - 1);
@@ -262,7 +262,7 @@ fn rounds_begin_at_their_times() {
     assert_eq!(bench.log().matches(round).count(), 9, "{}", bench.log());
     let violations = &bench.device.violations;
     assert!(violations.is_empty(), "{violations:#?}");
-    // A reset clears the queue of the rounds' commands.
+    // A reset clears the queue, which holds the commands of the rounds.
     bench.module.set(bench.ports.rounds[0], 0);
     bench.reset();
     bench.answers.clear();
@@ -408,7 +408,8 @@ fn a_stuck_device_is_clocked_free() {
 
 #[test]
 fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
-    // Resets the master in the middle of a read of zeros and of a write, at times 97 clocks apart.
+    // Resets the engine in the middle of a transfer, after 100 clocks, 197 clocks and so on. The transfers are a read of
+    // bytes with the value 0, and a write.
     for commands in [transfer(&[0x00], 3), transfer(&[0x19, 0x00], 0)] {
         let mut length = 0;
         for clocks in (100..).step_by(97) {

@@ -1,5 +1,5 @@
-//! Measures what the virtual board costs over the bare model: the speed of [`VirtualBoard::run`] in cycles per second,
-//! with the monitor off and on, and that of a C++ loop that only advances the clocks. The three kinds of measurement alternate.
+//! Compares the speed of the virtual board with that of the bare model: [`VirtualBoard::run`] with the monitor off and on,
+//! and a C++ loop that only advances the clocks, in cycles per second. Measurements of the three kinds alternate.
 //!
 //! Exit code 1 if the board with its monitor off is below 90 % of the bare loop's speed.
 
@@ -10,7 +10,7 @@ use virtual_board::{Error, VirtualBoard};
 
 /// Cycles of one measurement.
 const TURN: u64 = 100_000;
-/// Measurements of each kind; the median ignores pauses of the host.
+/// Number of measurements of each kind; their median ignores pauses of the host.
 const TURNS: usize = 15;
 
 fn main() -> Result<ExitCode, Error> {

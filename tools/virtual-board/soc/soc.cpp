@@ -39,7 +39,7 @@ constexpr size_t COLUMN_BITS = 7;
 constexpr size_t BANK_BITS = 3;
 constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in one bank.
 
-// Half a period of sys_clk in ps, the unit of time in waveforms.
+// Half a period of sys_clk in picoseconds, the unit of time in waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
 
 }  // namespace
@@ -70,7 +70,8 @@ struct Soc : Harness {
         top.pix_clk = 0;
         eval();
 
-        // Pins change between the edges. pix_clk rises at the falling edge of sys_clk, so two evaluations serve both.
+        // Input pins change between the edges. pix_clk rises at the falling edge of sys_clk, so two evaluations per cycle serve
+        // both clocks.
         if (sent) uart_out.push_back(sent_byte);
         if (taken) uart_in.pop_front();
         top.serial_sink_valid = !uart_in.empty();
@@ -128,7 +129,7 @@ struct Soc : Harness {
         }
     }
 
-    // Advances pix_clk by one cycle of sys_clk; returns whether pix_clk rises in that cycle.
+    // Advances the phase of pix_clk by one cycle of sys_clk; returns whether pix_clk rises in that cycle.
     bool pixel_tick() {
         pixel_phase += PIXEL_TICKS;
         const bool tick = pixel_phase >= PIXEL_PERIOD;
@@ -143,7 +144,8 @@ struct Soc : Harness {
         std::memcpy(rom, bytes, std::min(length, sizeof rom));
     }
 
-    // Calls `copy(memory, bytes, length)` for every run of bytes that is contiguous in a bank.
+    // Divides the `length` bytes of DDR3 from `offset` on into runs that are contiguous in a bank, and calls `copy(memory, at,
+    // count)` for each run: its address in the bank's memory, its position in the `length` bytes, and its number of bytes.
     template <typename Copy>
     void for_each_run(size_t offset, size_t length, Copy copy) {
         auto *root = top.rootp;
@@ -168,14 +170,14 @@ struct Soc : Harness {
         }
     }
 
-    // Empties both caches of the CPU. No line may be being filled, as old data would arrive in the line afterwards.
+    // Empties both caches of the CPU. Must not be called while a line is filled, because old data would arrive in it afterwards.
     void drop_caches() {
         // The lowest bit of a tag is its valid bit.
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__ways_0_tags.m_storage) tag = 0;
     }
 
-    // Waits until all stores of the CPU have reached memory.
+    // Runs the SoC until all stores of the CPU so far have reached memory.
     void settle() {
         if (cycles > 0) run(SETTLE_CYCLES);
     }

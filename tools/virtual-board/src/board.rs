@@ -101,7 +101,7 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Folder of this checkout's libraries.
+/// Returns the folder where this checkout's libraries are built.
 fn built_libraries() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual")
 }
@@ -111,13 +111,13 @@ pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
     sensor: Option<Wires>,
-    /// Serial output of the SoC that was not read yet.
+    /// Serial output of the SoC that the user of the board has not read yet.
     uart: Vec<u8>,
     running: Duration,
 }
 
 impl VirtualBoard {
-    /// Default options of a board.
+    /// Returns the default options of a board.
     #[must_use]
     pub fn builder<'a>() -> Builder<'a> {
         Builder::default()
@@ -280,7 +280,7 @@ impl VirtualBoard {
         self.sensor = Some(sensor);
     }
 
-    /// The sensor on the I2C bus.
+    /// The sensor on the I2C bus, if there is one.
     pub fn sensor(&mut self) -> Option<&mut Wires> {
         self.sensor.as_mut()
     }
@@ -291,12 +291,12 @@ impl VirtualBoard {
         self.sensor.take()
     }
 
-    /// Drives the I2C wires as a device: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
+    /// Drives the I2C wires in the role of a device: SCL with bit 0, SDA with bit 1; 0 pulls a wire low, 1 releases it.
     pub fn i2c_drive(&mut self, released: u8) {
         self.soc.i2c_drive(released);
     }
 
-    /// The I2C wires: SCL in bit 0, SDA in bit 1.
+    /// Levels of the I2C wires: SCL in bit 0, SDA in bit 1.
     #[must_use]
     pub fn i2c_wires(&self) -> u8 {
         self.soc.i2c_wires()
@@ -307,8 +307,8 @@ impl VirtualBoard {
         &mut self.monitor
     }
 
-    /// Captures a frame: the current one if the monitor is on, else the next whole one. Runs for at most two frames, 2.7
-    /// million cycles.
+    /// Captures a video frame: the current frame if the monitor is on, else the next whole frame. Runs the board for at most
+    /// two frames, 2.7 million cycles.
     ///
     /// # Errors
     /// [`Error::Timeout`] if the SoC shows no video.

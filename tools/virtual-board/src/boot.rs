@@ -7,9 +7,9 @@ const T0: u32 = 5;
 const T1: u32 = 6;
 const ZERO: u32 = 0;
 
-/// ROM contents that hand the DDR3 to its controller and jump to the start of main RAM.
+/// Returns ROM contents: a program that hands the DDR3 to its controller and jumps to the start of main RAM.
 ///
-/// A real DDR3 needs mode registers and PHY training first; the model needs neither.
+/// A real DDR3 would first need its mode registers set and the PHY trained; the model needs neither.
 pub(crate) fn stub() -> Vec<u8> {
     // SAFETY: only the address of a register is taken; nothing is accessed.
     let control = unsafe { litex_pac::sdram::Sdram::steal() }

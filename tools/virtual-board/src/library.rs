@@ -99,28 +99,28 @@ impl Soc {
     }
 
     pub fn run(&mut self, cycles: u64) {
-        // SAFETY: the handle is alive and ours alone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.run)(self.raw(), cycles) }
     }
 
     /// Advances the clocks and nothing else; serial output and video are lost.
     pub fn run_bare(&mut self, cycles: u64) {
-        // SAFETY: the handle is alive and ours alone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.run_bare)(self.raw(), cycles) }
     }
 
     pub fn cycles(&self) -> u64 {
-        // SAFETY: the handle is alive.
+        // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.cycles)(self.raw()) }
     }
 
     pub fn uart_write(&mut self, bytes: &[u8]) {
-        // SAFETY: the handle is alive and ours alone; the bytes are copied during the call.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the bytes are copied during the call.
         unsafe { (self.functions.uart_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
     }
 
     pub fn uart_queued(&self) -> usize {
-        // SAFETY: the handle is alive.
+        // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.uart_queued)(self.raw()) }
     }
 
@@ -128,7 +128,7 @@ impl Soc {
     pub fn uart_read(&mut self, output: &mut Vec<u8>) {
         let mut buffer = [0; 256];
         loop {
-            // SAFETY: the handle is alive and ours alone; no more than the buffer's length is written.
+            // SAFETY: the handle belongs to a live SoC that nothing else uses; no more than the buffer's length is written.
             let count = unsafe {
                 (self.functions.uart_read)(self.raw(), buffer.as_mut_ptr(), buffer.len())
             };
@@ -153,59 +153,60 @@ impl Soc {
     }
 
     pub fn i2c_drive(&mut self, released: u8) {
-        // SAFETY: the handle is alive and ours alone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.i2c_drive)(self.raw(), released) }
     }
 
     pub fn i2c_wires(&self) -> u8 {
-        // SAFETY: the handle is alive.
+        // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.i2c_wires)(self.raw()) }
     }
 
     /// I2C outputs of the SoC: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
     pub fn i2c_released(&self) -> u8 {
-        // SAFETY: the handle is alive.
+        // SAFETY: the handle belongs to a live SoC.
         unsafe { (self.functions.i2c_released)(self.raw()) }
     }
 
     /// Runs until the SoC changes its I2C outputs, but at most `cycles` cycles. Returns the number of cycles run.
     pub fn run_to_i2c(&mut self, cycles: u64) -> u64 {
-        // SAFETY: the handle is alive and ours alone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.run_to_i2c)(self.raw(), cycles) }
     }
 
     pub fn video_record(&mut self, on: bool) {
-        // SAFETY: the handle is alive and ours alone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.video_record)(self.raw(), on.into()) }
     }
 
     /// Passes the recorded video samples to `consume`, and then drops them.
     pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
         let mut count = 0;
-        // SAFETY: the handle is alive and ours alone, `count` is a place for the result.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is a valid place for the result.
         let samples = unsafe { (self.functions.video_samples)(self.raw(), &mut count) };
         if count != 0 {
-            // SAFETY: the library keeps `count` samples there until the next run or clear, and the borrow of `self`
-            // lasts until both.
+            // SAFETY: the library keeps `count` samples at this address until the next run or clear, and neither can happen
+            // during the borrow of `self`.
             consume(unsafe { slice::from_raw_parts(samples, count) });
         }
-        // SAFETY: the handle is alive and ours alone; the slice is gone.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the slice is gone.
         unsafe { (self.functions.video_clear)(self.raw()) }
     }
 
     pub fn ddr_read(&mut self, offset: u32, bytes: &mut [u8]) {
-        // SAFETY: the handle is alive and ours alone; the board has checked the range.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the board has checked the range.
         unsafe { (self.functions.ddr_read)(self.raw(), offset, bytes.as_mut_ptr(), bytes.len()) }
     }
 
     pub fn ddr_write(&mut self, offset: u32, bytes: &[u8]) {
-        // SAFETY: the handle is alive and ours alone; the board has checked the range.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the board has checked the range.
         unsafe { (self.functions.ddr_write)(self.raw(), offset, bytes.as_ptr(), bytes.len()) }
     }
 
-    /// Replaces the ROM, before the first cycle.
+    /// Replaces the contents of the ROM; call it before the first cycle.
     pub fn rom_write(&mut self, bytes: &[u8]) {
-        // SAFETY: the handle is alive and ours alone; the library takes no more than fits.
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the library copies no more bytes
+        // than the ROM holds.
         unsafe { (self.functions.rom_write)(self.raw(), bytes.as_ptr(), bytes.len()) }
     }
 }

@@ -42,7 +42,7 @@ impl Pins {
         [r, g, b]
     }
 
-    /// Expected control pins at tick `position` of a frame.
+    /// Returns the expected control pins (vsync, hsync, de) at tick `position` of a frame.
     fn expected_control(position: usize) -> u32 {
         let (x, y) = (position % LINE, position / LINE);
         let active = (H_SYNC + H_BACK..H_SYNC + H_BACK + WIDTH).contains(&x)
@@ -74,9 +74,9 @@ pub struct TimingError {
     pub line: usize,
     /// Tick in the line, 0 being the first of hsync.
     pub tick: usize,
-    /// Expected control pins, packed as in the video samples.
+    /// Expected control pins (vsync, hsync, de), packed as in the video samples of `soc.h`.
     pub expected: u32,
-    /// Actual control pins.
+    /// Actual control pins, packed in the same way.
     pub found: u32,
 }
 
@@ -103,7 +103,7 @@ pub struct Monitor {
     on: bool,
     /// Ticks since the start of the frame; `None` before the first vsync.
     position: Option<usize>,
-    /// Pins of the last tick. `None` counts as vsync, so that only a new leading edge of vsync starts a frame.
+    /// Pins at the last tick. `None` (no tick yet) counts as vsync, so that only a new leading edge of vsync starts a frame.
     last: Option<Pins>,
     /// Pixels of the current frame so far, three bytes each.
     pixels: Vec<u8>,
@@ -215,7 +215,7 @@ impl Monitor {
 mod tests {
     use super::*;
 
-    /// Samples of correct video, which begin `before` ticks ahead of a vsync; each pixel encodes its position.
+    /// Makes `ticks` samples of correct video, which begin `before` ticks ahead of a vsync; each pixel encodes its position.
     fn video(before: usize, ticks: usize) -> Vec<u32> {
         (0..ticks)
             .map(|tick| {

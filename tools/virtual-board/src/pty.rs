@@ -1,4 +1,4 @@
-//! The board on a pseudo-terminal, for programs that expect a serial port.
+//! Runs the board with its UART on a pseudo-terminal, for programs that expect a serial port.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read, Write};
@@ -15,7 +15,7 @@ use crate::{Error, VirtualBoard};
 /// Cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
 
-/// Most bytes in the queue for the UART; while the queue is full, the terminal is not read.
+/// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
@@ -33,7 +33,7 @@ pub struct Pty {
 }
 
 impl Pty {
-    /// Moves the board to a thread of its own, and starts it.
+    /// Moves the board to a new thread, and starts it.
     ///
     /// # Errors
     /// When the system provides no pseudo-terminal.

@@ -1,11 +1,11 @@
-//! The full start: LiteX's BIOS on the verilated SoC, and the back door against the CPU's own accesses.
+//! Tests of the full start: LiteX's BIOS on the verilated SoC, and the back door to DDR3 against accesses of the CPU.
 
 use virtual_board::{Start, VirtualBoard};
 
 /// The BIOS's prompt, with its colours.
 const PROMPT: &str = "\x1b[92;1mlitex\x1b[0m> ";
 
-/// Time-out of the boot in cycles; a quarter of a second is for the serial boot.
+/// Time-out of the boot in cycles; it includes a quarter of a second in which the BIOS waits for a serial boot.
 const BOOT_LIMIT: u64 = 60_000_000;
 
 /// Time-out of a command in cycles.
@@ -70,7 +70,7 @@ fn the_bios_boots_and_the_back_door_is_coherent_with_the_cpu() {
 }
 
 fn both_see_the_same_memory(board: &mut VirtualBoard) {
-    // One address in each bank, in the first and in the last row.
+    // One address in each of the eight banks of the DDR3, and two in other rows, the second in the last row.
     let banks = (0..8).map(|bank| 0x4010_0000 + bank * 0x800 + 0x7f0);
     for (number, address) in banks.chain([0x4200_0000, 0x47ff_fff0]).enumerate() {
         let written: Vec<u8> = (0..16).map(|i| (number * 16 + i) as u8 ^ 0xa5).collect();
@@ -95,7 +95,7 @@ fn both_see_the_same_memory(board: &mut VirtualBoard) {
 }
 
 fn ranges_cross_banks_and_rows_in_order(board: &mut VirtualBoard) {
-    // A range with odd start and odd length, across all banks and into the next row.
+    // A range with odd length that starts just before a new row of the DDR3, and crosses all banks into the row after it.
     let start = 0x4100_3fff - 5;
     let written: Vec<u8> = (0..20_001_u32)
         .map(|i| (i.wrapping_mul(0x9e37_79b1) >> 24) as u8)

@@ -1,4 +1,4 @@
-//! The console's output, word for word, and its behaviour on noise and long input.
+//! Tests of the firmware's console: its output, word for word, and its behaviour on noise and long input.
 
 mod firmware;
 
@@ -13,7 +13,7 @@ const TIMES: [&str; 3] = ["cycles ", "video_frames ", "uptime_ms "];
 /// Console names of counters of the triangle engine whose values do not depend on time.
 const COUNTS: [&str; 4] = ["vertices", "cycles_walking", "cycles_empty", "groups"];
 
-/// Console names of the triangle engine's counters, except those of pixels, which are in all statistics.
+/// Returns the console names of the triangle engine's counters, except counters of pixels, which are in all statistics.
 fn counters() -> Vec<&'static str> {
     let all = Counters::default();
     let names = all.iter().map(|(name, _)| match name {

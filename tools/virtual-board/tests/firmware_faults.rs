@@ -1,4 +1,4 @@
-//! The firmware on gateware of another build, and the firmware's report of traps.
+//! Tests of the firmware on gateware of another build, and of its report of traps.
 
 mod firmware;
 
@@ -8,7 +8,7 @@ use litex_pac::BUILD_ID;
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {
     let mut image = image();
-    // Makes the firmware one that was built for another gateware.
+    // Changes the firmware's build id, as if the firmware had been built for another gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
     let (mut board, said) = started(&image);
     let (found, expected) = (
@@ -27,7 +27,8 @@ fn gateware_of_another_build_is_reported_and_the_console_works() {
         )),
         "{info}"
     );
-    // Commands that use no changed register work; the others fail.
+    // The firmware now uses no registers except those of the console: `render` works on the CPU, and commands for devices
+    // fail.
     assert!(command(&mut board, "render").contains("triangles_drawn 6\r\n"));
     assert!(command(&mut board, "leds 1").contains("error: "));
     assert_eq!(board.leds(), 0);

@@ -1,14 +1,14 @@
-//! The preloaded start, the pins, and the back door against a program whose data are in the caches.
+//! Tests of the preloaded start, the pins, and the back door against a program whose data are in the CPU's caches.
 
 mod program;
 
 use litex_pac::{buttons, leds, switches};
 use virtual_board::VirtualBoard;
 
-/// Address of the word in DDR3 that the program reads, in a row of its own.
+/// Address of the word in DDR3 that the program reads or writes; its row holds no other data of the program.
 const WORD: u32 = 0x4012_3450;
 
-/// Cycles in which the program completes a round at the latest.
+/// Upper bound on the cycles of one round of the program's loop.
 const ROUND: u64 = 500;
 
 fn board() -> VirtualBoard {
@@ -93,7 +93,7 @@ fn the_back_door_sees_what_the_program_has_stored() {
     }
 }
 
-/// Address of the instruction at `patch` in `programs/pins.S`, which copies the word unchanged.
+/// Returns the address of the instruction at `patch` in `programs/pins.S`, which copies the word unchanged.
 fn patch_address(board: &mut VirtualBoard) -> u32 {
     const START: u32 = 0x4000_0000;
     const ADDI_T2_T2_0: u32 = 0x0003_8393;

@@ -1,4 +1,4 @@
-//! Scan-out to the monitor through the whole SoC: all scales, a flip, and memory traffic of the CPU.
+//! Tests of scan-out to the monitor through the whole SoC: all scales, a flip to another frame, and memory traffic of the CPU.
 
 mod program;
 
@@ -26,7 +26,7 @@ fn bytes(frame: &[u16]) -> Vec<u8> {
     frame.iter().flat_map(|pixel| pixel.to_le_bytes()).collect()
 }
 
-/// Shows a frame, flips to another, and compares the monitor's pictures for `frames` frames.
+/// Shows a frame, flips to another frame, and compares the monitor's pictures for `frames` video frames.
 fn shows_and_flips(scale: usize, frames: u64) {
     // SAFETY: only addresses of registers are taken; nothing is accessed.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };

@@ -1,4 +1,4 @@
-//! The SoC's I2C master with a virtual MPU-6050 on its pins.
+//! Tests of the SoC's I2C master, and of the firmware's attitude, with a virtual MPU-6050 on the SoC's pins.
 
 mod firmware;
 mod program;
@@ -14,7 +14,7 @@ const ROUND: u64 = 20_000;
 /// Interval between two checks for the end of a fault, in ms.
 const STEP: u64 = 8;
 
-/// Cycles of a millisecond.
+/// Cycles of the system clock in a millisecond.
 const MILLISECOND: u64 = 81_250;
 
 fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
@@ -86,7 +86,7 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().expect("a number")).collect()
 }
 
-/// A board with a sensor that is already set up: a reset would take a tenth of a second.
+/// Starts a board with a sensor that is already set up, since a reset of the sensor would take a tenth of a second.
 fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
     let image = image();
     let start = Start::Fast { firmware: &image };
@@ -164,7 +164,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
 /// A rotation matrix from body to world.
 type Rotation = [[f64; 3]; 3];
 
-/// A part of the motion, which a rest follows. `time` is its duration in s. Without oscillations (`swings` is 0), `rate`
+/// A part of the scripted motion; a rest follows it. `time` is its duration in s. Without oscillations (`swings` is 0), `rate`
 /// is the mean rate about each axis in °/s; with them, `rate` is the peak rate, and `swings` the number of oscillations.
 /// `shake` is the amplitude of an acceleration along all axes, in g.
 struct Part {
@@ -186,9 +186,9 @@ impl Part {
         }
     }
 
-    /// State at `time` in a part of duration `length`, both in s: the turn so far as a time at `rate`, the current rate
-    /// as a multiple of `rate`, and the current shake as a multiple of `shake`. The rate starts and ends smoothly, as
-    /// sampling requires.
+    /// Returns the state at `time` in a part of duration `length`, both in s. The three numbers are: the turn so far, as the
+    /// time in s that it would take at the rate `rate`; the current rate as a multiple of `rate`; and the current shake as a
+    /// multiple of `shake`. The rate starts and ends smoothly, as sampling requires.
     fn at(&self, time: f64, length: f64) -> (f64, f64, f64) {
         if self.swings > 0.0 {
             let turns = std::f64::consts::TAU * self.swings / length;
@@ -255,8 +255,8 @@ fn rotation(axis: [f64; 3], degrees: f64) -> Rotation {
     ]
 }
 
-/// The rotation that the parts of `SCRIPT` have made until `time`, and the motion at that time. `stretch` multiplies the
-/// duration of each part and divides its rate.
+/// Returns the rotation that the parts of `SCRIPT` have made until `time`, and the sensor's motion at that time. `stretch`
+/// multiplies the duration of each part and divides its rate.
 fn script(time: f64, stretch: f64) -> (Rotation, State) {
     let mut turned = rotation([0.0; 3], 0.0);
     let (mut rate, mut shake) = ([0.0; 3], 0.0);
@@ -297,7 +297,7 @@ fn the_camera_follows_a_script() {
     let mut end = BEGIN;
     for part in &SCRIPT {
         end += part.time * stretch + RESTING;
-        // Runs until just before the next part, when the sensor's filter delay and a frame have passed.
+        // Runs until just before the next part. By then the delay of the sensor's filter and a frame have passed.
         let until = ((end - 0.005) * 1e3 * MILLISECOND as f64) as u64;
         board.run(until.saturating_sub(board.cycles()));
         let (turned, _) = script(end, stretch);

@@ -10,7 +10,7 @@ pub struct Bench {
     pub group_source: Source,
     pub band_source: Source,
     pub words: Sink,
-    /// Words that `words` has taken: those written to memory.
+    /// Words (address and data) that the module has written to memory.
     pub written: Vec<Word>,
     pub groups: VecDeque<Group>,
     pub bands: VecDeque<Band>,
@@ -91,7 +91,7 @@ impl Bench {
         Self::of("band_buffer", seed, group_stalls, memory_stalls)
     }
 
-    /// As [`ready`](Self::ready), for the module variant `name`.
+    /// Creates a bench as [`ready`](Self::ready) does, with the module variant `name`.
     pub fn of(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         let mut bench = Self::new(name, seed, group_stalls, memory_stalls);
         bench.run_until(ROWS_OF_A_BANK + 10, |bench| !bench.is(bench.clearing));
@@ -119,7 +119,8 @@ impl Bench {
         self.groups.push_back(group);
     }
 
-    /// Queues the end of a band. All words of the band are to be flushed if the content of the frame buffer is unknown there.
+    /// Queues the end of a band, which starts its flush. If the frame buffer's content in the band's lines is unknown, the
+    /// flush has to write all words of the band.
     pub fn push_band(&mut self, mut band: Band) {
         assert_eq!(band.stride, self.stride);
         let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
@@ -218,8 +219,8 @@ impl Bench {
 }
 
 impl Bench {
-    /// Restarts the band buffer while memory takes no words, and checks that the buffer clears its banks all the same.
-    /// Then memory takes words again.
+    /// Restarts the band buffer while memory takes no words, and checks that the buffer nevertheless clears its banks.
+    /// Then memory takes words again, and only words of the FIFO may follow.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 

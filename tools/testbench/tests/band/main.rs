@@ -1,4 +1,5 @@
-//! The band buffer: pixels equal those of a plain depth test, and each flush writes every changed word of the band, in order.
+//! Tests of the band buffer: its pixels equal those of a plain depth test, and each flush writes every changed word of the
+//! band, in order.
 
 mod bench;
 mod pixels;
@@ -56,7 +57,7 @@ fn full_group(row: usize, code: u32) -> Group {
     }
 }
 
-/// Makes a band of which all words are flushed.
+/// Makes a band whose flush writes all of its words.
 fn plain_band([lines, stride]: [usize; 2]) -> Band {
     Band {
         base: 0x12_3456,
@@ -79,8 +80,8 @@ fn random_groups_in_many_bands_with_stalls() {
         println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
-        // All bands have groups for both eyes, so the groups of the next band may follow at once. A group that is taken
-        // just before the end of a band belongs to that band.
+        // All bands have groups for both eyes, so the groups of the next band may follow the end of a band at once. A group
+        // that is taken just before the end of a band belongs to that band.
         let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
@@ -141,7 +142,7 @@ fn whole_bands_leave_nothing_to_the_next() {
         bench.draw(groups, plain_band(shape));
     }
     bench.stride = 160;
-    // Flushes bands without a group, so that each bank must be clear again.
+    // Flushes bands without a group: the words written show whether each bank was cleared after its last band.
     for clear in [1, 2, 3] {
         let band = Band {
             clear,
@@ -153,7 +154,7 @@ fn whole_bands_leave_nothing_to_the_next() {
     bench.finish();
 }
 
-/// Draws at all four corners of the largest bands, at the top and at the bottom of the picture.
+/// Draws groups at all four corners of the largest bands, at the top and at the bottom of the picture.
 #[test]
 fn only_pixels_drawn_now_or_last_are_flushed() {
     let mut bench = Bench::ready(11, 0.0, 0.1);
@@ -171,7 +172,7 @@ fn only_pixels_drawn_now_or_last_are_flushed() {
             bench.draw([], *band);
         }
         let last = lines * stride - 1;
-        // Rows of the band buffer at the corners of the band, in the first and in the last line.
+        // Each case draws two rows of the band buffer (groups), mostly at corners: in the first and in the last line.
         for rows in [
             [0, last],
             [stride - 1, last + 1 - stride],
@@ -218,7 +219,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Groups as of neighbouring triangles: pairs with the same row and other lanes (pixels of the row).
+    // Pairs of groups as two neighbouring triangles make them: in the same row, with different lanes (pixels of the row).
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -234,7 +235,8 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Number of groups between two groups in the same row, and the clocks for which the second of the two is held.
+    // Per case: the number of groups between two groups in the same row, and the clocks for which the second of these two
+    // is held back.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -294,7 +296,8 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Number of words in every n-th line, n, and the clocks of the flush if the frame before was the same.
+    // Per case: the number of drawn words in every n-th line, the number n, and the clocks of the flush if the previous
+    // frame was the same.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)
@@ -336,7 +339,7 @@ fn a_restart_ends_whatever_goes_on() {
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);
         bench.stride = stride;
-        // What was drawn in these lines stays known: they are not among those of the band that the restart interrupts.
+        // These lines are outside of the band that the restart interrupts, so the module still knows what was drawn there.
         bench.draw(
             (0..rows / 2).map(|row| full_group(row, 9)),
             Band {

@@ -1,11 +1,11 @@
-//! Groups of pixels, bands, and the words that the flush of a band must write.
+//! Model of the band buffer: groups of pixels, bands, and the words that the flush of a band must write.
 
 use glint_model::raymarch::{Tint, compose};
 use std::ops::Range;
 
 pub const LANES: usize = 8;
 pub const ROWS_OF_A_BANK: u64 = 2048;
-/// Most words that are on their way to memory at once: the number of places in the FIFO.
+/// Largest number of words on their way to memory at the same time: the number of places in the band buffer's FIFO.
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
@@ -30,7 +30,8 @@ pub struct Band {
     pub whole: bool,
     pub with_depth: bool,
     pub clear: u16,
-    /// How the flush composes a colour from the luminances of the two eyes: 0 not, 1 red and blue, 2 red and cyan.
+    /// Whether the flush composes a colour from the luminances of the two eyes: 0 does not, 1 does with the tint red and
+    /// blue, 2 with the tint red and cyan.
     pub compose: u8,
 }
 
@@ -43,8 +44,8 @@ impl Band {
 
 pub type Word = (u32, [u32; 4]);
 
-/// For each frame buffer and each line of the picture: the columns of groups that were drawn when the line was last
-/// flushed, from the first to the last; `None` where unknown.
+/// For each frame buffer and each line of the picture: the range from the first to the last column of groups that had
+/// drawn pixels when the line was last flushed; `None` if unknown.
 pub type Left = [Vec<Option<Range<usize>>>; 2];
 
 /// Depth and colour of the drawn pixels of a band, by row of the band buffer.

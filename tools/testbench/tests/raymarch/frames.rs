@@ -1,4 +1,4 @@
-//! Whole frames of the raymarcher: every pixel comes once, equal to the model's, while its band is open.
+//! Tests of whole frames of the raymarcher: every pixel comes once, equal to the model's, while its band is open.
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
@@ -135,7 +135,7 @@ impl Bench {
                 }
             }
             if !hurry {
-                // The triangles of the band are drawn first.
+                // On the board, the triangles of a band are drawn first; the wait stands for their time.
                 self.clocks(random.integer(0, 3000) as u32);
             }
             self.port("band_open", 1);
@@ -169,7 +169,7 @@ impl Bench {
         stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
-        // The last events come some clocks after the end.
+        // The last events (increments of counters) come some clocks after the last pixel; then there are none.
         self.clocks(4);
         let events = self.module.port("events");
         assert_eq!(
@@ -209,8 +209,8 @@ fn frames_of_all_fields_with_stalls() {
     }
 }
 
-/// Draws a frame of a random field in `fields` with a low step limit: an undecided ray costs as much as 20
-/// others.
+/// Draws a frame of a random field in `fields` with a low limit of steps, since an undecided ray, which takes all steps,
+/// costs as much as 20 decided rays.
 fn draw_in_short(bench: &mut Bench, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
     setup.tuning.cap = setup.tuning.cap.min(40);
@@ -245,7 +245,7 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
-/// Cost of lights, with a sphere that fills most of the picture.
+/// Measures the cost of lights in clocks, with a sphere that fills most of the picture.
 #[test]
 fn round_pixels_take_a_clock_a_light() {
     let mut random = Random(13);
@@ -276,14 +276,14 @@ fn sponges_keep_the_lanes_busy() {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
         println!("frame {frame}: {}", taken.busy(&bench));
-        // With fewer than 8 evaluations a ray the generator limits the speed, not the lanes.
+        // With fewer than 8 evaluations per ray the ray generator limits the speed, not the lanes.
         let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }
 }
 
-/// Cost in the sponge's largest tunnel, where rays take the most evaluations, without and with a prepass: at 320 × 180,
-/// or at 1280 × 720 with `GLINT_RTL_FIELDS=all`.
+/// Measures the cost of a frame in the sponge's largest tunnel, where rays take the most evaluations, without and with a
+/// prepass of cones: at 320 × 180, or at 1280 × 720 with `GLINT_RTL_FIELDS=all`.
 #[test]
 fn cones_take_evaluations_off_the_rays_of_a_tunnel() {
     let all = std::env::var("GLINT_RTL_FIELDS").is_ok_and(|fields| fields == "all");

@@ -1,4 +1,4 @@
-//! The ray generator: all rays of a frame equal the model's, in order.
+//! Tests of the ray generator: its rays equal the model's rays of the frame, in order.
 
 use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
@@ -10,12 +10,12 @@ use glint_vectors::Random;
 /// Name of the module variant with all fields and with cones.
 const GENERATOR: &str = "ray_generator_all";
 
-/// Type of a ray at the module's output.
+/// Returns the type of a ray at the module's output.
 fn ray_type(module: &Module) -> Layout {
     module.packed_type("raymarch_pkg::ray_t").clone()
 }
 
-/// The model's rays of the first `lines` lines of a frame, in the order of the generator.
+/// Returns the model's rays of the first `lines` lines of a frame, in the order of the generator.
 fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let band_lines = band_lines(setup.width);
@@ -37,7 +37,7 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
         .collect()
 }
 
-/// The model's cones of a frame, ordered by number.
+/// Returns the model's cones of a frame, ordered by their number.
 fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
@@ -57,7 +57,7 @@ fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
         .collect()
 }
 
-/// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks until the last ray.
+/// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks up to the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
     set_generator(module, setup, band_lines(setup.width));
     module.drive("round", setup.is_round());
@@ -69,7 +69,7 @@ fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) ->
     clocks
 }
 
-/// Starts the generator and compares its rays with `expected` until all have come; returns the clocks.
+/// Starts the generator and compares its rays with `expected` until all have come; returns the number of clocks.
 fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");

@@ -1,4 +1,4 @@
-//! A single lane: every ray comes out once, with the model's result, under any back-pressure.
+//! Tests of a single lane of the raymarcher: every ray comes out once, with the model's result, under any back-pressure.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use glint_vectors::Random;
 /// Number of rays or cones in a frame.
 const RAYS: usize = 2_000;
 
-/// A ray or cone as it is sent, its expected end, and its number of evaluations.
+/// A ray or cone as it is sent, its expected end, and the number of evaluations of the field that it needs.
 struct Sent {
     item: Bits,
     end: End,
@@ -72,7 +72,7 @@ struct Bench {
     module: Module,
     source: Source,
     sink: Sink,
-    /// Numbers of clocks with an evaluation, and of clocks in which a ray waited for a free slot of the lane.
+    /// Number of clocks with an evaluation of the field; `waited` is that of clocks in which a ray waited for a free slot.
     evaluated: u64,
     waited: u64,
 }
@@ -90,12 +90,12 @@ impl Bench {
         }
     }
 
-    /// Type of a ray at the module's input.
+    /// Returns the type of a ray at the module's input.
     fn ray(&self) -> Layout {
         self.module.packed_type("raymarch_pkg::ray_t").clone()
     }
 
-    /// Sends rays or cones of a frame through the lane and compares their ends.
+    /// Sends rays or cones of a frame through the lane and compares their ends with the expected ones.
     fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<Place, Sent>) {
         set_lane(&mut self.module, setup);
         self.module.drive("cones", cones);
@@ -161,7 +161,7 @@ fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
     }
 }
 
-/// Frames with cones and with rays alternate.
+/// Sends frames with cones and frames with rays in turn.
 #[test]
 fn random_cones_and_rays_in_all_fields() {
     let mut random = Random(4);

@@ -1,4 +1,4 @@
-//! The raymarcher's modules against the model.
+//! Tests that compare the raymarcher's modules with the model.
 
 mod frames;
 mod generator;

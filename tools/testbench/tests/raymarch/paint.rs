@@ -1,4 +1,4 @@
-//! Colours and depths of the ends of rays.
+//! Tests of the module `ray_paint`, which computes colours and depths from the ends of rays.
 
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
@@ -23,7 +23,7 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// Makes a random result of a ray, which need not be one that a ray of the scene can have; `t` is not 0.
+/// Makes a result of the ray `start`: the model's, or a random one with `t` above 0, even if no ray of the scene can have it.
 fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);

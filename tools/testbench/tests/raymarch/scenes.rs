@@ -50,7 +50,7 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
-/// Examples of the kinds of fields that are neither in `FIELDS` nor in `ROUND`, one each.
+/// Returns one example of each kind of field that occurs neither in `FIELDS` nor in `ROUND`.
 pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
@@ -58,8 +58,8 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Fields of all kinds: those of the lists above, an example of each kind, and random fields, some with values at the
-/// ends of their ranges.
+/// Returns fields of all kinds: those of the lists above, an example of each kind, and random fields, some of which have
+/// values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
@@ -102,7 +102,7 @@ pub fn setup(random: &mut Random, fields: &[impl AsRef<str>]) -> FieldSetup {
     setup_with(random, fields, false)
 }
 
-/// As [`setup`], with a prepass if `prepass` is set.
+/// Makes random frame constants as [`setup`] does, with a prepass if `prepass` is set.
 pub fn setup_with(random: &mut Random, fields: &[impl AsRef<str>], prepass: bool) -> FieldSetup {
     let field = Field::parse(fields[random.bits() as usize % fields.len()].as_ref()).unwrap();
     let mut options = FieldOptions {
@@ -144,7 +144,7 @@ pub fn lights(random: &mut Random) -> Lights {
     }
 }
 
-/// Frame constants of a view along the largest tunnel of the sponge.
+/// Makes the frame constants of a view along the largest tunnel of the sponge.
 pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
     let view = Camera::looking(eye, target, 0.9, 0.01).rounded();
@@ -156,7 +156,7 @@ pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     FieldSetup::new(&sponge, &view, size, &options).unwrap()
 }
 
-/// Number of lines of a band in a picture of this width.
+/// Returns the number of lines of a band in a picture of this width.
 pub fn band_lines(width: u32) -> u32 {
     match width {
         320 => 45,

@@ -76,7 +76,7 @@ pub struct Bench {
     cycles: u64,
     vblanks: u64,
     driven: Settings,
-    /// Settings latched at the last vertical blanking.
+    /// Settings that the module latched at the last vertical blanking.
     in_force: Settings,
     /// Settings of the frame whose source line is being fetched.
     fetched_from: Settings,
@@ -102,7 +102,8 @@ impl Bench {
             software: None,
             raster,
             clocks,
-            // The unit of time is such that the period of each clock is the number in `clocks` for the other clock.
+            // The unit of time is chosen such that a period of sys_clk is `clocks.pix` units and one of pix_clk is
+            // `clocks.sys` units; each clock starts at a random phase.
             next_sys: 1 + random.random_range(0..clocks.pix),
             next_pix: 1 + random.random_range(0..clocks.sys),
             random,
@@ -142,7 +143,7 @@ impl Bench {
         }
     }
 
-    /// Runs for the time of `count` lines of the video timing.
+    /// Runs for as long as the video output takes for `count` lines.
     pub fn run_lines(&mut self, count: u64) {
         self.run_cycles(self.clocks.sys_cycles(count * self.raster.h_total()));
     }

@@ -1,4 +1,4 @@
-//! Scan-out with two clocks, a memory of any timing and a monitor; the test bench checks every cycle and every pixel.
+//! Tests of scan-out with two clocks, a memory of any timing and a monitor; the test bench checks every cycle and every pixel.
 //!
 //! The module `scanout` has the video timing of the SoC, CEA-861 1280×720. The module `scanout_small` has frames of a few
 //! thousand clocks, with the same time per memory word, so that thousands of frames fit in a test.
@@ -87,7 +87,7 @@ fn a_late_line_is_replaced_by_the_one_before() {
         bench.run_to_vblank();
         let late = bench.monitor.late;
         assert!((1..=3).contains(&late), "scale {scale}: {late} late lines");
-        // At scale 4, the late source line still appears in the last of its output lines.
+        // At scale 4, a source line has four output lines, and a late one still appears in the last of them.
         assert!(scale < 4 || bench.monitor.late_again >= 1);
         assert_eq!(bench.module.read("error"), error::UNDERFLOW);
         bench.monitor.may_be_late = false;
@@ -103,7 +103,7 @@ fn starved_memory_never_disturbs_the_raster() {
         let clocks = [Clocks::FAST, Clocks::SLOW][seed as usize & 1];
         let mut bench = Bench::small(clocks, seed);
         bench.monitor.may_be_late = true;
-        // Memory pauses for some lines up to whole frames.
+        // Memory pauses at random, from the time of some lines to that of whole frames.
         bench.memory.manners = Manners {
             ready: 0.6,
             deliver: 0.6,
@@ -176,7 +176,7 @@ fn either_side_may_be_reset_alone() {
         bench.run_cycles(cycles);
         bench.reset_sys(false);
         bench.reset_pix(false);
-        // The reset must have reached both clock domains before the first access; a processor takes longer than this.
+        // The reset must reach both clock domains before the first access. 20 cycles suffice, and a processor takes longer.
         bench.run_cycles(20);
     }
     bench.asked.enable = true;

@@ -54,7 +54,7 @@ pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
     share >= 1.0 || share > 0.0 && random.random_bool(share)
 }
 
-/// The memory, as it appears at the module's read port.
+/// Model of the memory at the module's read port.
 pub struct Memory {
     pub manners: Manners,
     /// Whether the memory takes no commands and delivers no words.
@@ -63,7 +63,7 @@ pub struct Memory {
     rdata: [Port; 2],
     /// For each command whose word was not delivered: the word address, and the cycle from which the word is due.
     commands: VecDeque<(u64, u64)>,
-    /// Address of the command that is valid and was not taken.
+    /// Word address of a command that is valid but was not taken yet.
     held: Option<u64>,
     paused_until: u64,
 }
@@ -81,7 +81,7 @@ impl Memory {
         }
     }
 
-    /// Drops all commands, after a reset of the module.
+    /// Drops all commands, because the module was reset.
     pub fn reset(&mut self, module: &mut Module) {
         self.commands.clear();
         self.held = None;

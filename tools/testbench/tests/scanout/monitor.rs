@@ -1,7 +1,8 @@
-//! The monitor: checks video timing and picture from the outputs alone.
+//! Model of a monitor, which checks video timing and picture from the module's outputs alone.
 //!
-//! At each pixel clock, the monitor compares the syncs with those of its position, which it counts from the first edge of
-//! vsync on. At the end of each line, it checks that the line is the expected one, or the previous one if memory was late.
+//! At each pixel clock, the monitor compares hsync and vsync with those expected at its position in the frame, which it
+//! counts from the first edge of vsync on. At the end of each line, it checks that the line is the expected one, or the
+//! previous one if memory was late.
 
 use glint_testbench::{Module, Port};
 
@@ -29,7 +30,7 @@ pub struct Monitor {
     pub frames: u64,
     /// Number of late source lines.
     pub late: u64,
-    /// Number of late source lines that appeared in a later one of their output lines.
+    /// Number of late source lines that still appeared in one of their later output lines (a source line has `scale` of them).
     pub late_again: u64,
 }
 

@@ -1,4 +1,4 @@
-//! The whole SoC with its raymarcher against glint-model: colours, depths and statistics of every field, from three
+//! Compares the whole SoC with its raymarcher with glint-model: colours, depths and statistics of every field, from three
 //! cameras, for one eye and for two eyes.
 
 use glint::board::{Board, SimulatedBoard, built_firmware};
@@ -40,7 +40,7 @@ const FIELDS: [&str; 13] = [
     "smooth:0.3,menger:1+sphere:1.2",
 ];
 
-/// All tested fields: the representative ones, and an example of each other kind.
+/// Returns all tested fields: those of `FIELDS`, and an example of each kind of field that `FIELDS` lacks.
 fn fields() -> Vec<&'static str> {
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));
@@ -52,8 +52,8 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// Cameras outside of the sponge, close to it, and in its hole. They look down, as rays near the horizon would take ten
-/// times as many evaluations, and each evaluation is simulated.
+/// Returns cameras outside of the sponge, close to it, and in its hole. They look down, because rays near the horizon would
+/// take ten times as many evaluations, and the simulation of each evaluation takes time.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
@@ -62,7 +62,7 @@ fn views() -> [View; 3] {
     ]
 }
 
-/// The settings for one eye, and for two eyes with each of the tints.
+/// Returns the settings for one eye, and for two eyes with each of the tints (pairs of colours for the eyes).
 fn eyes() -> [Option<Stereo>; 3] {
     let stereo = |tint| Stereo {
         half_separation: Q32_32::lit("0.03"),
@@ -103,8 +103,8 @@ fn compare(
     compare_picture(console, &replies, &name, &image, with_depth);
 }
 
-/// Console commands that draw `frame`; the mesh of a frame with one has to be loaded already. All of them go out in one write,
-/// so that the firmware does not draw a frame between two of them.
+/// Returns the console commands that draw `frame`; if the frame has a mesh, it must be loaded already. The commands are to
+/// be sent in one write, so that the firmware does not draw a frame between two of them.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),
@@ -156,13 +156,13 @@ fn compare_picture(
     }
 }
 
-/// Whether the environment asks for all combinations, which take long.
+/// Whether the environment variable `GLINT_RTL_FIELDS` asks for all combinations, which take long.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Draws every fourth field, each from one camera with one eye or two, and every second of these with a prepass; also one
-/// field of each kind that `FIELDS` lacks. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye
+/// Draws every fourth field, each from one camera with one eye or two, and every second of these pictures with a prepass;
+/// also one field of each kind that `FIELDS` lacks. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye
 /// and with two eyes, and from one camera also with a prepass.
 #[test]
 fn the_soc_draws_every_field() {
@@ -312,7 +312,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // Draws frames one after the other, without waiting for the screen.
+    // Draws frames one after the other, without waiting for the monitor to show them.
     let replies = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],

@@ -1,10 +1,10 @@
-//! The whole SoC with its triangle engine against glint-model: the pictures on the monitor, the depths in memory, and the
-//! counts of triangles.
+//! Compares the whole SoC with its triangle engine with glint-model: the pictures on the monitor, the depths in memory, and
+//! the counts of triangles.
 //!
 //! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` builds it too.
 //!
 //! The board draws a frame while the monitor takes in the frame before, so that each scene costs the time of one video
-//! frame. Video frames are the largest part of the test's time:
+//! frame. Video frames are the largest part of the test's time. In the chart, `d` stands for draw:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
@@ -85,12 +85,12 @@ impl Watched {
         self.seen += at;
     }
 
-    /// Runs until the monitor has shown all expected frames.
+    /// Runs the board until the monitor has shown all expected frames.
     fn see(&mut self) {
         self.run_until(|board| board.seen == board.expected.len());
     }
 
-    /// Runs until the next picture of the monitor is complete.
+    /// Runs the board until the next picture of the monitor is complete.
     fn wait_for_picture(&mut self) {
         let before = self.pictures;
         self.run_until(|board| board.pictures > before);
@@ -199,7 +199,8 @@ fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<
 /// simulation for 10 kB.
 const SMALL: usize = 256 << 10;
 
-/// The scenes with meshes of at most `SMALL` bytes and one with two small chunks; or, without `small`, the other scenes.
+/// Returns the scenes with meshes of at most `SMALL` bytes, and a scene with two small chunks; without `small`, returns the
+/// scenes with larger meshes.
 fn scenes(small: bool) -> Vec<Scene> {
     let mut scenes = glint_vectors::scenes::scenes(generated);
     scenes.retain(|(_, mesh, ..)| (mesh.len() <= SMALL) == small);
@@ -231,7 +232,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let mut drawn = u32::MAX;
 
     for (name, mesh, view, cull) in scenes {
-        // Further views are drawn without depth, when the engine writes only the changed part of a frame.
+        // Further views are drawn without depths, so that the engine writes only the changed part of a frame.
         let others = if name == "a sphere" {
             ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
         } else {
@@ -264,7 +265,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             lines.push("info".to_owned());
             console.board().expect(&name, image.colour);
             replies = send(&mut console, &lines);
-            // Waits until the last frame is shown, as `render` would replace it before.
+            // Waits until the monitor shows the last frame, because `render` would otherwise replace it before.
             while replies.number("video_frames") == drawn {
                 console.board().wait_for_picture();
                 replies = send(&mut console, &["info".to_owned()]);

@@ -1,4 +1,5 @@
-//! Requests to the triangle engine and their results: the module `triangle_control` with a simple engine behind it.
+//! Tests of the module `triangle_control`, through which software asks the triangle engine for passes and gets their results.
+//! A simple model stands for the engine.
 
 mod bench;
 mod passes;
@@ -12,7 +13,8 @@ use crate::control::passes::{
     RASTER, refusal, regions,
 };
 
-/// Asks for passes with each region of memory at valid and invalid addresses; for one pass alone, and for both passes.
+/// Asks for passes with each of their regions of memory at valid and at invalid addresses: for one pass alone, and for both
+/// passes.
 #[test]
 fn regions_are_wholly_in_memory() {
     let mut bench = Bench::new(1);
@@ -67,7 +69,7 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
-/// For counts and lengths from the lowest to the highest, a region may end where memory ends, but not one word farther.
+/// For counts and lengths from the lowest to the highest: a region may end where memory ends, but not one word farther.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
     let mut bench = Bench::new(2);
@@ -107,7 +109,7 @@ fn lengths_are_counted_to_the_last_word() {
             "a mesh of {bytes:#x}"
         );
     }
-    // Every value of `list_shift`, which sets the length of the lists, with every size of the picture.
+    // Tries every value of `list_shift`, which sets the length of the lists, with every size of the picture.
     for size in 0..4 {
         for shift in 0..32 {
             bench.passes = Pass::good();
@@ -161,7 +163,7 @@ fn unused_regions_are_not_checked() {
     }
 }
 
-/// A single pass starts after the stated latency at the latest, and ends with the engine's result.
+/// A single pass starts at most `LATENCY` clocks after it was asked for, and ends with the engine's result.
 #[test]
 fn passes_end_as_the_engine_says() {
     let mut bench = Bench::new(4);
@@ -200,8 +202,8 @@ fn passes_end_as_the_engine_says() {
     }
 }
 
-/// Asks for a pass again while it is checked, started, busy or done: the second ask is refused, and the pass continues
-/// and ends once.
+/// Asks for a pass again while its parameters are checked, or while it starts, runs or ends: the second ask is refused, and
+/// the pass continues and ends once.
 #[test]
 fn asks_in_between_are_refused() {
     let mut bench = Bench::new(5);
@@ -245,7 +247,7 @@ fn asks_in_between_are_refused() {
     }
 }
 
-/// Cancels one pass or both at any time, and asks for both again, before and after the engine is ready again.
+/// Cancels one pass or both passes at any time, and asks for both again, before and after the engine is ready again.
 #[test]
 fn asks_after_a_cancel_wait_for_the_engine() {
     let mut bench = Bench::new(6);
@@ -283,7 +285,7 @@ fn asks_after_a_cancel_wait_for_the_engine() {
     }
 }
 
-/// Random asks and cancels in every clock.
+/// Asks for passes and cancels them at random in every clock.
 #[test]
 fn random_sequences() {
     let mut random = Pcg64Mcg::new(7);

@@ -1,5 +1,5 @@
-//! The triangle engine against glint-model: the same pixels and depths from a mesh in memory. The model clips triangles,
-//! as the firmware does on the board.
+//! Compares frames that the triangle engine draws from a mesh in memory with those of glint-model: pixels and depths are
+//! equal. The model clips triangles for the engine, as the firmware does on the board.
 
 mod bench;
 
@@ -53,13 +53,13 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2], 0.0);
 }
 
-/// Smooth and flat frames alternate, with stalls of the memory and without.
+/// Draws frames with smooth and with flat shading in turn, with stalls of the memory and without.
 #[test]
 fn scenes_with_smooth_shading() {
     for stalls in [0.0, 0.4] {
         let mut bench = Bench::smooth(5, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
-            // Large meshes would only take longer.
+            // Skips large meshes, which take long and test nothing more.
             if mesh.len() > 1 << 20 {
                 continue;
             }
@@ -78,8 +78,8 @@ fn scenes_with_smooth_shading() {
     }
 }
 
-/// The frame does not depend on stalls of the memory. `GLINT_RTL_LISTS` in the environment is the number of frames,
-/// 25 by default.
+/// Draws random lists of triangles with random stalls of the memory, on which a frame must not depend. The environment
+/// variable `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -132,7 +132,7 @@ fn frames_after_each_other() {
                 5 => bench.scribble(),
                 _ => {}
             }
-            // There are few triangles, so that most lines are empty and the others change from frame to frame.
+            // There are few triangles, so that most lines are empty and the other lines change from frame to frame.
             let count = random.random_range(0..8);
             let extent = [0.02, 0.3, 1.0][random.random_range(0..3)];
             let mesh = meshes::mesh(&meshes::random(&mut random, count, extent), 65_535);

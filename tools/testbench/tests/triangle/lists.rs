@@ -1,4 +1,4 @@
-//! The binner, which writes the lists of the bands to memory.
+//! Tests of the binner, which writes to memory, for each band, the list of its triangles.
 
 use glint_model::triangle::descriptor::{band_rows, list_word};
 use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls, exchange};
@@ -44,7 +44,7 @@ impl Bench {
         bench
     }
 
-    /// Type of a descriptor at the module's input.
+    /// Returns the type of a descriptor at the module's input.
     fn descriptor(&self) -> Layout {
         self.module.record("in_descriptor").layout().clone()
     }
@@ -100,7 +100,8 @@ impl Bench {
     }
 }
 
-/// Makes descriptors with random rows and random other bits: for each, the first row, the row past the last, and all bits.
+/// Makes descriptors with random rows and random other bits. Returns for each the first row, the row past the last, and all
+/// bits.
 fn descriptors(
     random: &mut Pcg64Mcg,
     layout: &Layout,

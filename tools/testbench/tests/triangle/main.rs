@@ -1,4 +1,4 @@
-//! The triangle engine's modules against the model: each alone, all together, and the control of the engine's passes.
+//! Compares the triangle engine's modules with the model, each alone and all together, and tests the control of its passes.
 
 mod control;
 mod engine;

@@ -1,4 +1,4 @@
-//! The rasterizer against glint-model: the groups of pixels that it draws, band by band, must make the model's picture.
+//! Compares the rasterizer with glint-model: the groups of pixels that it draws, band by band, must make the model's picture.
 
 mod bench;
 mod triangles;
@@ -219,7 +219,7 @@ fn difficult_triangles() {
     assert!(numbered(SMALL, shapes.map(|(_, corners)| corners)).len() >= 20);
 }
 
-/// Draws triangles with depths at both ends of the range, whose gradients overflow on the way.
+/// Draws triangles with depths at both ends of the range, where intermediate results of the depth's gradients overflow.
 #[test]
 fn extreme_depths() {
     let near = ((1 << 18) - 4) * 64;
@@ -239,7 +239,7 @@ fn extreme_depths() {
     }
 }
 
-/// Triangles around a point cover each pixel within their outline once.
+/// Draws triangles around a common point: together they cover each pixel within their outline once.
 #[test]
 fn a_fan_covers_once() {
     let mut random = Random::new(5);
@@ -296,7 +296,7 @@ fn whole_pictures() {
     }
 }
 
-/// A triangle without a row in the band is dropped, and the next one is drawn.
+/// The rasterizer drops a triangle without a row in the band, and draws the next one.
 #[test]
 fn triangles_outside_of_the_band() {
     let mut bench = Bench::new(15, 0.0, 0.0);

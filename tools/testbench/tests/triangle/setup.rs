@@ -1,4 +1,4 @@
-//! Triangle setup, culling and shading against the model.
+//! Compares triangle setup, culling and shading with the model.
 
 use glint_core::colour::Rgb565;
 use glint_model::triangle::descriptor::Descriptor;
@@ -60,7 +60,7 @@ impl Types {
             .with("w", vertex.w)
     }
 
-    /// Packs the light of a vertex, which is that of the front side or of the back side.
+    /// Packs the light of a vertex on the visible side: the back side if it has light, else the front side.
     fn light(&self, light: Light) -> Record {
         let back = light.back != Lit::default();
         let Lit([r, g, b]) = if back { light.back } else { light.front };
@@ -87,7 +87,7 @@ impl Types {
     }
 }
 
-/// Returns the two payloads of the descriptor that the module must produce; `None` for a culled triangle.
+/// Returns the two payloads (ports) of the descriptor that the module must produce; `None` for a culled triangle.
 fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
     if frame.cull && oriented.facing == Facing::Back {
@@ -147,7 +147,8 @@ impl Bench {
         }
     }
 
-    /// Sends the triangles of a frame through the setup, compares the descriptors and returns the clocks.
+    /// Sends the triangles of a frame through the setup, compares the descriptors and returns the number of
+    /// clocks.
     fn check(&mut self, frame: &Frame, inputs: &[Input]) -> u64 {
         self.module.drive("width", frame.size.0);
         self.module.drive("height", frame.size.1);
@@ -225,7 +226,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
             _ => centre.map(|x| x + random.random_range(-60_000..60_000)),
         };
     }
-    // Slivers: the last vertex is near the line through the others.
+    // Slivers: the last vertex is near the line through the other two.
     if kind == 8 {
         let (t, [a, b, last]) = (random.random_range(0..=256), &mut places);
         for i in 0..2 {
@@ -291,7 +292,7 @@ fn random_triangles() {
     random_triangles_of(Shading::Flat);
 }
 
-/// Flat and smooth frames in one sequence.
+/// Sends frames with flat and with smooth shading in one sequence.
 #[test]
 fn random_triangles_smooth() {
     random_triangles_of(Shading::Smooth);
@@ -342,7 +343,7 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
     }
 }
 
-/// Draws all triangles between extreme vertices, in every order, with and without culling, at every size of the picture.
+/// Sets up all triangles between extreme vertices, in every order, with and without culling, at every size of the picture.
 #[test]
 fn corners_of_the_guard_band_and_of_the_picture() {
     corners(Shading::Flat);

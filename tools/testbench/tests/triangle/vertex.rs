@@ -1,4 +1,4 @@
-//! The vertex stage against the model.
+//! Compares the vertex stage with the model.
 
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
@@ -54,7 +54,7 @@ impl Bench {
         }
     }
 
-    /// Sends the vertices of a frame through the stage, compares the results and returns the clocks.
+    /// Sends the vertices of a frame through the stage, compares the results and returns the number of clocks.
     fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
         set_frame(&mut self.module, frame);
         for position in positions {
@@ -173,7 +173,7 @@ fn edges() {
             continue;
         }
 
-        // Scales the depth w to its limit and near it.
+        // Scales depths such that the vertex's depth w is at its limit or near it.
         let depth = frame.depth;
         for exponent in -5..=5 {
             frame.depth.exponent = exponent;
@@ -184,7 +184,7 @@ fn edges() {
         }
         frame.depth = depth;
 
-        // Puts x or y near either end of the guard band, by the choice of the translation.
+        // Chooses the translation such that x or y of the vertex is near an end of the guard band.
         let axis = random.integer(0, 1) as usize;
         let side = if random.coin() { 1 } else { -1 };
         let centre = [width, height][axis] as i64 / 2;

@@ -1,4 +1,4 @@
-//! The vertex cache between a model of the memory and a model of the vertex stage.
+//! Tests of the vertex cache between a model of the memory and a model of the vertex stage.
 
 use std::collections::VecDeque;
 
@@ -10,13 +10,13 @@ const SLOTS: usize = 512;
 
 type Triangle = [u16; 3];
 
-/// Makes 68 bits that identify a vertex of a chunk.
+/// Makes the 68 bits of a processed vertex, such that they identify the vertex and its chunk.
 fn vertex(chunk: u32, index: u16) -> Bits {
     let mixed = (u64::from(chunk) << 16 | u64::from(index)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     Bits::from_words(&[mixed as u32, (mixed >> 32) as u32, mixed as u32 >> 7 & 15])
 }
 
-/// Makes 96 bits that identify a triangle of a chunk.
+/// Makes 96 bits of data that go with a triangle, such that they identify the triangle and its chunk.
 fn side(chunk: u32, number: usize) -> Bits {
     Bits::from_words(&[number as u32, chunk, !(number as u32)])
 }
@@ -42,7 +42,7 @@ struct Bench {
     /// Fetches that are still expected: chunk and index of the vertex.
     expected_fetches: VecDeque<(u32, u16)>,
     latency: u64,
-    /// Clocks between two vertices from the vertex stage.
+    /// Number of clocks between two vertices from the vertex stage.
     pace: u64,
     clear: Port,
     idle: Port,
@@ -91,7 +91,7 @@ impl Bench {
     }
 
     /// Sends chunks through the cache, and compares the vertices at its output. The cache is cleared as soon as it has
-    /// taken the last triangle of a chunk. Returns the clocks.
+    /// taken the last triangle of a chunk. Returns the number of clocks.
     fn check(&mut self, first: u32, chunks: &[Vec<Triangle>]) -> u64 {
         let start = self.module.cycles();
         let total: usize = chunks.iter().map(Vec::len).sum();

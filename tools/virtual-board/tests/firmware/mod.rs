@@ -1,6 +1,6 @@
 //! Helpers for tests of the firmware: its image, and boards that run it.
 
-#![allow(dead_code)] // Each test program uses its part.
+#![allow(dead_code)] // Each test program uses only some of the helpers.
 
 use std::path::{Path, PathBuf};
 
@@ -27,7 +27,7 @@ fn read(name: &str) -> Vec<u8> {
         .unwrap_or_else(|error| panic!("{}: {error}; run `cargo xtask firmware`", path.display()))
 }
 
-/// Address of the firmware's symbol whose mangled name contains all of `parts`.
+/// Returns the address of the firmware's symbol whose mangled name contains all of `parts`.
 pub fn address(parts: &[&str]) -> u32 {
     let elf = read("glint.elf");
     let file = object::File::parse(elf.as_slice()).expect("an ELF file");
@@ -45,7 +45,7 @@ pub fn address(parts: &[&str]) -> u32 {
     u32::try_from(symbol.address()).expect("32 bits")
 }
 
-/// Replaces words in the image, at an address of the CPU.
+/// Replaces words of the image, from `address` on as the CPU sees it.
 pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
     let offset = (address - MAIN_RAM.base) as usize;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();

@@ -17,7 +17,7 @@ pub enum State {
     Runs(u64),
 }
 
-/// Whether the engine can start a pass. After a cancel it cannot until it is ready again.
+/// Whether the engine can start a pass: it can `Since` a clock, or `Waits` after a cancel until it is ready again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
@@ -32,7 +32,7 @@ pub struct Bench {
     pub passes: [Pass; 2],
     pub list_shift: u64,
     pub states: [State; 2],
-    /// Expected values of the outputs `error` and `kept` of each pass.
+    /// Expected value of the output `error` of each pass; `kept` has those of the outputs `kept`.
     pub errors: [u64; 2],
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
@@ -46,7 +46,7 @@ pub struct Bench {
     pub clocks: u64,
 }
 
-/// What software does in a clock.
+/// Actions of software in one clock.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Events {
     pub ask: [bool; 2],
@@ -81,13 +81,13 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // Runs one clock with `ready`, without which no pass starts.
+        // Runs one clock in which the engine is ready, because no pass starts before.
         bench.clock(Events::default());
         bench
     }
 
-    /// Asks for the pass `which` with several values of `count`, in units of `item` bytes. The region at the port
-    /// `region` must be accepted where it ends with memory, and refused one word farther.
+    /// Asks for the pass `which` with several values of the port `count`, in units of `item` bytes. The region whose address
+    /// is on the port `region` must be accepted if it ends where memory ends, and refused if it lies one word farther.
     pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
         const MOST: u64 = (1 << 20) - 1;
         let counts: &[u64] = if item == 1 {
@@ -203,7 +203,8 @@ impl Bench {
                     assert!(!started, "{name} starts though cancelled");
                 }
                 State::Asked(since, refusal) => {
-                    // The limit is that of two passes, as both may be asked for in one clock. Starts also wait for the engine.
+                    // Both passes may be asked for in one clock, so the limit is twice the latency of a pass. It counts from
+                    // when the engine became ready, if that was after the ask.
                     if let Recovery::Since(ready) = self.recovery {
                         let waited = now - since.max(ready);
                         assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");

@@ -2,7 +2,7 @@
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;
-/// Most clocks from the ask for a single pass to its start.
+/// Largest number of clocks from the ask for a single pass to its start.
 pub const LATENCY: u64 = 15;
 
 pub const NONE: u64 = 0;
@@ -45,7 +45,7 @@ impl Flags {
         }
     }
 
-    /// Returns the paths and values of the members of a port that has these flags.
+    /// Returns the path and the value of each member of the port `port` that carries these flags.
     pub fn members(&self, port: &str) -> Vec<(String, u64)> {
         let others = self.others.iter().map(|&(name, set)| (name, set.into()));
         let all = [("size", self.size)].into_iter().chain(others);
@@ -121,7 +121,8 @@ impl Pass {
     }
 }
 
-/// Returns the regions of memory that are checked for a pass: the port with the address, and the length in bytes.
+/// Returns the regions of memory that the module checks for a pass: for each, the port with its address, and its length in
+/// bytes.
 pub fn regions(
     which: usize,
     pass: &Pass,

@@ -11,8 +11,8 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
-// Addresses in memory, in words of 16 bytes. The engine writes the first of the two areas of lists and of descriptors,
-// the clipper the second one.
+// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: the engine writes the first one,
+// and the clipper (firmware on the board, here the model) the second one.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
@@ -24,7 +24,8 @@ const WORDS: usize = 0x20_0000;
 const LIST_SHIFT: u32 = 11;
 /// Number of words behind a picture that are checked not to change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
-/// Most exceptions that the engine may write, and most descriptors, the latter counted in units of three words.
+/// Largest number of exceptions (triangles left to the clipper) that the engine may write, and room for descriptors in
+/// units of three words.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
 
@@ -149,8 +150,8 @@ pub struct Bench {
     left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// What drawing a frame took: clocks of the two passes, words that the raster pass read, and words of colours
-/// and depths written.
+/// Cost of drawing a frame: clocks of the two passes, number of words that the raster pass read, and number of words of
+/// colours and depths written.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
@@ -164,7 +165,7 @@ impl Bench {
         Self::of(Shading::Flat, seed, stalls)
     }
 
-    /// As [`new`](Self::new), with the module for flat and smooth shading.
+    /// Creates a bench as [`new`](Self::new) does, with the module for flat and smooth shading.
     pub fn smooth(seed: u32, stalls: f64) -> Self {
         Self::of(Shading::Smooth, seed, stalls)
     }
@@ -271,7 +272,7 @@ impl Bench {
         let options = &expected.options;
         let bytes = |word: u32| u64::from(word) * 16;
         for (path, value) in [
-            // The engine reads a mesh from behind its header, which has two words.
+            // The engine gets the address after the mesh's header, which has two words.
             ("geometry.mesh", bytes(MESH + 2)),
             (
                 "geometry.mesh_bytes",
@@ -362,8 +363,8 @@ impl Bench {
         }
     }
 
-    /// Draws a frame from any descriptors and lists, valid or not. Each band has the same list `list`; its length is that
-    /// in `lengths`.
+    /// Draws a frame from any descriptors and lists, valid or not. All bands have the entries `list` as their list; each
+    /// band's length of the list is in `lengths`.
     ///
     /// # Panics
     /// When the frame does not end, or a word behind the picture changes.

@@ -13,7 +13,7 @@ pub struct Pixel {
     pub depth: u32,
 }
 
-/// Counts of what drawing took.
+/// Counts of the clocks, groups, pixels and triangles of a drawing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub clocks: u64,
@@ -21,10 +21,10 @@ pub struct Counts {
     pub walked: u64,
     /// Clocks among `walked` in which no group went on to be drawn (`cycles_empty`).
     pub empty: u64,
-    /// Groups at the output.
+    /// Number of groups at the output.
     pub groups: u64,
     pub pixels: u64,
-    /// Triangles, counted again in each band that they are drawn in.
+    /// Number of triangles, each counted once per band that it is drawn in.
     pub entries: u64,
 }
 

@@ -15,7 +15,7 @@ pub const LANES: usize = 8;
 
 pub type Corners = [ScreenVertex; 3];
 
-/// A triangle to draw. The colour of a flat one is its number.
+/// A triangle to draw. The colour of a flat triangle is the triangle's number.
 pub struct Triangle {
     pub corners: Corners,
     pub setup: Setup,
@@ -34,7 +34,7 @@ impl Triangle {
         })
     }
 
-    /// Returns the same triangle with light at its vertices, for smooth shading.
+    /// Returns this triangle with the light `lit` at its vertices, for smooth shading.
     pub fn with_light(mut self, lit: &[Lit; 3]) -> Self {
         let oriented = Oriented::new(self.corners).unwrap();
         self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
@@ -56,7 +56,7 @@ pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
 
-/// Makes the corners of a triangle from places in pixels; each corner has another depth.
+/// Makes the corners of a triangle from places in pixels; each corner has a different depth.
 pub fn pixels(corners: [[f64; 2]; 3]) -> Corners {
     let mut w = 0;
     corners.map(|place| {
