@@ -1,4 +1,4 @@
-//! Clock cycles of kernels on the soft core.
+//! Benchmarks on the soft core: clock cycles of kernels, which are small functions such as sine and cosine.
 
 use glint_core::fixed::Turns;
 use glint_core::trig::{sin_cos_q14, sin_cos_q30};
@@ -15,7 +15,7 @@ pub use measure::{Cycles, Report};
 
 use measure::measure;
 
-/// Measures sine and cosine.
+/// Measures sine and cosine, and reports the clock cycles of each function.
 pub fn sine(report: Report) {
     measure(report, "sin_cos_q14", Turns, sin_cos_q14);
     measure(report, "sin_cos_q30", Turns, sin_cos_q30);

@@ -1,6 +1,6 @@
-//! Execution of commands, by subject.
+//! Execution of console commands, in one module for each subject.
 //!
-//! A reply is text, then `ok` or `error: …`. A line for programs consists of a key and its value.
+//! A reply is text, and after it `ok` or `error: …`. A line of the text that programs read has a key and its value.
 
 mod appearance;
 mod bench;
@@ -25,11 +25,11 @@ impl<'l> Executor<'l> for Machine {
     type Output = Outcome<'l>;
 }
 
-/// Executes a line. A blank line gives `None`.
+/// Executes a line of the console as a command. Returns the command's reply; `None` for a blank line.
 ///
 /// # Errors
 /// The line is not a command, or the command fails.
-// Not inlined, because the code of the main loop would grow by several KiB.
+// Not inlined, because the code of the main loop would otherwise grow by several KiB.
 #[inline(never)]
 pub fn execute<'l>(
     machine: &mut Machine,

@@ -1,13 +1,14 @@
 //! The built-in model: a cube of edge length 1 with one colour per side.
 
-/// Number of vertices; `TRIANGLES` is the number of triangles.
+/// Number of vertices of the cube.
 const VERTICES: usize = 8;
+/// Number of triangles of the cube.
 const TRIANGLES: usize = 12;
 /// Length of a record in bytes (docs/formats.md, "Mesh in memory"); the header is as long as two records.
 const RECORD: usize = 16;
 /// 1.0 in Q2.14.
 const ONE: i16 = 1 << 14;
-/// √3/2, the distance of a corner from the centre, in u.14 and rounded up.
+/// Distance of a corner from the centre, √3/2: 14 fraction bits, rounded up.
 const RADIUS: u32 = 14_189;
 /// 1/√3 in Q2.14: the magnitude of each component of a corner's normal.
 const DIAGONAL: i16 = 9_459;
@@ -22,7 +23,7 @@ const SIDES: [(usize, u16, u16); 3] = [
 /// The mesh in the format of an upload.
 pub static BYTES: Aligned = Aligned(bytes());
 
-/// Bytes aligned to 16.
+/// The bytes of the mesh, aligned to 16 bytes.
 #[repr(align(16))]
 pub struct Aligned([u8; LENGTH]);
 
@@ -73,7 +74,8 @@ const fn bytes() -> [u8; LENGTH] {
     writer.bytes
 }
 
-/// Corner `index`: bit k selects the sign of coordinate k, `+size` or `−size`.
+/// Vector from the centre to the corner `index`, with coordinates of magnitude `size`. Coordinate k is positive if bit k of
+/// the index is 1.
 const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     let mut position = [-size; 3];
     let mut axis = 0;
@@ -86,7 +88,7 @@ const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     position
 }
 
-/// Appends little-endian numbers.
+/// Writer that appends little-endian numbers to the bytes of the mesh.
 struct Writer {
     bytes: [u8; LENGTH],
     at: usize,
@@ -107,7 +109,8 @@ impl Writer {
         self.half(x as u16).half(y as u16).half(z as u16)
     }
 
-    /// Appends the two triangles of a side, counter-clockwise seen from outside.
+    /// Appends the two triangles of a side of the cube, counter-clockwise seen from outside. The side is perpendicular to
+    /// `axis`, at its positive end if `plus` is true.
     const fn side(mut self, axis: usize, plus: bool, colour: u16) -> Self {
         let (base, b, c) = (
             (plus as usize) << axis,

@@ -31,9 +31,9 @@ pub enum CommandError<'l> {
     NoUpload,
     /// The SoC has no triangle engine.
     NoEngine,
-    /// Stereo is not available for a mesh in a field.
+    /// `stereo` was requested while a mesh in a field is shown, which is drawn for one eye only.
     StereoOfMesh,
-    /// A mesh in a field is not available in stereo.
+    /// A mesh in a field was requested while stereo is on.
     MeshInStereo,
     /// The list of lights is full.
     Lights,
@@ -41,15 +41,15 @@ pub enum CommandError<'l> {
     NoField,
     /// `bench triangle` needs triangles, but a field is shown.
     FieldShown,
-    /// The engine cannot draw the frame.
+    /// The gateware cannot draw the frame.
     Engine(Fallback),
     /// An upload is longer than the memory for it.
     TooLong {
-        /// Name of the command.
+        /// Name of the command that uploads.
         command: &'static str,
         /// Length of the upload in bytes.
         bytes: u32,
-        /// Length of the memory in bytes.
+        /// Length of the memory for the upload in bytes.
         room: usize,
     },
     /// A transfer failed.
@@ -62,14 +62,14 @@ pub enum CommandError<'l> {
     NoFrame,
     /// `bench` has no kernel of this name.
     Kernel {
-        /// The name.
+        /// Name in the command.
         name: &'l str,
         /// Names of the existing kernels.
         expected: &'static [&'static str],
     },
     /// The number of self-tests that failed.
     SelfTest(u32),
-    /// The sensor was not calibrated.
+    /// The calibration of the sensor failed.
     Calibration(CalibrationError),
     /// The sensor gives no samples.
     Sensor(SensorError),

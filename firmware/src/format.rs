@@ -16,7 +16,7 @@ impl<T: Display> Display for OrOff<T> {
     }
 }
 
-/// Displays three numbers with six decimals.
+/// Displays the three numbers of a vector with six decimals each.
 pub struct Vector(pub [Q32_32; 3]);
 
 impl Display for Vector {

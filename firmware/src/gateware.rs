@@ -1,4 +1,4 @@
-//! Frames by the gateware: the triangle engine, and the raymarcher in its raster pass.
+//! Drawing of frames by the gateware: by the triangle engine, and by the raymarcher in the engine's raster pass.
 //!
 //! ```text
 //! renderer ── repeat (benchmark loops)

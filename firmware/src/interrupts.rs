@@ -1,4 +1,4 @@
-//! Interrupts.
+//! The interrupt handler, and sleeping until the next interrupt.
 
 use glint_hal::{i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
@@ -9,7 +9,8 @@ use crate::terminal::ConsoleUart;
 /// The UART, shared by its interrupt and the program.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
-/// Enables interrupts. Call once, after the start of all devices that the handler accesses.
+/// Enables the interrupts of the UART, and of the parts of the SoC for which an argument is true. Call this once, after
+/// the start of all devices that the handler accesses.
 pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
@@ -29,7 +30,7 @@ pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
     }
 }
 
-/// Sleeps until an interrupt, unless `awake` reports work.
+/// Sleeps until the next interrupt, unless `awake` returns true because there is work.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     // An interrupt handled between `awake` and the sleep would not end the sleep. Interrupts are therefore masked: a
     // pending interrupt ends the sleep and is handled afterwards.
@@ -56,7 +57,7 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // This interrupt is never enabled; if it comes nevertheless, its line is disabled.
+        // The interrupt of the buttons is never enabled; if it comes nevertheless, its line is disabled.
         Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);

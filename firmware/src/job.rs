@@ -10,7 +10,7 @@ use crate::scene::{Scene, Sphere};
 /// The result of a command.
 pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
 
-/// The result of a job, once it has ended.
+/// The result of a job; `Poll::Pending` until the job has ended.
 pub type JobResult = Poll<Result<(), CommandError<'static>>>;
 
 /// The reply of a successful command.
@@ -34,7 +34,7 @@ pub enum Job {
     Orbit(Orbit),
     /// Calibrate the sensor, or print its samples.
     Sensor(SensorJob),
-    /// Compute the attitudes for the samples of a log.
+    /// Compute the attitudes after the samples of an uploaded log.
     Replay,
 }
 
@@ -54,18 +54,18 @@ pub enum SensorJob {
     },
 }
 
-/// A turn of the spherical camera about the z axis, one frame at a time.
+/// A full turn of the spherical camera about the z axis, one frame at a time.
 pub struct Orbit {
     start: Sphere,
     frames: u32,
     frame: u32,
 }
 
-/// Default number of frames of a turn: one frame each 1.5°.
+/// Default number of frames of a full turn: one frame for each 1.5°.
 const ORBIT_FRAMES: u32 = 240;
 
 impl Orbit {
-    /// A turn that begins at `start` and takes `frames` frames, or the default number.
+    /// A turn that begins at `start` and takes `frames` frames, or the default number of frames.
     pub fn new(start: Sphere, frames: Option<u32>) -> Self {
         Self {
             start,
@@ -74,13 +74,13 @@ impl Orbit {
         }
     }
 
-    /// Moves the camera to the next frame, until the turn is complete.
+    /// Moves the camera to its position for the next frame, until the turn is complete.
     pub fn poll(&mut self, scene: &mut Scene) -> JobResult {
         if self.frame == self.frames {
             return Poll::Ready(Ok(()));
         }
         self.frame += 1;
-        // The shifted number fits 64 bits. The quotient is at most one turn, 2^32, which wraps to 0.
+        // The shifted number of the frame fits 64 bits. The quotient is at most one full turn, 2^32, which wraps to 0.
         let turned = Turns(((u64::from(self.frame) << 32) / u64::from(self.frames)) as u32);
         let sphere = Sphere {
             theta: self.start.theta.wrapping_add(turned),

@@ -40,7 +40,7 @@ pub struct Devices {
     pub switches: InputPort<u16>,
     /// The sixteen LEDs.
     pub leds: OutputPort<u16>,
-    /// The bus of the sensor, until the sensor's stream takes it.
+    /// The I2C bus of the sensor; `None` after the sensor's stream has taken it.
     pub i2c: Option<I2c>,
 }
 
@@ -66,9 +66,9 @@ pub struct Machine {
     pub devices: Option<Devices>,
     /// The registers that reset the SoC.
     pub ctrl: Ctrl,
-    /// Whether the first LED blinks, until a command sets the LEDs.
+    /// Whether the first LED blinks: true until a command sets the LEDs.
     pub heartbeat: bool,
-    /// Transfers to the host.
+    /// The sender of transfers to the host.
     pub downloads: Downloads,
     /// The replay of the log in the staging memory, if there is one.
     pub replay: Option<Replay>,

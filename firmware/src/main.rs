@@ -1,6 +1,7 @@
 //! The program on Glint's soft core: start, console, drawing and display.
 //!
-//! Pictures are computed by `glint-model` and the engines, everything else by `glint-core`. Imports go down:
+//! Pictures are computed by `glint-model` and the gateware, everything else by `glint-core`. In this diagram a module
+//! imports only modules below it:
 //!
 //! ```text
 //! start, main_loop
@@ -30,19 +31,19 @@ mod job;
 mod machine;
 #[allow(unsafe_code)] // Starts the sensor's stream in a function that does not return.
 mod main_loop;
-#[allow(unsafe_code)] // Linker symbols as slices.
+#[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
 mod memory;
-#[allow(unsafe_code)] // A mesh that outlives the borrow of its buffer.
+#[allow(unsafe_code)] // Keeps a mesh beyond the borrow of its buffer.
 mod models;
-#[allow(unsafe_code)] // The trap handler's symbol, and the UART after a panic.
+#[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
 mod renderer;
 mod replay;
 mod scene;
 mod selftest;
-#[allow(unsafe_code)] // Pinned future polled from interrupts.
+#[allow(unsafe_code)] // Polls a pinned future from interrupts.
 mod sensor;
-#[allow(unsafe_code)] // The UART before it has an owner.
+#[allow(unsafe_code)] // Uses the UART before it has an owner.
 mod start;
 mod terminal;
 mod transfer;

@@ -1,7 +1,7 @@
 //! The main loop.
 //!
-//! No step of the loop waits: interrupts fill queues, and each turn of the loop takes their contents. A command whose
-//! reply needs a frame or samples leaves a [`Job`]; input waits in the UART's queue meanwhile.
+//! No step of the loop waits: interrupts fill queues, and each pass of the loop takes the contents of the queues. A command
+//! whose reply needs a frame or samples leaves a [`Job`]; input waits in the UART's queue until this job has ended.
 
 use core::future::pending;
 use core::pin::pin;
@@ -26,9 +26,9 @@ use crate::terminal::Input;
 /// causes a single frame.
 const QUIET: Duration = Duration::from_millis(2);
 
-/// Button 2 calibrates the sensor.
+/// Bit of button 2, which calibrates the sensor.
 const CALIBRATE: u8 = 1 << 2;
-/// Button 3 recentres the camera.
+/// Bit of button 3, which recentres the camera.
 const RECENTRE: u8 = 1 << 3;
 
 /// Time between two changes of the blinking LED.
@@ -88,7 +88,7 @@ impl MainLoop {
         }
     }
 
-    /// Whether the next turn of the loop has work.
+    /// Whether there is work for the next pass of the loop, so that the CPU must not sleep.
     fn is_busy(&mut self) -> bool {
         // The last condition is for SoCs without scan-out, where no interrupt would wake the loop for the blinking LED.
         self.answers_next()
@@ -98,7 +98,7 @@ impl MainLoop {
             || !self.machine.renderer.display.is_visible()
     }
 
-    /// Whether the next turn of the loop executes or receives input.
+    /// Whether the next pass of the loop will execute or receive input.
     fn answers_next(&self) -> bool {
         if self.machine.terminal.has_input() {
             self.takes_input()
@@ -107,8 +107,8 @@ impl MainLoop {
         }
     }
 
-    /// Whether a line can be executed now. A line waits for the end of most jobs, and of a frame drawn by the engine;
-    /// an orbit, a job of the sensor, or a replay is ended by the line instead.
+    /// Whether a line can be executed now. A line waits until the gateware has drawn its frame, and until most jobs have
+    /// ended. It does not wait for an orbit, a job of the sensor or a replay: the line ends such a job.
     fn takes_input(&self) -> bool {
         matches!(
             self.job,
@@ -116,7 +116,7 @@ impl MainLoop {
         ) && !self.machine.renderer.is_busy()
     }
 
-    /// Executes a complete line, if there is one and it can be executed now.
+    /// Executes the line that the terminal has received, if it is complete and can be executed now.
     fn answer(&mut self) {
         if !self.takes_input() {
             return;
@@ -180,7 +180,7 @@ impl MainLoop {
         }
     }
 
-    /// Continues the job, if any, and ends the reply when the job has ended.
+    /// Continues the job, if there is one, and ends the reply of its command when the job has ended.
     fn poll_job(&mut self) {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };
@@ -197,7 +197,7 @@ impl MainLoop {
         }
     }
 
-    /// Ends a reply and its job.
+    /// Ends the reply of a command, and its job if it has one.
     fn finish(&mut self, result: Result<(), CommandError>) {
         self.job = None;
         let Machine {
@@ -244,7 +244,7 @@ impl MainLoop {
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
-        // Polls the sensor's stream, which cancels a transfer whose interrupt is missing.
+        // Polls the sensor's stream, so that a transfer whose interrupt is missing times out.
         sensor::advance(cpu::cycles_low());
         if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();

@@ -1,4 +1,4 @@
-//! The windows of main memory that `memory.x` defines, as typed slices.
+//! The windows of main memory that the linker script `memory.x` defines, as typed slices.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -10,7 +10,7 @@ use litex_pac::cpu;
 
 use crate::models::Buffer;
 
-/// All windows of main memory; each is lent only once.
+/// All windows of main memory. `take` lends each of them only once.
 pub struct Memory {
     /// Two frame buffers: colours in RGB565, one per pixel.
     pub frames: [&'static mut [u16]; 2],
@@ -42,7 +42,8 @@ unsafe extern "C" {
     static _fast_loaded: u8;
 }
 
-/// A window as a slice: `window!(first byte, size in bytes, element)`.
+/// Expands to a slice of a window of memory. The arguments are the linker symbols of its first byte and of its size in
+/// bytes, and the type of the elements.
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
@@ -53,7 +54,7 @@ macro_rules! window {
 }
 
 impl Memory {
-    /// The windows on the first call, `None` afterwards.
+    /// Returns the windows on the first call, and `None` on later calls.
     pub fn take() -> Option<Self> {
         static TAKEN: AtomicBool = AtomicBool::new(false);
         // Only the main program calls this function, never an interrupt handler, so load and store need not be atomic.
@@ -80,8 +81,8 @@ impl Memory {
     }
 }
 
-/// Copies the fast code that memory.x defines to the SRAM; fast code must not run earlier. Every SoC has this
-/// SRAM for the BIOS.
+/// Copies the fast code, which memory.x selects, to the SRAM. Fast code must not run before this call. Every SoC has this
+/// SRAM, because the BIOS needs it.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
     // SAFETY: memory.x reserves the SRAM at `_fast` for the fast code and loads that code at `_fast_loaded` with the program.
@@ -99,7 +100,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Memory for at least `count` vertices, or the whole memory if smaller.
+    /// Returns memory for at least `count` vertices, or the whole memory if it has fewer.
     pub fn vertices(&mut self, count: usize) -> &mut [Projected] {
         let count = count.min(self.memory.len());
         if let Some(fresh) = self.memory.get_mut(self.ready..count) {

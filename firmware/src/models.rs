@@ -20,12 +20,12 @@ impl Buffer {
     }
 }
 
-/// A model.
+/// A mesh that the console can show by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
-    /// The built-in cube, shown before an upload.
+    /// The built-in cube, shown until a mesh is uploaded.
     Cube,
-    /// The last upload.
+    /// The mesh that was uploaded last.
     Uploaded,
 }
 
@@ -42,7 +42,7 @@ impl Model {
     }
 }
 
-/// Named fields of the `scene` command.
+/// Fields that the command `scene` shows, with their names.
 pub const FIELDS: [(&str, Field); 2] = [
     (
         "sponge-field",
@@ -57,7 +57,7 @@ pub const FIELDS: [(&str, Field); 2] = [
     ),
 ];
 
-/// Both models, and two buffers: one for the uploaded mesh, one as staging memory.
+/// The built-in and the uploaded mesh, and two buffers: one for the uploaded mesh, one as staging memory.
 pub struct Models {
     buffers: [Buffer; 2],
     /// The uploaded mesh, in the first buffer.
@@ -94,12 +94,12 @@ impl Models {
         self.shown
     }
 
-    /// Whether the model exists.
+    /// Whether the model exists: always true for the cube, and true for the upload after the first upload.
     pub const fn has(&self, model: Model) -> bool {
         matches!(model, Model::Cube) || self.uploaded.is_some()
     }
 
-    /// Shows a model if the model exists; returns whether it does.
+    /// Shows a model if it exists. Returns whether it exists.
     pub const fn show(&mut self, model: Model) -> bool {
         let exists = self.has(model);
         if exists {
@@ -108,7 +108,7 @@ impl Models {
         exists
     }
 
-    /// The staging memory of the next upload, apart from the shown mesh.
+    /// The staging memory for the next upload, which is separate from the shown mesh.
     pub fn staging(&mut self) -> &mut [u8] {
         self.buffers[1].memory
     }
@@ -121,8 +121,8 @@ impl Models {
     pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
         let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
         // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first buffer
-        // below. Only `staging` lends a buffer for writing, always the second one. Only this function swaps the
-        // buffers, and drops the old mesh.
+        // below. Only `staging` lends a buffer for writing, and always lends the second buffer. Only this function swaps
+        // the buffers, and it drops the old mesh when it does so.
         let staged: &'static [u8] = unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) };
         self.uploaded = Some(Mesh::new_checked(staged)?);
         self.buffers.swap(0, 1);

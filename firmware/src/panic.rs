@@ -1,4 +1,4 @@
-//! Traps and panics: a report over the UART without interrupts, then a restart on Enter.
+//! Handlers of traps and panics: they report the reason over the UART without interrupts, and restart on Enter.
 
 use core::fmt::Write;
 use core::panic::PanicInfo;
@@ -10,7 +10,7 @@ use riscv_rt::TrapFrame;
 
 use crate::interrupts::UART;
 
-/// The handler of all CPU exceptions, of which none is expected.
+/// The handler of all exceptions of the CPU. No exception is expected.
 #[unsafe(export_name = "ExceptionHandler")]
 extern "C" fn exception(frame: &TrapFrame) -> ! {
     let code = mcause::read().code();
@@ -23,7 +23,7 @@ extern "C" fn exception(frame: &TrapFrame) -> ! {
     ))
 }
 
-/// The name of an exception in the privileged specification.
+/// The name of the exception with this `code` in the privileged specification of RISC-V.
 const fn name(code: usize) -> &'static str {
     match code {
         0 => "instruction address misaligned",
@@ -50,7 +50,7 @@ pub fn report(reason: core::fmt::Arguments) -> ! {
     UART.drain();
     // SAFETY: the interrupted program never continues, so its output cannot be disturbed.
     let (mut console, peripherals) = unsafe { (Direct::seize(), Peripherals::steal()) };
-    // Writing fails only if the line accepts no text, so an error is ignored.
+    // Writing fails only if the serial line accepts no text, so an error is ignored.
     let _ = write!(
         console,
         "\r\n{reason}\r\nGlint {}, build id {:#010x}: halted, press Enter to restart\r\n",

@@ -1,4 +1,4 @@
-//! Frames of the scene, by the gateware or by the CPU: two frame buffers with their display, and one depth buffer.
+//! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
 
 use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
@@ -10,7 +10,7 @@ use crate::gateware::{self, Fallback, GatewareRenderer, Output};
 use crate::memory::Scratch;
 use crate::scene::{Drawn, RenderedBy, Scene};
 
-/// The renderers and their memory.
+/// The renderers of gateware and CPU, and their memory.
 pub struct Renderer {
     /// Two frame buffers, one of which is shown.
     pub display: Display,
@@ -24,8 +24,8 @@ pub struct Renderer {
 
 impl Renderer {
     /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while
-    /// the gateware draws, and while the frame buffer is still on the screen; `mesh` and `scene` must not change
-    /// meanwhile. A frame drawn by the CPU takes long and calls `progress` at short intervals.
+    /// the gateware draws, and while the frame buffer to draw into is still on the screen; `mesh` and `scene` must not
+    /// change meanwhile. Drawing by the CPU takes long and calls `progress` at short intervals.
     pub fn draw(
         &mut self,
         mesh: &Mesh,
@@ -52,7 +52,7 @@ impl Renderer {
         Some(drawn)
     }
 
-    /// Drops a frame that waits for the next vertical blanking, so that another one can be drawn.
+    /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.
     pub fn drop_pending(&mut self) {
         if !self.is_busy() {
             self.display.withdraw();
@@ -74,8 +74,8 @@ impl Renderer {
         }
     }
 
-    /// Draws a frame by the gateware. `Err` means that the CPU must draw the frame; it has a reason unless the backend
-    /// is the CPU or the SoC has no engine.
+    /// Draws a frame by the gateware. `None` means that the frame is not drawn yet, `Err` that the CPU must draw the frame.
+    /// The error contains no reason if the backend is the CPU or the SoC has no engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,

@@ -1,4 +1,4 @@
-//! Replay of a log in memory: the attitude after each sample overwrites the sample's record.
+//! Replay of a log in memory: the attitude after each sample of the sensor overwrites the record of this sample.
 
 use core::ops::Range;
 
@@ -6,7 +6,7 @@ use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-/// Number of samples that are replayed in one turn of the main loop: a few milliseconds of work.
+/// Number of samples that are replayed in one pass of the main loop, a few milliseconds of work.
 const SLICE: usize = 256;
 
 /// A log in the staging memory and the progress of its replay.
@@ -42,7 +42,7 @@ impl Replay {
         self.done == self.samples
     }
 
-    /// Counts of the samples so far, by their effect on the attitude.
+    /// Counts of the samples replayed so far, by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.tracker.counts()
     }
@@ -76,7 +76,8 @@ impl Replay {
     /// Replays the next slice of the log in the staging memory.
     pub fn advance(&mut self, staging: &mut [u8]) {
         let records = staging.get_mut(self.range()).unwrap_or_default();
-        // The memory is aligned, header and records are whole words, and this core is little-endian like the log.
+        // The cast is possible, because the memory is aligned and header and records are whole words. The values are right,
+        // because this core is little-endian like the log.
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
         let end = self.samples.min(self.done + SLICE);
         let records = records.get_mut(self.done..end).unwrap_or_default();
@@ -86,10 +87,10 @@ impl Replay {
 }
 
 /// Replaces the samples in `records` by the attitudes after them, and returns the clock cycles of the tracker.
-// The linker script places this function beside the tracker.
+// The linker script places this function next to the code of the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
-    // Measures the cycles between two consecutive readings of the counter.
+    // Measures the cost of a reading: the cycles between two consecutive readings of the cycle counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;

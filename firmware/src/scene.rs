@@ -16,16 +16,16 @@ use crate::gateware::Fallback;
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy)]
 pub struct Sphere {
-    /// Distance from the origin.
+    /// Distance from the origin in world units.
     pub r: Q32_32,
-    /// Azimuth.
+    /// Azimuth, about the z axis.
     pub theta: Turns,
     /// Angle from the z axis.
     pub phi: Turns,
 }
 
 impl Sphere {
-    /// The camera at start: shows the whole model from above and in front.
+    /// The camera at start, which shows the whole model from above and in front.
     const START: Self = Self {
         r: Q32_32::lit("2.5"),
         // Azimuth 40°, and 65° from the z axis.
@@ -134,7 +134,7 @@ impl Scene {
         self.field.as_ref()
     }
 
-    /// Shows a field, or the mesh alone.
+    /// Shows a field, or the mesh alone for `None`.
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.field != field;
         self.field = field;
@@ -145,7 +145,7 @@ impl Scene {
         self.with_mesh
     }
 
-    /// Shows the mesh in a field, or the field alone.
+    /// Sets whether a field is shown with the mesh in it or alone.
     pub fn set_with_mesh(&mut self, with_mesh: bool) {
         self.changed |= self.field.is_some() && self.with_mesh != with_mesh;
         self.with_mesh = with_mesh;
@@ -167,7 +167,7 @@ impl Scene {
         self.stereo
     }
 
-    /// Sets two eyes for a field, or one eye.
+    /// Sets two eyes for a field, or one eye for `None`.
     pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
         // A mesh is drawn for one eye only, so the setting changes pictures of fields only.
         self.changed |= self.field.is_some() && self.stereo != stereo;
@@ -191,7 +191,7 @@ impl Scene {
         self.view = view;
     }
 
-    /// The spherical camera that was set last.
+    /// The camera on a sphere that was set last.
     pub const fn sphere(&self) -> Sphere {
         self.sphere
     }
@@ -201,7 +201,7 @@ impl Scene {
         self.set_view(view.with_lens_of(&self.view));
     }
 
-    /// Sets position and basis from a spherical camera.
+    /// Sets position and basis of the camera to those of a camera on a sphere.
     ///
     /// # Errors
     /// [`ViewError`] for a camera out of range; the scene is then unchanged.
@@ -260,7 +260,7 @@ impl Scene {
         self.wants_depth = wanted;
     }
 
-    /// Marks the scene as changed, because its model has changed.
+    /// Marks the scene as changed, after a change of the mesh that it shows.
     pub const fn touch(&mut self) {
         self.changed = true;
     }

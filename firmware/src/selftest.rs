@@ -22,7 +22,7 @@ pub fn run(machine: &mut Machine) -> [(&'static str, bool); 6] {
     ]
 }
 
-/// Whether the sensor's bus is held low.
+/// Whether a wire of the sensor's bus is stuck low.
 fn is_stuck(machine: &Machine) -> bool {
     matches!(
         machine.imu.error(),
@@ -32,7 +32,8 @@ fn is_stuck(machine: &Machine) -> bool {
     )
 }
 
-/// Whether the memory keeps a different word at each address when it is read back after a flush of the cache.
+/// Tests the start of `window`, a part of main memory: writes a different word to each address, flushes the cache, and
+/// returns whether all words read back right.
 fn memory(window: &mut [u8]) -> bool {
     let (words, _) = window
         .get_mut(..TESTED)

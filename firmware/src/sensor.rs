@@ -1,7 +1,7 @@
 //! The sensor's stream: a future that interrupts poll, and a queue of its events for the main loop.
 //!
-//! The end of a transfer, of a batch of samples and of a pause each raise an interrupt, whose handler polls the stream.
-//! Samples are therefore read on time during long work of the program, and wait in the queue.
+//! The end of a transfer, of a batch of samples or of a pause raises an interrupt, whose handler polls the stream.
+//! Therefore samples are read on time even while the main program is busy for long, and wait in the queue.
 
 use core::cell::{Cell, RefCell};
 use core::mem;
@@ -23,7 +23,7 @@ pub type SensorError = Error<i2c::BusError>;
 /// Reason why a calibration failed.
 pub type CalibrationError = glint_core::imu::CalibrationError<i2c::BusError>;
 
-/// An event of the stream.
+/// An event of the stream: the sensor has started, or there is a sample with its time, or an error.
 enum Event {
     Start(Identity),
     Sample(u64, Measurement),
@@ -41,16 +41,16 @@ unsafe impl Send for Stream {}
 
 static STREAM: Mutex<RefCell<Option<Stream>>> = Mutex::new(RefCell::new(None));
 static EVENTS: Mutex<RefCell<Deque<Event, QUEUE>>> = Mutex::new(RefCell::new(Deque::new()));
-/// Clock cycles of the stream, and of the processing of its samples.
+/// Clock cycles spent by the stream, and by the processing of its samples.
 static CYCLES: Mutex<Cell<[u64; 2]>> = Mutex::new(Cell::new([0; 2]));
 
-/// The receiver of the stream's events, which it puts into the queue.
+/// The receiver of the stream's events. It puts them into the queue.
 pub struct Inbox;
 
 impl Inbox {
     fn push(event: Event) {
         critical_section::with(|token| {
-            // If the queue is full, the event is dropped. The gap between time stamps reveals this.
+            // If the queue is full, the event is dropped. The gap between the time stamps of the samples reveals this.
             let _ = EVENTS.borrow_ref_mut(token).push_back(event);
         });
     }
@@ -70,7 +70,7 @@ impl Sink<i2c::BusError> for Inbox {
     }
 }
 
-/// Starts a stream into the [`Inbox`].
+/// Starts the stream: from now on, interrupts poll the future `stream`, which gives its events to the [`Inbox`].
 ///
 /// # Safety
 /// The caller must never return.
@@ -86,8 +86,8 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     advance(cpu::cycles_low());
 }
 
-/// Polls the stream, after an interrupt by the end of a transfer or a pause. The cycles since `start` are added to the
-/// cycles of the stream.
+/// Polls the stream. Call this after an interrupt at the end of a transfer or pause. The cycles since `start` are added to
+/// the cycles of the stream.
 pub fn advance(start: u32) {
     critical_section::with(|token| {
         if let Some(stream) = &mut *STREAM.borrow_ref_mut(token) {
@@ -109,8 +109,8 @@ fn count(which: usize, start: u32) {
     });
 }
 
-/// Clock cycles of the stream and of the processing of its samples since the start of
-/// the machine, including interrupts.
+/// Clock cycles spent by the stream, and by the processing of its samples, since the start of the machine. They include
+/// interrupts during this work.
 pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }

@@ -26,7 +26,7 @@ use crate::scene::Scene;
 #[unsafe(no_mangle)]
 static GLINT_BUILD_ID: u32 = BUILD_ID;
 
-/// Reason why the machine does not start.
+/// Reason why the machine cannot start.
 pub enum StartError {
     /// The machine was started before.
     Started,
@@ -34,7 +34,7 @@ pub enum StartError {
     Clock(Stopped),
     /// The built-in model is not a mesh.
     Cube(MeshError),
-    /// The first camera is out of range.
+    /// The camera at start is out of range.
     Camera(ViewError),
 }
 
@@ -51,15 +51,15 @@ impl fmt::Display for StartError {
 
 /// Starts the machine.
 ///
-/// The banner comes first and needs only the UART, so that later errors are visible. On a gateware with another build
-/// id only the console is started.
+/// The banner is printed first and needs only the UART, so that later errors are visible. If the build id of the gateware
+/// differs from that of the firmware, only the console is started.
 ///
 /// # Errors
 /// The timer, the built-in model or the camera at start fails.
 pub fn machine() -> Result<Machine, StartError> {
     // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };
-    // Writing fails only if the line accepts no text, so an error is ignored.
+    // Writing fails only if the serial line accepts no text, so an error is ignored.
     let _ = write!(banner, "\r\nGlint {}\r\n", env!("CARGO_PKG_VERSION"));
 
     memory::load_fast_code();

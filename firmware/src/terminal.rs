@@ -9,15 +9,16 @@ use glint_hal::timer::Clock;
 use glint_hal::uart::{Uart, Writer};
 use heapless::String;
 
-/// Capacity of the receive queue: more than a second of typing at 115,200 baud, and several windows of an upload.
+/// Capacity of the receive queue in bytes: enough for more than a second of input at 115,200 baud, and for several windows
+/// of an upload.
 const RECEIVE_QUEUE: usize = 16 << 10;
-/// Capacity of the send queue.
+/// Capacity of the send queue in bytes.
 const SEND_QUEUE: usize = 4 << 10;
 
 /// The UART of the SoC.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// Longest wait for a line that accepts no text; after it the text is dropped.
+/// Longest time to wait for a serial line that accepts no text, before the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Input from the user.
@@ -28,9 +29,9 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 pub enum Input {
     /// A complete line.
     Line(String<LINE_MAX>),
-    /// A line longer than [`LINE_MAX`].
+    /// A line longer than [`LINE_MAX`], without its text.
     Overlong,
-    /// Ctrl-C.
+    /// The key Ctrl-C.
     Interrupt,
 }
 
@@ -70,12 +71,12 @@ impl Terminal {
         }
     }
 
-    /// Takes the complete input, if there is one.
+    /// Takes the complete line or key, if there is one.
     pub fn input(&mut self) -> Option<Input> {
         self.waiting.take()
     }
 
-    /// Whether an input is complete.
+    /// Whether a complete line or key is waiting.
     pub const fn has_input(&self) -> bool {
         self.waiting.is_some()
     }
@@ -85,7 +86,7 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints text, which is lost if the line accepts no text.
+    /// Prints text. The text is lost if the serial line accepts no text.
     pub fn print(&mut self, text: fmt::Arguments) {
         let _ = fmt::Write::write_fmt(&mut self.output, text);
     }
@@ -95,7 +96,7 @@ impl Terminal {
         self.print(format_args!("{key} {value}\n"));
     }
 
-    /// The output for text.
+    /// Returns the output for functions that write text.
     pub const fn output(&mut self) -> &mut Output {
         &mut self.output
     }

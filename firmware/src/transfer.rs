@@ -8,7 +8,7 @@ use glint_hal::timer::Clock;
 
 use crate::terminal::{ConsoleUart, Terminal};
 
-/// Receives the upload of `manifest` into `buffer`.
+/// Receives the upload that `manifest` announces into `buffer`.
 ///
 /// # Errors
 /// The upload is incomplete.
@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The sender of downloads. The session number of each transfer differs from that of the transfer before.
+/// The sender of downloads. Each transfer gets the session number after that of the transfer before.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,
@@ -60,7 +60,7 @@ impl Downloads {
 fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
     let mut received = [0; 256];
     let mut frame = [0; MAX_FRAME];
-    // The range of `frame` that does not fit into the UART's queue yet.
+    // The range of `frame` that has not been put into the UART's queue, because the queue was full.
     let mut unsent = 0..0;
     loop {
         let now = clock.milliseconds();

@@ -1,4 +1,4 @@
-//! Clock cycles of methods of attitude integration, per sample.
+//! Benchmark of methods that integrate the rates of a gyroscope to an attitude: clock cycles per sample.
 
 use core::cell::RefCell;
 
@@ -13,18 +13,18 @@ use crate::replay;
 /// The time between two samples, in µs.
 const STEP: u32 = 5_000;
 
-/// Number of consecutive samples of one measurement, whose mean is taken.
+/// Number of consecutive samples of one measurement; its result is the mean of the cycles per sample.
 const RUN: u32 = 64;
 /// Number of measurements.
 const RUNS: usize = 16;
 
-/// Measures each method under its name in `cargo xtask report imu`.
+/// Measures the clock cycles of each method, and reports them under the method's name in `cargo xtask report imu`.
 pub fn attitude(report: Report) {
     let angles = RefCell::new([0_u32; 3]);
     measure(report, "angles", rate, |rate: [i32; 3]| {
         for (angle, rate) in angles.borrow_mut().iter_mut().zip(rate) {
-            // A rate of 2^−8 LSB turns the angle in 2^20 µs by 2^32/(16.4·360·256)·2^20/10^6 units
-            // of 2^−32 turns: 2,980.
+            // A rate of 2^−8 LSB changes the angle in 2^20 µs by 2^32/(16.4·360·256)·2^20/10^6 = 2,980 units of 2^−32
+            // turns.
             let turned = (i64::from(rate) * i64::from(STEP) * 2_980) >> 20;
             *angle = angle.wrapping_add(turned as u32);
         }
@@ -54,7 +54,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // The method that the machine uses, with the code and the memory of `replay`.
+    // Measures the method that the machine uses for its sensor, by the code that replays logs.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -77,7 +77,7 @@ pub fn attitude(report: Report) {
             let cycles = riscv::interrupt::free(|| replay::track(&mut tracker, &mut records));
             (cycles / u64::from(RUN)) as u32
         };
-        // The gain of the tilt correction varies until the time constant has passed.
+        // Runs without measurement until the time constant of the tilt correction has passed: until then its gain varies.
         for _ in 0..=TIME_CONSTANT / STEP / RUN {
             run();
         }
@@ -86,14 +86,14 @@ pub fn attitude(report: Report) {
     }
 }
 
-/// A slow rate in 1/256 LSB, which keeps the attitude upright on average.
+/// A pseudo-random slow rate for the measurements, in 1/256 LSB. Its mean is so small that the attitude stays upright.
 fn rate(phase: u32) -> [i32; 3] {
     [0, 8, 16].map(|turn| phase.rotate_left(turn).cast_signed() >> 14)
 }
 
 /// Integrates one sample to first order: q + ½·q·ω·dt, normalised by one Newton step, with 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
-    // Half the angle that a rate of 2^−8 LSB turns in 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
+    // Half of the angle by which a rate of 2^−8 LSB turns in 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
     const HALF: i64 = 2_340;
     let [x, y, z] = rate.map(|rate| (i64::from(rate) * i64::from(STEP) * HALF) >> 20);
     let [w0, x0, y0, z0] = q.map(i64::from);

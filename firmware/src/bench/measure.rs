@@ -1,24 +1,24 @@
 //! Measurement of a kernel's clock cycles.
 //!
-//! A kernel is called with [`INPUTS`] inputs spread over its range, with code and tables in the caches and interrupts
-//! disabled. The cycles of the measurement itself are measured in the same way and subtracted.
+//! A kernel, the measured function, is called with [`INPUTS`] inputs spread over its range. Its code and tables are in
+//! the caches, and interrupts are disabled. The cycles of the measuring code are measured in the same way and subtracted.
 //!
 //! The instruction cache is direct-mapped, and a miss costs more than a kernel. If the measuring code shared cache
-//! lines with the kernel, their conflict would be measured. The measuring code therefore exists at two places, and the
-//! place with fewer misses is used.
+//! lines with the kernel, their conflict would be measured. The measuring code therefore exists at two places in memory,
+//! and the place with fewer misses is used.
 
 use core::arch::asm;
 use core::hint::black_box;
 
 use litex_pac::cpu;
 
-/// Inputs of each kernel.
+/// Number of inputs with which each kernel is measured.
 const INPUTS: usize = 256;
 
-/// Number of inputs that select the place of the measuring code.
+/// Number of inputs with which the two places of the measuring code are compared.
 const TRIALS: usize = 16;
 
-/// Clock cycles of a kernel, over all inputs.
+/// Clock cycles of one call of a kernel: statistics over all inputs.
 #[derive(Clone, Copy)]
 pub struct Cycles {
     /// Smallest number of cycles.
@@ -45,14 +45,15 @@ impl Cycles {
 /// Receiver of a kernel's name and cycles.
 pub type Report<'a> = &'a mut dyn FnMut(&str, Cycles);
 
-/// Measures `kernel` for inputs that `input` computes from phases all around the circle.
+/// Measures `kernel` and reports its cycles under `name`. Each input is computed by `input` from a phase of 32 bits; the
+/// phases are spread over the full circle.
 pub fn measure<I: Copy, O>(
     report: Report,
     name: &str,
     input: impl Fn(u32) -> I,
     kernel: impl Fn(I) -> O,
 ) {
-    // Multiples of the golden section of 2^32 fill the full circle evenly, in an order without a pattern.
+    // Multiples of 2^32 divided by the golden ratio fill the full circle evenly, in an order without a pattern.
     let input = |index: usize| input((index as u32).wrapping_mul(0x9e37_79b9));
     let timers: [fn(&_, I) -> u32; 2] = [timed::<0, _, I, O>, timed::<1, _, I, O>];
     let noise = |timer: &fn(&_, I) -> u32| {
@@ -79,8 +80,8 @@ pub fn measure<I: Copy, O>(
     report(name, Cycles::of(&mut cycles));
 }
 
-/// Clock cycles of one call of the kernel, including a reading of the counter. Both values of `PLACE` have their own
-/// copy of the code, half a cache apart.
+/// Clock cycles of one call of the kernel, including one reading of the cycle counter. For each value of `PLACE`, 0 and 1,
+/// there is a separate copy of this code; the two copies are half a cache apart.
 #[inline(never)]
 #[allow(unsafe_code)]
 fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {

@@ -1,4 +1,4 @@
-//! Sines of third-party crates, for comparison.
+//! Benchmark of sine and cosine of third-party crates, for comparison with `glint-core`.
 
 use core::f32::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! Commands of a field's appearance.
+//! Commands that set a field's appearance: material, lights, background, fog and occlusion.
 
 use glint_core::appearance::Appearance;
 use glint_core::choice::switch_name;

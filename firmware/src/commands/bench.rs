@@ -1,24 +1,25 @@
-//! The command `bench`: selection of kernels, and their figures as text.
+//! The command `bench`: measures the selected kernels and prints their cycles.
 
 use super::statistics::{engine_values, ray_values};
 use crate::bench::{self, Cycles};
 use crate::error::CommandError;
 use crate::machine::Machine;
 
-/// Names of the kernels.
+/// Names of the kernels that `bench` accepts.
 #[cfg(not(feature = "peers"))]
 const KERNELS: &[&str] = &["sine", "triangle", "field"];
-/// Names of the kernels.
+/// Names of the kernels that `bench` accepts.
 #[cfg(feature = "peers")]
 const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
 
 /// Number of frames that the engine draws back to back for a measurement.
 const FRAMES: u32 = 8;
 
-/// Measures the named kernels, or all kernels of this machine.
+/// Measures the kernel with the name `kernel` and prints its cycles. Without a name, measures sine and cosine, and the
+/// drawing of frames if the machine has an engine.
 ///
 /// # Errors
-/// The name is unknown, or the machine or its scene lacks the kernel.
+/// The name is unknown, or the kernel needs an engine or a scene that the machine does not have.
 pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), CommandError<'l>> {
     let has_engine = machine.renderer.gateware.is_some();
     let mut print = |name: &str, cycles: Cycles| {
@@ -53,8 +54,8 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
     Ok(())
 }
 
-/// Measures frames of the present scene, back to back: the geometry pass of a frame runs during the raster pass of the
-/// frame before. The frames are not shown.
+/// Measures the drawing of `FRAMES` frames of the present scene, back to back: the geometry pass of a frame runs during
+/// the raster pass of the frame before. The frames are not shown.
 fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
     let Machine {
         terminal,

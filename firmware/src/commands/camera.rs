@@ -1,4 +1,4 @@
-//! Commands of the camera.
+//! Commands that show and set the camera.
 
 use glint_core::camera::View;
 use glint_core::console::CameraCommands;

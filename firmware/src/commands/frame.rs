@@ -1,4 +1,4 @@
-//! Commands of frames: settings, drawing and download.
+//! Commands for frames: settings, drawing, and download of pictures.
 
 use glint_core::colour::Shading;
 use glint_core::console::FrameCommands;
@@ -73,7 +73,7 @@ impl<'l> FrameCommands<'l> for Machine {
     }
 }
 
-/// Sends the last frame: its depth codes or its colour.
+/// Sends the last frame to the host: its depth codes if `depth` is true, otherwise its colours.
 ///
 /// # Errors
 /// No frame was drawn, its drawing failed, or the transfer fails.
@@ -88,7 +88,7 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    // The engine writes to memory past the cache, which may hold older data.
+    // The engine writes to memory and not to the CPU's data cache, which may hold older data.
     cpu::flush_data_cache();
     let bytes = if depth {
         bytemuck::cast_slice(renderer.depths(scene))

@@ -1,4 +1,4 @@
-//! Commands of the sensor.
+//! Commands of the sensor, an MPU-6050: its state, calibration, samples, mounting and sensitivity, and the replay of logs.
 
 use core::task::Poll;
 
@@ -16,7 +16,7 @@ use crate::job::{Job, JobResult, Outcome, Reply, SensorJob};
 use crate::machine::Machine;
 use crate::sensor;
 
-/// Number of samples between two reports of a calibration.
+/// Number of samples between two reports of the progress of a calibration.
 const PROGRESS: u32 = 1_024;
 
 impl<'l> ImuCommands<'l> for Machine {
@@ -75,7 +75,7 @@ impl<'l> ImuCommands<'l> for Machine {
     }
 }
 
-/// Continues a calibration or a stream of samples.
+/// Continues the job of the sensor: reports the progress of a calibration, or prints new samples.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     let Machine {
         terminal,

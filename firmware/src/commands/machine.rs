@@ -1,4 +1,4 @@
-//! Commands of the machine and its devices.
+//! Commands for the machine and its devices: help, information, buttons, LEDs, self-test, restart.
 
 use core::fmt::{self, Display};
 

@@ -1,4 +1,5 @@
-//! The command `replay`: upload of a log, attitudes of its samples, and their download.
+//! The command `replay`: uploads a log of sensor samples, computes the attitude after each sample, and downloads the
+//! attitudes.
 
 use core::task::Poll;
 
@@ -23,7 +24,7 @@ pub fn begin<'l>(machine: &mut Machine, manifest: Manifest) -> Outcome<'l> {
     Ok(Reply::After(Job::Replay))
 }
 
-/// Continues the replay by a slice of its samples.
+/// Continues the replay of the log by a slice of its samples.
 pub fn poll(machine: &mut Machine) -> JobResult {
     let Machine {
         terminal,

@@ -1,4 +1,4 @@
-//! Commands of the scene: mesh and field.
+//! Commands that upload meshes and select what the scene shows: a mesh, a field, or both.
 
 use glint_core::choice::switch_name;
 use glint_core::console::SceneCommands;

@@ -1,4 +1,4 @@
-//! Statistics of frames as keys and values.
+//! The command `stats`: statistics of the last frame, as keys and values.
 
 use glint_core::picture::Backend;
 use glint_hal::timer::FREQUENCY;
@@ -50,7 +50,8 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     Ok(())
 }
 
-/// Statistics of a frame by either backend; the list is long enough for all of them.
+/// Statistics of a frame that both backends report, as names and values. The capacity of the list suffices for all
+/// statistics.
 fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16> {
     let mut values = Vec::new();
     let _ = values.push(("cycles", cycles));
@@ -63,7 +64,7 @@ fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16>
             ("pixels_tested", mesh.pixels_tested),
             ("pixels_covered", mesh.pixels_covered),
         ]);
-        // The engine's count includes the pixels of a field, so it is printed only without a field.
+        // The engine's count of drawn pixels includes the pixels of a field, so it is printed only without a field.
         if stats.field.is_none() {
             let _ = values.push(("pixels_drawn", mesh.pixels_drawn));
         }
@@ -75,7 +76,7 @@ fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16>
     values
 }
 
-/// Counts of a field's rays by name.
+/// Counts of a field's rays, as names and values.
 pub fn ray_values(stats: &FieldStats) -> [(&'static str, u64); 5] {
     [
         ("rays", stats.rays.into()),
@@ -86,13 +87,13 @@ pub fn ray_values(stats: &FieldStats) -> [(&'static str, u64); 5] {
     ]
 }
 
-/// Counters of the engine by name.
+/// Counters of the triangle engine, as names and values.
 pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str, u64)> {
     counters.iter().filter_map(|(name, value)| {
         let name = match name {
             "items_in" => "words_read",
             "items_out" => "words_written",
-            // These counts are printed with the triangles, without the pixels of a field.
+            // These two counts are left out, because `frame_values` has them without the pixels of a field.
             "pixels_covered" | "pixels_drawn" => return None,
             name => name,
         };

@@ -1,4 +1,4 @@
-//! Reception of the data that a command uploads.
+//! Reception of the data that the host uploads with a command.
 
 use glint_core::wire::{Manifest, crc32};
 use litex_pac::cpu;
@@ -7,7 +7,8 @@ use crate::error::CommandError;
 use crate::machine::Machine;
 use crate::transfer;
 
-/// Receives the upload of a command into the staging memory, unless the memory already holds the announced data.
+/// Receives the data that `manifest` announces into the staging memory, unless the memory already holds them. `command`
+/// is the name of the command that uploads them.
 ///
 /// # Errors
 /// The upload is too long, or the transfer fails.
@@ -33,7 +34,7 @@ pub fn receive<'m>(
             room,
         });
     };
-    // The upload overwrites the attitudes of a replay.
+    // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
     *replay = None;
     // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
     // have been interrupted near its end.

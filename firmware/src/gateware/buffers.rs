@@ -7,12 +7,14 @@ use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
 use glint_model::triangle::descriptor;
 
-/// Largest number of exceptions, and of the short descriptors of flat shading in a set; the CPU draws frames with more.
+/// Largest number of exceptions of a frame, and of descriptors without smooth shading in a set. The CPU draws frames that
+/// need more.
 const DESCRIPTORS: usize = 1 << 16;
-/// Words for the descriptors of a set. They have room for half as many of the long descriptors of smooth shading.
+/// Number of 32-bit words for the descriptors of a set. A descriptor with smooth shading is twice as long as one without,
+/// so there is room for half as many of them.
 const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
 
-/// Memory of one frame: two sets of descriptors and lists, and the exceptions.
+/// Memory of one frame: two sets of descriptors and band lists, and the list of exceptions.
 pub struct Buffers {
     descriptors: &'static mut [u32],
     lists: &'static mut [u32],
@@ -20,7 +22,7 @@ pub struct Buffers {
     pub exceptions: &'static mut [u32],
     /// Descriptors of clipped triangles.
     pub clipped_descriptors: &'static mut [u32],
-    /// Lists of clipped triangles.
+    /// Band lists of clipped triangles.
     pub clipped_lists: &'static mut [u32],
     /// The sets of lists written by the geometry pass and by the clipper.
     pub sets: [Option<Set>; 2],
@@ -47,7 +49,7 @@ impl Buffers {
         })
     }
 
-    /// Where a geometry pass writes its output, on gateware whose best shading is `capability`.
+    /// The memory for the output of a geometry pass, on gateware whose best shading is `capability`.
     pub fn lists(&self, capability: Shading) -> Lists {
         Lists {
             descriptors: address(self.descriptors),

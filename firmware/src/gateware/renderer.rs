@@ -1,4 +1,4 @@
-//! The passes of a frame: geometry, clipping by the CPU, raster.
+//! The passes of a frame: the geometry pass, clipping by the CPU, and the raster pass.
 
 use glint_core::colour::Shading;
 use glint_core::picture::Size;
@@ -34,7 +34,7 @@ pub struct Rendered {
     pub counters: Counters,
 }
 
-/// The pass that is running.
+/// The pass of the engine that is running, or `Idle`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -55,13 +55,16 @@ pub struct GatewareRenderer {
     pub(super) engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
     shading: Shading,
+    /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
     buffers: [Buffers; 2],
+    /// Address of frame buffer 0.
     first_frame_buffer: u32,
-    /// Size of the picture that the engine drew last into each frame buffer; `None` if the buffer
-    /// was written otherwise since.
+    /// Size of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the buffer
+    /// since.
     drawn_sizes: [Option<Size>; 2],
     stage: Stage,
-    /// Constants of the frame being drawn, and, in a benchmark, of the next frame.
+    /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
+    /// selects one of them, together with the buffers of the same index.
     constants: [FrameConstants; 2],
     watchdog: Watchdog,
     start: Start,
@@ -107,7 +110,8 @@ impl GatewareRenderer {
         }
     }
 
-    /// Marks a frame buffer as written by the CPU: the next frame in this buffer is written whole.
+    /// Marks the frame buffer of `colour` as written by the CPU: the engine then writes every pixel of the next frame in
+    /// this buffer.
     pub fn invalidate(&mut self, colour: &[u16]) {
         let slot = usize::from(self.slot(colour));
         if let Some(size) = self.drawn_sizes.get_mut(slot) {
@@ -115,7 +119,8 @@ impl GatewareRenderer {
         }
     }
 
-    /// Starts or continues a frame; `frame` and `output` must stay the same until this returns a result.
+    /// Starts or continues the drawing of a frame. `frame` and `output` must stay the same until the function returns a
+    /// result; `None` means that a pass is still running.
     ///
     /// # Errors
     /// The gateware cannot draw the frame; the gateware is then idle.
@@ -167,7 +172,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Notes the time and the counters at the start of a measurement, and resets the watchdog.
+    /// Stores the time and the counters at the start of a measurement, and resets the watchdog.
     pub(super) fn start_measurement(&mut self, frame: &Frame) {
         self.watchdog = Watchdog::default();
         self.start = Start {
@@ -177,13 +182,13 @@ impl GatewareRenderer {
         };
     }
 
-    /// The raymarcher's counters, for a frame with a field.
+    /// The raymarcher's counters; `None` for a frame without a field.
     fn raymarcher_counters(&self, frame: &Frame) -> Option<raymarch::Counters> {
         frame.subject.field_part()?;
         Some(self.raymarcher.as_ref()?.counters())
     }
 
-    /// The results of the measurement since its start, with the triangle counts of the buffers at `place`.
+    /// The results of the measurement since `start_measurement`, with the triangle counts in the buffers at `place`.
     pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
         let counters = self.engine.counters().since(&self.start.engine);
@@ -191,7 +196,7 @@ impl GatewareRenderer {
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
         let mesh = frame.subject.mesh_part().map(|_| Stats {
-            // In each clock of walking the walker tests a group of eight pixels.
+            // In each clock that `cycles_walking` counts, the walker tests a group of eight pixels.
             pixels_tested: 8 * u64::from(counters.cycles_walking),
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
             pixels_drawn: counters.pixels_drawn.into(),
@@ -207,7 +212,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Computes the constants of a frame into `self.constants[place]`, if the engine can draw the frame.
+    /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         if let Some(mesh) = frame.subject.mesh_part()
             && mesh.shading == Shading::Smooth
@@ -218,8 +223,8 @@ impl GatewareRenderer {
         Ok(self.constants[place].update(frame)?)
     }
 
-    /// Writes the raymarcher's registers for a field, or switches the raymarcher off. With `has_tables`, the raymarcher
-    /// is known to hold the right tables, and they are not compared.
+    /// Writes the raymarcher's registers for the field whose constants are at `place`, or switches the raymarcher off if
+    /// there is no field. With `has_tables`, the raymarcher is known to hold the right tables, so they are not compared.
     pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) if has_tables => {
@@ -286,8 +291,8 @@ impl GatewareRenderer {
             sets,
         };
         *drawn_size = Some(frame.size);
-        // SAFETY: the lists belong to this renderer and stay until the end of the pass; colours and depth codes are
-        // lent until then.
+        // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
+        // colours and depth codes until then.
         unsafe { self.engine.start_raster(&pass) };
     }
 
@@ -329,7 +334,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Cancels the frame if the engine has made no progress for too long.
+    /// Cancels the frame and fails if the engine has made no progress for too long.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.give_up(output, EngineError::Timeout));

@@ -10,9 +10,9 @@ use super::renderer::{GatewareRenderer, Output, Rendered};
 const POLLS: u32 = 100;
 
 impl GatewareRenderer {
-    /// Draws a frame `count` times: the geometry pass of each runs during the raster pass of the one before. The
-    /// result covers `count` frames, from the start of a raster pass to the start of a later one. The console
-    /// does not answer meanwhile.
+    /// Draws a frame `count` times, where each geometry pass runs during the raster pass of the frame before. The result
+    /// covers the work of `count` frames: for a mesh, the measurement begins when the first geometry pass has ended. The
+    /// console does not answer meanwhile.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -42,14 +42,14 @@ impl GatewareRenderer {
         let (mut now, mut next) = (0, 1);
         for number in 0..=count {
             self.start_geometry(prepared);
-            // Computes the constants of the next frame while the engine works.
+            // Computes the constants for the next frame while the geometry pass runs.
             self.update_constants(frame, next)?;
             self.wait(TriangleEngine::geometry, output)?;
             if let Err(error) = self.clip(mesh, now) {
                 return Err(self.give_up(output, error));
             }
-            // The raster pass still reads the buffers of the next frame; the prepared geometry pass writes these
-            // buffers only after its start.
+            // A raster pass may still read the buffers at `next`. This call only writes registers: the geometry pass, which
+            // overwrites these buffers, starts after the end of the raster pass.
             prepared = self.prepare_geometry(mesh, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
@@ -60,7 +60,7 @@ impl GatewareRenderer {
             if number == count {
                 break;
             }
-            // The registers of the raymarcher are in use during a raster pass, so they are written between the passes.
+            // The raymarcher uses its registers during a raster pass, so they are written between two raster passes.
             if frame.subject.field_part().is_some() {
                 self.set_field(now, false)?;
             }
@@ -70,8 +70,8 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, now))
     }
 
-    /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass,
-    /// which uses the registers of the raymarcher.
+    /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass. The
+    /// raymarcher's registers are in use during this pass, so they are written after it.
     fn repeat_field(
         &mut self,
         frame: &Frame,
@@ -91,7 +91,7 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, 0))
     }
 
-    /// Waits for the end of a pass.
+    /// Waits for the end of the pass whose result is `result`.
     fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,

@@ -1,4 +1,4 @@
-//! The chip on a bus that implements the I2C traits of `embedded-hal`.
+//! The virtual MPU-6050 on a bus that implements the I2C traits of `embedded-hal`.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -32,7 +32,7 @@ impl embedded_hal::i2c::Error for Error {
     }
 }
 
-/// A bus with a chip and a simulated time, which transfers and delays advance. Clones are handles of the same bus.
+/// An I2C bus with a chip and a simulated time. Transfers and delays advance this time. Clones are handles of the same bus.
 #[derive(Clone)]
 pub struct Bus {
     shared: Rc<RefCell<Shared>>,
@@ -99,7 +99,7 @@ impl Shared {
         result
     }
 
-    /// Checks that the bus is free, as a master does before a start.
+    /// Checks that SDA is not held low, as a master does before a start. Tries to free the bus by clocks.
     fn require_free(&mut self) -> Result<(), Error> {
         match self.chip.fault {
             Some(Fault::StuckData(clocks @ 1..=RECOVERY_CLOCKS)) => {
@@ -117,7 +117,8 @@ impl Shared {
 
     fn operate(&mut self, address: u8, operations: &mut [Operation]) -> Result<(), Error> {
         let mut reading = None;
-        // The first byte of consecutive writes is the register number.
+        // The first byte after the address of a write is the register number. It may be in another operation than the
+        // values after it.
         let mut has_register = false;
         for operation in operations {
             let reads = matches!(operation, Operation::Read(_));
@@ -155,7 +156,7 @@ impl Shared {
         Ok(())
     }
 
-    /// Advances the time by that of one byte; fails when the chip stretches the clock for too long.
+    /// Advances the time by the duration of one byte. Fails if the chip stretches the clock for too long.
     fn advance_byte(&mut self) -> Result<(), Error> {
         self.advance(BYTE_TIME);
         match self.chip.fault {

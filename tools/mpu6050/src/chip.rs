@@ -1,4 +1,4 @@
-//! The chip: its registers, its sample clock and its measurements.
+//! The virtual MPU-6050: its registers, its sample clock and its measurements.
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 /// I2C address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
 
-/// Time after a reset in which the chip does not answer, in ns.
+/// Duration after a reset in which the chip does not answer, in ns.
 pub const RESET_TIME: u64 = 50_000_000;
 
 const SMPLRT_DIV: u8 = 0x19;
@@ -37,11 +37,12 @@ const FILTERS: [(f64, f64); 8] = [
     (0.98, 256.0),
 ];
 
-/// Counts per °/s for each value of FS_SEL, and counts per g for each value of AFS_SEL.
+/// Counts of the gyroscope per °/s, for each value of FS_SEL.
 const PER_DPS: [f64; 4] = [131.0, 65.5, 32.8, 16.4];
+/// Counts of the accelerometer per g, for each value of AFS_SEL.
 const PER_G: [f64; 4] = [16_384.0, 8_192.0, 4_096.0, 2_048.0];
 
-/// Motion of the body that carries the sensor, at one time.
+/// Motion and temperature of the body that carries the sensor, at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {
     /// Rate about each axis in °/s.
@@ -90,15 +91,15 @@ impl Counts {
     }
 }
 
-/// Source of the measurements.
+/// Source of the values that the chip measures.
 pub enum Source {
-    /// Function from the time in s to the motion at that time. The chip measures it with its imperfections.
+    /// Function from the time in s to the motion at this time. The chip measures the motion with its imperfections.
     Motion(Box<dyn Fn(f64) -> State + Send>),
-    /// Recorded counts, each with the time in ns from which it is current. The chip delivers them unchanged.
+    /// Recorded counts, each with the time in ns from which on the chip delivers them, unchanged.
     Log(Vec<(u64, Counts)>),
 }
 
-/// Errors of the sensor that affect its measurements.
+/// Errors of the sensor's measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Imperfections {
     /// Bias of the gyroscope at 25 °C in °/s.
@@ -166,8 +167,9 @@ pub enum Fault {
 /// A virtual MPU-6050, as its I2C master sees it.
 pub struct Chip {
     registers: [u8; 128],
-    /// Data registers as they are read, and the latest measurement if it is not in them yet.
+    /// Contents of the data registers.
     data: [u8; 14],
+    /// The latest measurement, if it is not in the data registers yet.
     newest: Option<[u8; 14]>,
     source: Source,
     imperfections: Imperfections,
@@ -177,20 +179,20 @@ pub struct Chip {
     next: Option<u64>,
     /// Time from which the chip answers after a reset, in ns.
     answers: u64,
-    /// Whether a transfer is between start and stop: the data registers do not change then.
+    /// Whether a transfer is between its start and its stop. The data registers do not change during a transfer.
     is_addressed: bool,
     /// I2C address: [`ADDRESS`], or one more with AD0 high.
     pub address: u8,
     /// Current fault.
     pub fault: Option<Fault>,
-    /// Number of samples so far.
+    /// Number of samples that the chip has taken so far.
     pub samples: u64,
     /// Number of samples that were overwritten before INT_STATUS was read.
     pub missed: u64,
 }
 
 impl Chip {
-    /// Creates a chip as it is after power-up. `seed` determines its noise.
+    /// Creates a chip in the state after power-up. `seed` determines the noise of its measurements.
     #[must_use]
     pub fn new(source: Source, imperfections: Imperfections, seed: u64) -> Self {
         let mut chip = Self {
@@ -214,7 +216,7 @@ impl Chip {
         chip
     }
 
-    /// Resets all registers, as a drop of the supply does; the chip is asleep afterwards.
+    /// Resets all registers, as a drop of the supply voltage does. The chip is in sleep mode afterwards.
     pub fn reset(&mut self) {
         self.registers = [0; 128];
         self.registers[usize::from(PWR_MGMT_1)] = SLEEP;
@@ -231,7 +233,7 @@ impl Chip {
         address == self.address && self.fault != Some(Fault::Absent) && self.now >= self.answers
     }
 
-    /// Advances the time to `now`, in ns; earlier times are ignored.
+    /// Advances the time to `now`, in ns. A `now` before the current time has no effect.
     pub fn advance(&mut self, now: u64) {
         while let Some(time) = self.next
             && time <= now
@@ -327,7 +329,7 @@ impl Chip {
             accel_noise,
             ..
         } = self.imperfections;
-        // A single-pole filter passes as much white noise as an ideal filter of π/2 times its bandwidth.
+        // A single-pole filter passes as much white noise as an ideal filter with π/2 times the bandwidth.
         let through = (bandwidth * std::f64::consts::FRAC_PI_2).sqrt();
         let warmth = state.temperature - 25.0;
         let gyro = [0, 1, 2].map(|i| {
@@ -346,7 +348,7 @@ impl Chip {
         }
     }
 
-    /// A random number of mean 0 and variance 1.
+    /// A random number of mean 0 and variance 1, approximately normally distributed.
     fn gauss(&mut self) -> f64 {
         let sum: f64 = (0..12).map(|_| self.random.random_range(0.0..1.0)).sum();
         sum - 6.0

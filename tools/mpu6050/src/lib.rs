@@ -3,10 +3,10 @@
 //! | part | purpose |
 //! |---|---|
 //! | [`Chip`] | registers, sample clock, and measurement of a motion |
-//! | [`Wires`] | the chip on SCL and SDA, edge by edge; records violations of the data sheet's timing |
-//! | [`Bus`] | the chip behind `embedded-hal`, byte by byte, with its own clock |
+//! | [`Wires`] | the chip on the wires SCL and SDA, simulated edge by edge; records violations of the data sheet's timing |
+//! | [`Bus`] | the chip on a bus with the traits of `embedded-hal`, simulated byte by byte, with a simulated time |
 //!
-//! The caller passes the time, in ns. Equal calls with an equal seed give equal results.
+//! The caller passes the current time in ns to the chip. Equal calls with an equal seed give equal results.
 //!
 //! # Limits
 //! The low-pass filter delays the motion and limits the noise, but does not attenuate fast motion. There is no FIFO, no

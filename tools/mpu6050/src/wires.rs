@@ -1,8 +1,8 @@
-//! The chip on the two wires of the I2C bus, SCL and SDA.
+//! The virtual MPU-6050 on the two wires of the I2C bus, SCL and SDA.
 
 use crate::chip::{Chip, Fault};
 
-/// Minimum times that a master must keep in fast mode (400 kHz), in ns.
+/// Minimum times between edges on SCL and SDA that a master must keep in fast mode (400 kHz), in ns.
 const LOW: u64 = 1_300;
 const HIGH: u64 = 600;
 const START_SETUP: u64 = 600;
@@ -11,14 +11,14 @@ const DATA_SETUP: u64 = 100;
 const STOP_SETUP: u64 = 600;
 const FREE: u64 = 1_300;
 
-/// State of the transfer.
+/// State of the transfer between the master and the chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Not addressed: waits for the next start.
+    /// The chip is not addressed and waits for the next start.
     Idle,
-    /// Receives a byte from the master: the bits so far, their number, and the meaning of the byte.
+    /// The chip receives a byte from the master: the bits so far, their number, and the meaning of the byte.
     In { bits: u8, count: u8, what: Byte },
-    /// Sends a byte to the master: the byte, and the number of bits sent so far.
+    /// The chip sends a byte to the master: the byte, and the number of its bits sent so far.
     Out { byte: u8, count: u8 },
 }
 
@@ -44,18 +44,20 @@ struct Edges {
 pub struct Wires {
     /// The chip.
     pub chip: Chip,
-    /// Log of the traffic, if it is enabled: S is a start, P a stop; a byte is followed by + with and by - without acknowledge.
+    /// Log of the traffic; `None` if no log is kept. S is a start, P a stop. A byte is followed by + if it was acknowledged, and
+    /// by - if not.
     pub log: Option<Vec<String>>,
     /// Violations of the minimum times by the master, as messages.
     pub violations: Vec<String>,
     phase: Phase,
     register: u8,
-    /// Last state of SCL and SDA (`true` is high), and whether the chip pulls SDA low.
+    /// Last levels of SCL and SDA; `true` is high.
     wires: (bool, bool),
+    /// Whether the chip pulls SDA low.
     pulls: bool,
     /// Time until which the chip stretches the clock, in ns.
     holds: u64,
-    /// Number of clocks since the last call of `set_fault`; they free a stuck chip.
+    /// Number of clocks since the last call of `set_fault`. Enough clocks free a chip that holds SDA low.
     clocks: u32,
     edges: Edges,
 }
@@ -83,7 +85,7 @@ impl Wires {
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // The chip can change SDA in answer to an edge, so this repeats until the wires are stable.
+        // The chip can change SDA in answer to an edge, so the loop repeats until the levels are stable.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.on_edge(now, before, after);
@@ -112,7 +114,7 @@ impl Wires {
         }
     }
 
-    /// Records a violation if the time from `since` to `now` is below `least`.
+    /// Records a violation of the minimum time `what` if the time from `since` to `now` is below `least`, in ns.
     fn check(&mut self, now: u64, since: u64, least: u64, what: &str) {
         if since != 0 && now - since < least {
             let time = now - since;
@@ -189,7 +191,7 @@ impl Wires {
         }
     }
 
-    /// Reads the next register, and starts to send its value.
+    /// Reads the next register of the chip, and starts to send its value to the master.
     fn next_out(&mut self) -> Phase {
         let byte = self.chip.read(self.register);
         self.register = self.register.wrapping_add(1);

@@ -1,4 +1,4 @@
-//! The chip's model against the data sheet and the register map.
+//! Tests of the virtual MPU-6050 against the data sheet and the register map.
 
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{I2c, NoAcknowledgeSource};
@@ -32,14 +32,15 @@ fn write(bus: &mut Bus, register: u8, value: u8) {
         .expect("an acknowledge");
 }
 
-/// Wakes the chip: samples at 1 kHz, the 98 Hz filter, ranges of ±2000 °/s and ±8 g, new data announced in INT_STATUS.
+/// Wakes the chip and configures it: samples at 1 kHz, the filter of 98 Hz, ranges of ±2000 °/s and ±8 g, and announcement
+/// of new data in INT_STATUS.
 fn wake(bus: &mut Bus) {
     for (register, value) in [(0x6b, 1), (0x1a, 2), (0x1b, 0x18), (0x1c, 0x10), (0x38, 1)] {
         write(bus, register, value);
     }
 }
 
-/// Reads INT_STATUS and the data registers in one burst: whether the data are new, and the counts.
+/// Reads INT_STATUS and the data registers in one burst. Returns whether the data are new, and the counts.
 fn burst(bus: &mut Bus) -> (bool, Counts) {
     let mut bytes = [0; 15];
     bus.write_read(ADDRESS, &[0x3a], &mut bytes)
@@ -146,7 +147,7 @@ fn errors_match_the_imperfections() {
     let mut bus = bus_of(motion, imperfections);
     wake(&mut bus);
     let mean = |bus: &mut Bus| {
-        // The current sample may have been measured with the old range, so it is skipped.
+        // The current sample may have been measured before the chip was configured, so it is skipped.
         bus.delay_ms(2);
         burst(bus);
         let (mut sum, mut squares, mut count) = ([0.0; 3], 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Cameras with `f64` coordinates.
+//! Cameras with `f64` coordinates, for tests.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
@@ -24,8 +24,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Camera at `eye` that shows the direction `towards` at the point (a, b) of the image plane at distance 1. Its
-    /// rotation about that direction is random.
+    /// Camera at `eye` that shows the direction `towards` at the point (a, b) of the image plane at distance 1. The
+    /// rotation of the camera about this direction is random.
     pub fn aimed(
         random: &mut Random,
         eye: [f64; 3],
@@ -53,7 +53,7 @@ impl Camera {
         }
     }
 
-    /// Random camera whose coordinates are between −1 and 1, with any direction.
+    /// Random camera whose eye has coordinates between −1 and 1, and that looks in a random direction.
     pub fn inside(random: &mut Random) -> Self {
         let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
         let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));
@@ -61,7 +61,7 @@ impl Camera {
         Self::aimed(random, eye, towards, [0.0; 2], half_width, near)
     }
 
-    /// Camera at `eye` that looks at `target`, with the picture's downward vector `v` as near to −z as possible.
+    /// Camera at `eye` that looks at `target`, turned so that the picture's downward vector `v` is as near to −z as possible.
     #[must_use]
     pub fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> Self {
         let n = normalised([0, 1, 2].map(|i| target[i] - eye[i]));
@@ -79,7 +79,7 @@ impl Camera {
     /// Rounds the camera to the engine's formats.
     ///
     /// # Panics
-    /// When the engine's formats cannot represent the camera.
+    /// If the engine's formats cannot represent the camera.
     #[must_use]
     pub fn rounded(&self) -> View {
         let basis = |row: [f64; 3]| row.map(|x| Q2_23::from_num(x));

@@ -1,4 +1,5 @@
-//! Test vectors that several crates share: random numbers, cameras in `f64`, models, meshes, triangles on the screen and scenes.
+//! Inputs for tests that several crates share: random numbers, cameras in `f64`, models, meshes, triangles on the screen and
+//! scenes.
 
 pub mod camera;
 pub mod math;

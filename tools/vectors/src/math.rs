@@ -1,4 +1,4 @@
-//! Vectors of three `f64`.
+//! Operations on vectors of three `f64`.
 
 /// Inner product of two vectors.
 #[must_use]

@@ -1,4 +1,4 @@
-//! Meshes made of separate triangles, as bytes of the mesh format.
+//! Meshes of triangles that share no vertices, as bytes of the mesh format (docs/formats.md, "Mesh in memory").
 
 use glint_core::camera::View;
 use rand::RngExt;
@@ -12,7 +12,7 @@ pub const ONE: i32 = 1 << 14;
 /// A triangle: the positions of its corners in Q2.14, and its RGB565 colour.
 pub type Triangle = ([[i16; 3]; 3], u16);
 
-/// Encodes a mesh of `triangles`, each with its own three vertices, in chunks of at most `most` vertices.
+/// Encodes a mesh of `triangles`, each of which has its own three vertices, in chunks of at most `most` vertices.
 #[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
@@ -23,14 +23,14 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     };
     let mut vertices = 0;
     for chunk in &chunks {
-        // A chunk has at least one vertex, even an unused one.
+        // A chunk must have at least one vertex, so a chunk without triangles gets an unused vertex.
         let count = (3 * chunk.len()).max(1);
         vertices += count;
         for word in [count as u32, chunk.len() as u32, 0, 0] {
             body.extend(word.to_le_bytes());
         }
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
-        // Vertices get random colours and random normals of any length, which matter only for smooth shading.
+        // Vertices get random normals of any length and random colours; both matter only for smooth shading.
         let mut random = Pcg64Mcg::new(count as u128);
         for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
             corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
@@ -46,7 +46,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
                 body.extend((3 * number + index).to_le_bytes());
             }
             body.extend(colour.to_le_bytes());
-            // Any normal will do, as it only dims the colour.
+            // The normal of a triangle only dims its colour, so any vector may be used: here the position of a corner.
             let normal = corners[0];
             normal.iter().for_each(|c| body.extend(c.to_le_bytes()));
             body.extend([0; 2]);
@@ -97,7 +97,7 @@ pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
     [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
 }
 
-/// Makes `count` random triangles of about `size` world units at random places.
+/// Makes `count` random triangles of about `size` world units at random positions.
 pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
     let reach = (size * f64::from(ONE)) as i32;
     (0..count)

@@ -1,4 +1,4 @@
-//! Models of a few simple shapes, computed or random.
+//! Models for tests: a few simple shapes, and random triangles.
 
 use glint_core::colour::Rgb565;
 use glint_core::mesh::{IndexedTriangle, Vertex, encode};
@@ -6,7 +6,7 @@ use glint_core::mesh::{IndexedTriangle, Vertex, encode};
 use crate::math::{cross, dot, normalised, world};
 use crate::random::Random;
 
-/// A model: positions, and triangles that refer to them.
+/// A model: vertex positions, and triangles that refer to these positions.
 #[derive(Clone, Debug, Default)]
 pub struct Model {
     /// Positions of the vertices, Q2.14.
@@ -29,7 +29,8 @@ impl Model {
         }
     }
 
-    /// Random triangles in a cube: seen from inside, they cross the near plane and the guard band.
+    /// Random triangles in the cube with coordinates from −`reach` to `reach` − 1, in Q2.14. Seen from inside the cube, many
+    /// of them cross the near plane or the guard band.
     pub fn random(random: &mut Random, triangles: usize, reach: i64) -> Self {
         let mut corner = || [0; 3].map(|_| random.integer(-reach, reach - 1) as i16);
         Self::soup(
@@ -39,7 +40,8 @@ impl Model {
         )
     }
 
-    /// A box of the given half size about the origin, counter-clockwise from outside.
+    /// A cube about the origin with half the edge length `half`, in Q2.14. Its triangles are counter-clockwise seen from
+    /// outside.
     #[must_use]
     pub fn cube(half: i16) -> Self {
         let positions = (0..8)
@@ -62,7 +64,8 @@ impl Model {
         }
     }
 
-    /// A sphere of `rings` rings about the origin, closed and counter-clockwise from outside.
+    /// A closed sphere about the origin, made of `rings` rings; `radius` is in world units. Its triangles are
+    /// counter-clockwise seen from outside.
     #[must_use]
     pub fn sphere(radius: f64, rings: u32) -> Self {
         let around = 2 * rings;
@@ -99,7 +102,7 @@ impl Model {
         }
     }
 
-    /// The same triangles, each with its three corners rotated by `turns` places in their order.
+    /// The same triangles, with the order of the three corners of each rotated by `turns` positions.
     #[must_use]
     pub fn rotated(&self, turns: usize) -> Self {
         let mut model = self.clone();
@@ -121,7 +124,7 @@ impl Model {
     /// Encodes the model as a mesh of one chunk; each triangle has its own colour and its geometric normal.
     ///
     /// # Panics
-    /// When the model has more vertices than a chunk holds.
+    /// If the model has more vertices than a chunk can hold.
     #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self

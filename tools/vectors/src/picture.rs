@@ -6,7 +6,7 @@ use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, Stats, trace};
 
 use crate::model::Model;
 
-/// A rendered picture.
+/// A picture that was drawn by the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Number of columns.
@@ -17,9 +17,9 @@ pub struct Picture {
     pub colour: Vec<u16>,
     /// Depth codes of the pixels, line by line; 0 without a triangle.
     pub depth: Vec<u32>,
-    /// Statistics of the renderer.
+    /// The model's counts of triangles and pixels.
     pub stats: Stats,
-    /// The triangles that were set up, in order.
+    /// The triangles that reached the walker, in the order of drawing.
     pub drawn: Vec<DrawnTriangle>,
 }
 
@@ -41,7 +41,7 @@ impl Picture {
         }
     }
 
-    /// Borrows the picture for the renderer.
+    /// Borrows the picture as the frame buffer that the renderer draws into.
     pub fn target(&mut self) -> FrameBuffer<'_> {
         FrameBuffer {
             width: self.width,
@@ -54,7 +54,7 @@ impl Picture {
     /// Renders a mesh.
     ///
     /// # Panics
-    /// When the bytes are no valid mesh, or the renderer's statistics contradict each other.
+    /// If the bytes are not a valid mesh, or if the renderer's statistics contradict each other.
     #[must_use]
     pub fn of_bytes(bytes: &[u8], view: &View, size: (u32, u32), cull: bool) -> Self {
         let mesh = Mesh::new_checked(bytes).unwrap();
@@ -96,13 +96,13 @@ impl Picture {
         Self::of_bytes(&model.encoded(), view, size, cull)
     }
 
-    /// Whether each pixel is drawn, line by line.
+    /// Whether each pixel is covered by a triangle, line by line.
     #[must_use]
     pub fn coverage(&self) -> Vec<bool> {
         self.depth.iter().map(|&code| code != 0).collect()
     }
 
-    /// Number of drawn pixels.
+    /// Number of pixels that are covered by a triangle.
     #[must_use]
     pub fn covered(&self) -> usize {
         self.depth.iter().filter(|&&code| code != 0).count()

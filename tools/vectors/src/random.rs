@@ -2,7 +2,7 @@
 
 use crate::math::{dot, normalised};
 
-/// The generator SplitMix64. The number is its state, at first the seed.
+/// The random number generator SplitMix64. The number in it is its state, which is initially the seed.
 pub struct Random(pub u64);
 
 impl Random {

@@ -24,7 +24,8 @@ pub fn inside() -> View {
     camera.rounded()
 }
 
-/// A fan of `parts` front faces around a common corner, in the plane with this `y`, at the distance y + 2 of the camera `ahead`.
+/// A fan of `parts` front faces around a common corner, in the plane with this `y`. The distance of this plane from the
+/// camera `ahead` is y + 2.
 fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     let rim = |part: usize| {
         let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();
@@ -40,7 +41,7 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// Makes all scenes. `generated` must return the mesh of a named model, such as `icosphere:6`.
+/// Makes all scenes. `generated` must return the mesh of the model with a given name, such as `icosphere:6`.
 #[must_use]
 pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
@@ -85,7 +86,8 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
             0x07e0,
         ),
     ];
-    // A point that appears at a pixel centre at 320x180, where a unit has 128 pixels, and at a pixel corner at the other sizes.
+    // A point that appears at a pixel centre in a picture of 320x180, where a world unit is 128 pixels wide, and at a pixel
+    // corner in larger pictures.
     let centre = |x: i32, z: i32| {
         at(
             f64::from(2 * x + 1) / 256.0,
@@ -190,7 +192,8 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     ]
 }
 
-/// A camera on a sphere of radius `r` about the origin; the angles are in degrees.
+/// A camera on a sphere of radius `r` about the origin, with the azimuth `theta` and the angle `phi` from the z axis, in
+/// degrees.
 fn spherical(r: i32, theta: i32, phi: i32) -> View {
     let [theta, phi] = [theta, phi].map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
     View::spherical(Q32_32::from_num(r), theta, phi).expect("a camera within the limits")

@@ -1,4 +1,4 @@
-//! Triangles in screen coordinates.
+//! Triangles in screen coordinates, for tests of setup and walker.
 
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex::GUARD;
@@ -6,12 +6,12 @@ use glint_model::{SIZES, ScreenVertex};
 
 use crate::random::Random;
 
-/// Columns and lines of the picture in which the triangles lie.
+/// Width and height in pixels of the picture for which the triangles are made.
 pub const SIZE: (u32, u32) = SIZES[0];
 /// Depth of all vertices, in the format of `ScreenVertex::w`.
 pub const FLAT: u32 = 1000 * 64;
 
-/// Makes a vertex at a place in units of 1/256 pixel, with the depth [`FLAT`].
+/// Makes a vertex at the position (`x`, `y`) in units of 1/256 pixel, with the depth [`FLAT`].
 #[must_use]
 pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     ScreenVertex {
@@ -21,7 +21,8 @@ pub fn at([x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// Sets up a triangle; returns `None` if the triangle has no area or is off the picture.
+/// Sets up a triangle for a picture of the given size. Returns `None` if the triangle has no area, or no pixel centre of the
+/// picture in its bounds.
 #[must_use]
 pub fn set_up(
     vertices: [ScreenVertex; 3],
@@ -52,7 +53,7 @@ pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
             anywhere(random),
         ],
         _ => {
-            // A sliver: the third vertex is near the middle of the line between the others.
+            // A sliver: its third vertex `c` is near the middle of the line between `a` and `b`.
             let (a, b) = (near(random, 256 * 200, 1), near(random, 256 * 200, 1));
             let c = ScreenVertex {
                 x: (a.x + b.x) / 2 + random.integer(-3, 3) as i32,
