@@ -1,4 +1,4 @@
-//! Appearance of a field.
+//! The appearance of a distance field.
 
 use heapless::Vec;
 
@@ -11,9 +11,9 @@ use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, Rgb};
 pub struct Appearance {
     /// Material.
     pub material: Material,
-    /// Lights; an empty list selects the material's own lights.
+    /// Lights; an empty list selects the default lights of the material.
     pub lights: Vec<Light, MAX_LIGHTS>,
-    /// Ambient light; `None` selects the default of the lights.
+    /// Ambient light; `None` selects the default ambient light.
     pub ambient: Option<Rgb>,
     /// Background.
     pub background: Background,

@@ -46,7 +46,7 @@ impl Units {
 
     /// Converts a rate of `dps` degrees per second to LSB, rounded up. The result is at least 1.
     fn rate(self, dps: u32) -> u32 {
-        // The scale of a 16-bit count is at most 2^12 LSB per °/s; the clamp also excludes scales below 2^−4.
+        // The scale is limited to 2^−4…2^12 LSB per °/s; 2^12 is the largest scale of a sensor with 16-bit counts.
         let lsb = self.per_dps.to_bits().clamp(1 << 28, 1 << 44);
         ((i128::from(lsb) * i128::from(dps) + (1 << 32) - 1) >> 32) as u32
     }
@@ -84,7 +84,7 @@ impl Report {
     }
 }
 
-/// Reason why samples give no calibration.
+/// Reason why a calibration rejects its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SampleError {
     /// The rate of a sample differs too much from the rate of the first sample.

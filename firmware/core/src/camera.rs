@@ -1,4 +1,4 @@
-//! The camera.
+//! Cameras.
 //!
 //! A camera is an eye and an orthonormal basis: `u` to the right of the screen, `v` down, `n` forward into the
 //! scene, with u × v = n. The world is right-handed with z up. Every [`View`] is checked, so that users of a view may
@@ -9,18 +9,18 @@ use core::fmt;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
 use crate::trig::sin_cos_q30;
 
-/// Half width of the image plane at distance 1, for cameras that are defined by angles.
+/// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
 pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
-/// Distance of the near plane, for cameras that are defined by angles.
+/// Distance of the near plane from the eye, in world units, for cameras that are defined by angles.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
-/// Largest distance of an eye from the origin.
+/// Largest accepted distance of an eye from the origin, in world units.
 pub const MAX_EYE: u32 = 32;
-/// Smallest and largest accepted half width of the image plane at distance 1.
+/// Smallest and largest accepted half width of the image plane at distance 1, in world units.
 pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
-/// Smallest and largest accepted distance of the near plane.
+/// Smallest and largest accepted distance of the near plane from the eye, in world units.
 pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
-/// Smallest and largest accepted distance of the spherical camera from the origin.
+/// Smallest and largest accepted distance of a camera of `View::spherical` from the origin, in world units.
 pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
 
 /// A vector with components in units of 2^−60.
@@ -211,14 +211,14 @@ fn rounded(x: Exact) -> [Q2_23; 3] {
     x.map(|x| Q2_23::from_bits(((x + (1 << 36)) >> 37) as i32))
 }
 
-/// The product r·x of a radius and a number x in units of 2^−60, rounded to nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
+/// Computes r·x for a radius r and a number x in units of 2^−60, rounded to nearest. |r| ≤ 5 and |x| ≤ 1, so the result fits.
 fn scaled(r: Q32_32, x: i64) -> Q32_32 {
     Q32_32::from_bits(((i128::from(r.to_bits()) * i128::from(x) + (1 << 59)) >> 60) as i64)
 }
 
 fn within(place: [Q32_32; 3], distance: u32) -> bool {
     let limit = u128::from(distance) << 32;
-    // Each square is at most 2^126.
+    // The square of each coordinate is at most 2^126, so the sum fits 128 bits.
     let squared: u128 = place
         .map(|x| u128::from(x.to_bits().unsigned_abs()).pow(2))
         .iter()
@@ -263,7 +263,7 @@ fn check_basis(u: [Q2_23; 3], v: [Q2_23; 3], n: [Q2_23; 3]) -> Result<(), ViewEr
             });
         }
     }
-    // The rows are orthonormal, so u × v is n or −n; the sign of (u × v)·n decides which.
+    // The three vectors are orthonormal, so u × v is either n or −n. The sign of (u × v)·n decides.
     let cross = [[1, 2], [2, 0], [0, 1]].map(|[i, j]| {
         let (a, b) = (
             i64::from(u[i].to_bits()) * i64::from(v[j].to_bits()),
@@ -293,11 +293,11 @@ const fn narrow_product(x: i64) -> i32 {
 /// One of the three vectors of a camera's basis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// To the right of the screen.
+    /// The vector u, which points to the right of the screen.
     U,
-    /// Down the screen.
+    /// The vector v, which points down the screen.
     V,
-    /// Into the scene.
+    /// The vector n, which points into the scene.
     N,
 }
 

@@ -4,7 +4,7 @@
 pub trait Choice: Copy + 'static {
     /// All values.
     const VALUES: &'static [Self];
-    /// Names of [`VALUES`](Self::VALUES), in the same order.
+    /// Names of the values in [`VALUES`](Self::VALUES), in the same order.
     const WORDS: &'static [&'static str];
 
     /// Returns the value with the name `word`; `None` for an unknown name.
@@ -26,7 +26,7 @@ macro_rules! choices {
         impl $type {
             /// All values.
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
-            /// Names of [`ALL`](Self::ALL), in the same order.
+            /// Names of the values in [`ALL`](Self::ALL), in the same order.
             pub const NAMES: [&'static str; Self::ALL.len()] = [$($name),+];
 
             /// The value's name on the console and on the command line.

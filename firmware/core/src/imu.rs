@@ -32,7 +32,7 @@ choices!(Follow {
 pub enum CalibrationError<E> {
     /// The sensor moved, or does not measure.
     Samples(calibration::SampleError),
-    /// The sensor gave no samples.
+    /// The sensor failed, so that no samples arrived.
     Failed(Error<E>),
     /// No sensor was found since the board started.
     Absent,
@@ -48,7 +48,7 @@ impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     }
 }
 
-/// State of the calibration.
+/// State of the last or present calibration.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,

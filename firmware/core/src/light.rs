@@ -38,7 +38,7 @@ impl Light {
     /// Makes a light from the direction to it, which has any length except 0, and its colour.
     ///
     /// # Errors
-    /// The direction is 0.
+    /// All components of the direction are 0.
     pub fn new(towards: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
         let magnitudes = towards.map(|x| x.to_bits().unsigned_abs());
         let largest = magnitudes.into_iter().max().unwrap_or(0);
@@ -128,12 +128,12 @@ pub fn parse_rgb(text: &str) -> Option<Rgb> {
 /// Reason why a text is not the text form of a light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LightError<'a> {
-    /// The text has another form.
+    /// The text does not have the form that `FORM` states.
     Form {
         /// The text.
         text: &'a str,
     },
-    /// The direction is 0.
+    /// All components of the direction are 0.
     Nowhere,
 }
 

@@ -78,7 +78,7 @@ pub enum Identity {
 }
 
 impl Identity {
-    /// Known chips with their WHO_AM_I and name.
+    /// The known chips: contents of the register WHO_AM_I, type and name.
     const ALL: [(u8, Self, &str); 5] = [
         (0x68, Self::Mpu6050, "MPU-6050"),
         (0x70, Self::Mpu6500, "MPU-6500"),
@@ -96,11 +96,11 @@ impl Identity {
     pub const fn temperature(self, raw: i16) -> i32 {
         let raw = raw as i32;
         match self {
-            // 36.53 °C plus 1/340 °C per LSB.
+            // The temperature is 36.53 °C plus 1/340 °C per LSB.
             Self::Mpu6050 => 3_653 + raw * 5 / 17,
-            // 21 °C plus 1/333.87 °C per LSB.
+            // The temperature is 21 °C plus 1/333.87 °C per LSB.
             Self::Mpu6500 | Self::Mpu9250 | Self::Mpu9255 => 2_100 + raw * 10_000 / 33_387,
-            // 25 °C plus 1/326.8 °C per LSB.
+            // The temperature is 25 °C plus 1/326.8 °C per LSB.
             Self::Icm20689 => 2_500 + raw * 1_000 / 3_268,
         }
     }
@@ -145,7 +145,7 @@ impl Measurement {
 /// Error of the sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error<E> {
-    /// Error of the bus.
+    /// Error of the I2C bus.
     Bus(E),
     /// An unknown chip, with the contents of its register WHO_AM_I.
     Identity(u8),

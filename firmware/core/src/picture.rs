@@ -21,7 +21,7 @@ impl Size {
     /// All sizes, the smallest first.
     pub const ALL: [Self; 3] = [Self::W320, Self::W640, Self::W1280];
 
-    /// The size with this width and height; `None` if no size has them.
+    /// Returns the size with this width and height; `None` if there is no such size.
     pub fn of(width: u32, height: u32) -> Option<Self> {
         Self::ALL
             .into_iter()
@@ -48,7 +48,7 @@ impl Size {
         self.pixels()[1]
     }
 
-    /// Number of lines in a band.
+    /// Number of lines in a band, one of the horizontal strips in which a picture is drawn.
     pub const fn band_lines(self) -> u32 {
         self.machine().band_lines
     }
@@ -74,7 +74,7 @@ impl fmt::Display for Size {
 /// The renderer that draws the frames of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Backend {
-    /// The bit-exact model on the soft core.
+    /// The software renderer: the bit-exact model of the gateware, on the soft core.
     Cpu,
     /// The blocks in the gateware: triangle engine and raymarcher.
     Gateware,

@@ -48,7 +48,8 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
             // A vector along the first axis needs no steps, and its length is exact.
             return ((x >> up) << down, Turns((angle >> 16) as u32));
         } else {
-            // SHORTENING undoes the lengthening by all steps, so a vector that already lies on the axis is turned too.
+            // `SHORTENING` undoes the lengthening by all steps, so every step must be carried out, even for a vector that already
+            // lies on the axis.
             (x, y) = (x + turned, y - right);
             angle = angle.wrapping_add(step);
         }

@@ -108,7 +108,7 @@ impl fmt::Display for Stereo {
 /// Reason why a text does not describe two eyes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StereoError<'a> {
-    /// The text has another form.
+    /// The text does not have the form that `FORM` states.
     Form {
         /// The text.
         text: &'a str,

@@ -1,4 +1,4 @@
-//! Calibration of the gyroscope: results, rejected samples, and tracking of the bias at rest.
+//! Tests of the gyroscope's calibration: results, rejected samples, and tracking of the bias at rest.
 
 mod random;
 

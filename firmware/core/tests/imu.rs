@@ -1,4 +1,4 @@
-//! A camera steered by the samples of a sensor.
+//! Tests of a camera that is steered by the samples of a sensor.
 
 use glint_core::calibration;
 use glint_core::fixed::Q32_32;

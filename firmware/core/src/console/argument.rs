@@ -1,4 +1,4 @@
-//! Types of arguments: how words become values.
+//! Types of command arguments: how the words of a line are parsed into values.
 
 use core::marker::PhantomData;
 

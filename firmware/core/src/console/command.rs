@@ -1,4 +1,4 @@
-//! The table of commands.
+//! The table of all commands, and the parser of lines.
 
 use core::fmt;
 
@@ -84,7 +84,7 @@ commands! {
 /// A function that reads the arguments of a command. `None` means an error, which the reader stores.
 type Read = for<'a> fn(&mut Reader<'a>) -> Option<Command<'a>>;
 
-/// A command in the table.
+/// An entry of the table: a command's syntax, and the function that reads its arguments.
 struct Entry {
     syntax: Syntax,
     read: Read,
@@ -132,7 +132,7 @@ pub(super) fn find(name: &str) -> Option<&'static Syntax> {
     entry(name).map(|entry| &entry.syntax)
 }
 
-/// The syntax of all commands, in the order of the help.
+/// Returns the syntax of every command, in the order of the help.
 pub(super) fn syntaxes() -> impl Iterator<Item = &'static Syntax> {
     COMMANDS.iter().map(|entry| &entry.syntax)
 }

@@ -50,7 +50,7 @@ pub enum Shape {
 pub enum Kind {
     /// One of a list of words.
     Words(&'static [&'static str]),
-    /// A text with this description.
+    /// A text of a form that this description states.
     Text(&'static (dyn Display + Sync)),
     /// The given keyword, or a word of the given kind.
     Either(&'static str, &'static Kind),
@@ -92,7 +92,7 @@ fn write_usage(f: &mut fmt::Formatter, parameters: &[Parameter], lead: &str) -> 
 }
 
 impl Syntax {
-    /// The syntax of a command. Only the last parameter may be optional; this is checked at compile time.
+    /// Makes the syntax of a command. Only the last parameter may be optional; this is checked at compile time.
     pub const fn new(
         name: &'static str,
         summary: &'static str,

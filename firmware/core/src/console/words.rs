@@ -33,7 +33,7 @@ pub struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// Starts before the first word of `line`.
+    /// Makes an iterator over the words of `line`.
     pub const fn new(line: &'a str) -> Self {
         Self { line, offset: 0 }
     }

@@ -32,7 +32,7 @@ pub trait Arguments<'a> {
     fn group(&mut self) -> Result<bool, FieldError<'a>>;
 }
 
-/// Checks that a number is within its range.
+/// Returns `value`, after checking that it is within its range (both ends included).
 pub(in crate::field) fn check(
     name: &'static str,
     value: Q32_32,

@@ -34,7 +34,7 @@ macro_rules! primitives {
         }
 
         impl Primitive {
-            /// The names of all kinds.
+            /// The names of all kinds of fields except unions.
             pub const NAMES: [&str; [$(stringify!($kind)),*].len()] = [$(<$shape>::NAME),*];
 
             /// An example of each kind in text form, in the order of [`NAMES`](Self::NAMES).
@@ -120,7 +120,8 @@ macro_rules! flat_solids {
         }
 
         impl Flat {
-            /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
+            /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
+            /// are in field units, s10.12.
             #[inline]
             pub fn sample(&self, point: [i32; 3]) -> Sample {
                 match self {
@@ -128,7 +129,7 @@ macro_rules! flat_solids {
                 }
             }
 
-            /// The solid's constants, as the gateware's registers hold them.
+            /// The solid's constants, in the form of the gateware's registers.
             pub fn constants(&self) -> FlatConstants {
                 match self {
                     $(Self::$solid(solid) => solid.constants(),)*
@@ -166,7 +167,8 @@ pub enum Solid {
 }
 
 impl Solid {
-    /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
+    /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
+    /// are in field units, s10.12.
     #[inline]
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         match self {

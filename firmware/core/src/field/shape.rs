@@ -98,14 +98,16 @@ pub trait FlatSolid {
     /// The solid's number in the raymarcher's register field `solid.kind`, and the number of its bit in `caps.flat`.
     const CODE: u8;
 
-    /// Distance and nearest surface at a point with coordinates in s10.12, in field units.
+    /// Computes the distance of a point from the solid, and the surface nearest to the point. Coordinates
+    /// are in field units, s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
-    /// The solid's constants, as the gateware's registers hold them.
+    /// Returns the solid's constants in the form of the gateware's registers.
     fn constants(&self) -> FlatConstants;
 }
 
-/// The constants of a flat solid, by the names of their registers. A constant that the solid does not use is 0.
+/// The constants of a flat solid. Each field has the name of its register in the raymarcher. A constant that the solid does not
+/// use is 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlatConstants {
     /// [`FlatSolid::CODE`].

@@ -1,4 +1,4 @@
-//! Time stamps of samples from the times of reads.
+//! Computes the time stamps of samples from the times of the reads that fetched them.
 
 /// A model of the sensor's clock, which computes the times at which samples were measured.
 ///

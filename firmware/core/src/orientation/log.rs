@@ -7,15 +7,15 @@
 //! |---|---|
 //! | 0–3 | `GIMU` |
 //! | 4–7 | number of samples, at least 1 |
-//! | 8–15 | LSB of the gyroscope for 1 °/s, s32.32 |
-//! | 16–19 | LSB of the accelerometer for 1 g |
-//! | 20–23 | flags: bit 0 holds the tilt by the accelerometer, bit 1 follows the bias at rest |
+//! | 8–15 | LSB of the gyroscope per °/s, s32.32 |
+//! | 16–19 | LSB of the accelerometer per g |
+//! | 20–23 | flags: bit 0 for tilt correction by the accelerometer, bit 1 for tracking of the bias at rest |
 //! | 24–35 | bias of the gyroscope in 1/256 LSB, s32 ×3 |
-//! | 36–47 | 0 |
+//! | 36–47 | reserved, 0 |
 //!
 //! | bytes | record | as an attitude |
 //! |---|---|---|
-//! | 0–3 | stamp in µs, u32, which may wrap | w, s2.30 |
+//! | 0–3 | time stamp in µs, u32, which may wrap | w, s2.30 |
 //! | 4–9 | accelerometer x, y, z, s16 ×3 | x (4–7), y (8–11) |
 //! | 10–15 | gyroscope x, y, z, s16 ×3 | z (12–15) |
 

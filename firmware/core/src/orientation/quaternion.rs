@@ -1,4 +1,4 @@
-//! Quaternions of length 1.
+//! Attitudes as quaternions of length 1.
 
 use crate::fixed::{Q2_30, Turns, wide};
 use crate::polar::polar;
@@ -27,7 +27,7 @@ impl Quaternion {
     pub fn new(parts: [Q2_30; 4]) -> Option<Self> {
         let largest = parts.iter().map(|part| part.to_bits().unsigned_abs()).max();
         let up = largest?.checked_ilog2().map(|lead| 30 - lead.min(30))?;
-        // The largest component has 30 bits, so the sum of squares has at most 62.
+        // The largest component has 30 bits, so the sum of squares has at most 62 bits.
         let wide = parts.map(|part| (i64::from(part.to_bits()) << up) >> 1);
         let length = wide.iter().map(|x| (x * x) as u64).sum::<u64>().isqrt() as i64;
         let parts = wide.map(|x| ((x << 30) / length) as i32);

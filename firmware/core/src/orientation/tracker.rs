@@ -32,7 +32,7 @@ pub struct Counts {
     pub stale: u64,
     /// Gaps of more than `LONGEST_STEP` between samples, over which the attitude stayed constant.
     pub gaps: u64,
-    /// Samples at an end of the gyroscope's range.
+    /// Samples in which a rate of the gyroscope is at an end of its range.
     pub saturated: u64,
     /// Samples whose accelerometer reading was rejected.
     pub rejected: u64,
@@ -69,7 +69,7 @@ impl Tracker {
         }
     }
 
-    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, which is beyond every rate.
+    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, which no rate reaches.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
         self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;

@@ -4,7 +4,8 @@
 pub const BLOCK: u32 = 16;
 /// Maximum number of blocks in a data frame.
 pub const MAX_BLOCKS: u32 = 15;
-/// Maximum number of blocks that are sent but not yet acknowledged: the number of bits in the map of an acknowledgement.
+/// Maximum number of blocks from the first unacknowledged block to the last sent block: the number of bits in the
+/// map of an acknowledgement.
 pub const WINDOW: u32 = u128::BITS;
 
 /// Maximum length of a transfer in bytes, because block numbers have 24 bits.

@@ -1,4 +1,4 @@
-//! Sender and receiver behind one trait.
+//! A trait that both the sender and the receiver of a transfer implement.
 
 use super::receiver::Receiver;
 use super::sender::Sender;

@@ -1,4 +1,4 @@
-//! Passes the frames in received bytes to the sender or receiver of a transfer.
+//! Extracts frames from received bytes, and passes them to the sender or receiver of a transfer.
 
 use super::ending::Ending;
 use super::frame::{Message, Reader};
@@ -11,7 +11,7 @@ pub trait Peer {
     fn ending(&mut self) -> Option<&mut Ending>;
 }
 
-/// Passes the frames in `bytes` to a sender or receiver; returns the number of bytes that belong to the transfer.
+/// Passes the frames in `bytes` to the sender or receiver `peer`. Returns the number of bytes that belong to the transfer.
 pub fn feed(reader: &mut Reader, peer: &mut impl Peer, now_ms: u64, bytes: &[u8]) -> usize {
     let mut taken = 0;
     while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {

@@ -141,7 +141,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // Only a receiver sends the other messages, so these are echoes of this side's own frames.
+            // Only a receiver sends messages of the other kinds, so such a message is an echo of a frame from this receiver.
             _ => return,
         }
         self.valid_ms = now_ms;

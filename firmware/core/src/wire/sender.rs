@@ -139,7 +139,7 @@ impl Peer for Transfer<'_> {
                     now_ms,
                 ));
             }
-            // Only a sender sends the other messages, so these are echoes of this side's own frames.
+            // Only a sender sends messages of the other kinds, so such a message is an echo of a frame from this sender.
             _ => return,
         }
         self.valid_ms = now_ms;

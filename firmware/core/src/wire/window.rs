@@ -3,7 +3,8 @@
 use super::format::WINDOW;
 use super::frame::Acknowledge;
 
-/// Maximum number of data frames in flight: half of the 256 frame numbers, so that older and newer numbers can be told apart.
+/// Maximum number of data frames in flight. It is less than half of the 256 frame numbers, so that older and newer
+/// numbers can be distinguished.
 const MAX_FRAMES: u8 = 120;
 
 /// The sender's record of sent and acknowledged blocks.

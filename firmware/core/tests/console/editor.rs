@@ -1,4 +1,4 @@
-//! The line editor: keys, history, completion and echo.
+//! Tests of the line editor: keys, history, completion and echo.
 
 use glint_core::console::{Command, Event, HISTORY, LINE_MAX, LineEditor};
 use proptest::prelude::*;
