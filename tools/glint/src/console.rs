@@ -154,7 +154,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         (self.board, &mut self.pending)
     }
 
-    /// The board itself.
+    /// The board of the console.
     pub fn board(&mut self) -> &mut B {
         self.board
     }

@@ -1,4 +1,5 @@
-//! Errors of inputs, and limits of inputs. An error is one line: the place, the expected and the found content.
+//! Errors in input files, and limits of input files. An error is one line: the place, what was expected there, and
+//! what was found.
 
 use std::fmt;
 use std::path::Path;
@@ -62,12 +63,12 @@ impl FormatError {
         }
     }
 
-    /// Creates an error of the whole file.
+    /// Creates an error that concerns the whole file.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self::new(Place::Whole, expected, found)
     }
 
-    /// Adds the file's name.
+    /// Adds the name of the file to the error.
     pub fn in_file(self, file: impl Into<String>) -> InputError {
         InputError {
             file: file.into(),
@@ -75,7 +76,7 @@ impl FormatError {
         }
     }
 
-    /// Adds the file's path, escaped to one line.
+    /// Adds the path of the file to the error, escaped to one line.
     pub fn in_path(self, path: &Path) -> InputError {
         self.in_file(path.display().to_string().escape_debug().to_string())
     }

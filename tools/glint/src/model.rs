@@ -15,7 +15,7 @@ pub struct Model {
     pub report: Option<Report>,
 }
 
-/// Whether `name` names a generator. A file of the same name takes precedence.
+/// Whether `name` stands for a generator. If a file of this name exists, it stands for the file.
 fn is_generated(name: &str) -> bool {
     generate::is_name(name) && !Path::new(name).exists()
 }

@@ -1,4 +1,4 @@
-//! Vertex normals for files without them.
+//! Vertex normals for mesh files that have none.
 
 use crate::polygons::Vector;
 use crate::triangulate::{dot, sub, unit};

@@ -1,4 +1,4 @@
-//! Uploads and downloads: the transfers of `glint-core` over a board's line.
+//! Uploads and downloads over a board's line, by the transfer protocol of `glint-core`.
 
 use crate::board::{Board, BoardError, BoardName};
 use crate::console::{Console, ConsoleError};
@@ -21,12 +21,12 @@ pub enum TransferError {
     NoMemory,
 }
 
-/// The route of data into and out of a board.
+/// The route by which data get into and out of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Route {
     /// Over the serial line.
     Serial,
-    /// Directly through the simulated memory: the virtual board only.
+    /// Directly through the simulated memory, which only the virtual board offers.
     Memory,
 }
 

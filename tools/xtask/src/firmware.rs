@@ -154,7 +154,7 @@ mod tests {
 
     use crate::paths;
 
-    /// Origin and length of each window of `memory.x`, as docs/architecture.md writes them.
+    /// Lists origin and length of each memory window of `memory.x`, in the notation of docs/architecture.md.
     fn windows(memory_x: &str) -> Vec<(String, String)> {
         let windows = memory_x.lines().filter_map(|line| {
             let (_, rest) = line.split_once(": ORIGIN = 0x")?;

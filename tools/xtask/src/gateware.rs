@@ -44,7 +44,7 @@ pub enum Fields {
     All,
     /// No fillets, sponge up to depth 4, no cones: two lanes
     Round,
-    /// As `round`, without spheres
+    /// No fillets, no spheres, sponge up to depth 4, no cones: two lanes
     Faces,
     /// Sponge up to depth 4 only, with cones: four lanes
     Sponge,

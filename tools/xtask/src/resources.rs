@@ -85,7 +85,7 @@ fn within(excesses: &[Excess]) -> Result<()> {
     )
 }
 
-/// Returns the blocks to measure, without repeats. If `blocks` is empty, these are all blocks, the slowest first.
+/// Returns the blocks to measure, without repeats. If `blocks` is empty, these are all blocks, the slowest to measure first.
 fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
     let mut names = VecDeque::new();
     let wanted = if blocks.is_empty() {

@@ -1,4 +1,4 @@
-//! Running programs: a progress line while they run, their output only on failure.
+//! Runs programs with a progress line, and shows their output only on failure.
 
 use std::collections::VecDeque;
 use std::fs::{self, File};

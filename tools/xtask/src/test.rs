@@ -162,7 +162,7 @@ fn cargo_tests() -> Result<u32> {
     outcome.map(|()| passed)
 }
 
-/// Number of passed tests in the last line of a test program: `test result: ok. 12 passed; 0 failed; …`.
+/// Returns the number of passed tests from the last line of a test program's output: `test result: ok. 12 passed; 0 failed; …`.
 fn passed_tests(line: &str) -> Option<u32> {
     let counts = line.strip_prefix("test result: ")?;
     let before = counts.split(" passed;").next()?;

@@ -1,4 +1,4 @@
-//! Options of a distance field.
+//! The options on the command line for a distance field.
 
 use super::common::named;
 use clap::Args;

@@ -19,7 +19,7 @@ const ANSWER_MS: u64 = 500;
 /// Maximum number of bytes that the BIOS answers to one frame: `C` for a wrong checksum and, after the time-out of a surplus
 /// byte, `E`, each of them twice if the line repeats bytes. Longer output comes from the program.
 const MAX_ANSWER: usize = 4;
-/// Failed batches in a row after which the transfer fails.
+/// Number of failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
 
 /// Report of a serial boot.
@@ -27,9 +27,9 @@ const MAX_FAILURES: u32 = 24;
 pub struct Report {
     /// Length of the program in bytes.
     pub bytes: usize,
-    /// Frames sent, repeats included.
+    /// Number of frames sent, repeats included.
     pub frames: u32,
-    /// Batches sent again.
+    /// Number of batches sent again.
     pub retries: u32,
     /// The board's time from the first frame to the jump, in milliseconds.
     pub milliseconds: u64,
@@ -93,7 +93,7 @@ pub struct Link<'b> {
     data: usize,
     /// Current number of frames in a batch.
     batch: usize,
-    /// Failed batches since the last success.
+    /// Number of failed batches since the last success.
     failures: u32,
 }
 
@@ -119,8 +119,8 @@ impl<'b> Link<'b> {
         self.data
     }
 
-    /// Builds the next batch: frames that load the bytes of `program` from `start` on. `address` is where
-    /// the program's first byte goes.
+    /// Builds the next batch: frames that load the bytes of `program` from the index `start` on. `address` is the load address of
+    /// the whole program.
     pub fn batch(&self, program: &[u8], address: u32, start: usize) -> Vec<Vec<u8>> {
         program[start..]
             .chunks(self.data)

@@ -10,8 +10,8 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file with exactly the length of its triangle count is binary; any other file that starts with `solid` is
-/// ASCII. Normals are ignored: the winding has the same information and is more reliable.
+/// Parses an STL. A file is binary if its length is exactly that for the triangle count in its header; any other file that starts
+/// with `solid` is ASCII. Normals are ignored: the winding has the same information and is more reliable.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.

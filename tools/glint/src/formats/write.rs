@@ -7,7 +7,7 @@ use std::io::{self, Write};
 /// Writes an OBJ with point colours after the coordinates. Face colours, which need a material file, are left out.
 ///
 /// # Errors
-/// Errors of the writer.
+/// Writing to `out` fails.
 pub fn obj(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     for (i, [x, y, z]) in polygons.points.iter().enumerate() {
         write!(out, "v {x} {y} {z}")?;
@@ -30,7 +30,7 @@ pub fn obj(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
 /// Writes a binary STL with face colours in the attribute word (VisCAM).
 ///
 /// # Errors
-/// Errors of the writer.
+/// Writing to `out` fails.
 pub fn stl(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     let mut header = [0; 80];
     header[..5].copy_from_slice(b"glint");
@@ -59,7 +59,7 @@ pub fn stl(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
 /// Writes a binary PLY, little-endian, with the colours of points and faces.
 ///
 /// # Errors
-/// Errors of the writer.
+/// Writing to `out` fails.
 pub fn ply(polygons: &Polygons, out: &mut impl Write) -> io::Result<()> {
     const COLOUR: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
     let with_faces = polygons.faces.iter().any(|face| face.colour.is_some());

@@ -58,14 +58,16 @@ fn facing_out([a, b, c]: [Vector; 3]) -> [Vector; 3] {
     }
 }
 
-/// Cuts a triangle's edges into `frequency` parts, and the triangle into frequency² parts.
+/// Cuts each edge of a triangle into `frequency` parts, and adds the frequency² triangles between the cuts, with their points
+/// moved to the sphere.
 fn divide(
     builder: &mut Builder,
     [a, b, c]: [Vector; 3],
     frequency: u32,
 ) -> Result<(), FormatError> {
-    // The arguments are the weights of `b` and `c`. On an edge one of the three weights is zero and the sum of the other two does
-    // not depend on their order, so both triangles at the edge get the same bits.
+    // Returns a point of the sphere. The arguments are the weights of `b` and `c`; the weight of `a` is what is left of
+    // `frequency`. On an edge one of the three weights is zero and the sum of the other two does not depend on their order, so
+    // both triangles at the edge get the same bits.
     let point = |to_b: u32, to_c: u32| -> Vector {
         let weights = [frequency - to_b - to_c, to_b, to_c].map(f64::from);
         normalised(

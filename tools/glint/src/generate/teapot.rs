@@ -56,7 +56,8 @@ const COVER: [Ring; 7] = [
     ring(1.3, 0.728, 2.4),
 ];
 
-/// Four control points of half a ring, symmetric in y: (x, 0, z), (x, −y, z), (x', −y, z'), (x', 0, z').
+/// Four control points of half a ring, symmetric in y: (x, 0, z), (x, −y, z), (x', −y, z'), (x', 0, z'). `upper` is (x, z),
+/// `lower` is (x', z').
 struct HalfRing {
     upper: [f64; 2],
     lower: [f64; 2],
@@ -156,7 +157,8 @@ fn turned(
         let quarter: Vec<Vector> = (0..=CUTS)
             .map(|i| bezier(quarter, i as f64 / CUTS as f64))
             .collect();
-        // The quarter runs clockwise seen from above; mirrored quarters run in reverse.
+        // The quarter runs clockwise seen from above. A quarter that is mirrored in one axis is reversed, so that the whole ring
+        // runs clockwise.
         let mirrored = |sx: f64, sy: f64| quarter.iter().map(move |&[x, y, z]| [sx * x, sy * y, z]);
         let mut ring: Vec<Vector> = mirrored(1.0, 1.0).collect();
         ring.extend(mirrored(-1.0, 1.0).rev().skip(1));

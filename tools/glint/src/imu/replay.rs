@@ -1,4 +1,4 @@
-//! Attitudes of a log, computed with the firmware's arithmetic on this host or on a board.
+//! Computes the attitudes of a log with the firmware's arithmetic, on this host or on a board.
 
 use super::log::Entry;
 use crate::board::Board;

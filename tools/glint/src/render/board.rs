@@ -50,7 +50,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.backend = backend.into();
     }
 
-    /// The board itself.
+    /// The board that draws the frames.
     pub fn board(&mut self) -> &mut B {
         self.console.board()
     }
@@ -94,7 +94,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Uploads a mesh and shows it.
     ///
     /// # Errors
-    /// The upload fails, or the board lacks this route.
+    /// The upload fails, or the board does not offer `route`.
     pub fn upload(
         &mut self,
         mesh: &[u8],
@@ -125,7 +125,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Downloads the colours of the last frame.
     ///
     /// # Errors
-    /// The download fails, or the board lacks this route.
+    /// The download fails, or the board does not offer `route`.
     pub fn colour(
         &mut self,
         size: Size,
@@ -142,7 +142,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Downloads the depth codes of the scene on the monitor.
     ///
     /// # Errors
-    /// The download fails, or the board lacks this route.
+    /// The download fails, or the board does not offer `route`.
     pub fn depth(
         &mut self,
         size: Size,

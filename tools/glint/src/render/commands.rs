@@ -57,7 +57,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         format!("background {}", background.name()),
         format!("fog {fog}"),
         format!("occlusion {}", switch_name(*occlusion)),
-        // Stereo and a mesh in a field exclude each other.
+        // A mesh in a field cannot be drawn for two eyes, so stereo is off when `mesh` is sent.
         "stereo off".to_owned(),
         format!("mesh {}", switch_name(with_mesh)),
         format!("prepass {}", switch_name(subject.prepass)),

@@ -35,7 +35,7 @@ pub struct Parts {
 pub struct Rendered {
     /// The requested colours and depth codes.
     pub image: Image,
-    /// Cycles and counts.
+    /// Cycles and counts of the frame.
     pub stats: Stats,
 }
 

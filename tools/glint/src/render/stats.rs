@@ -11,10 +11,10 @@ use serde::{Deserialize, Serialize};
 pub struct Stats {
     /// Cycles of the board's clock that the frame took; `None` from the model, which has no clock.
     pub cycles: Option<u64>,
-    /// Counts of the mesh; `None` without one.
+    /// Counts of the mesh; `None` for a frame without a mesh.
     #[serde(flatten)]
     pub mesh: Option<TriangleCounts>,
-    /// Counts of the field; `None` without one.
+    /// Counts of the field; `None` for a frame without a field.
     #[serde(flatten)]
     pub rays: Option<RayCounts>,
     /// Frequency of the board's clock in Hz; `None` from the model.
@@ -22,7 +22,7 @@ pub struct Stats {
     /// The backend of a board: `cpu` or `gateware`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub backend: Option<String>,
-    /// Counters of the triangle engine, if it rendered.
+    /// Counters of the triangle engine; empty if it did not draw the frame.
     #[serde(flatten)]
     pub engine: Counters,
 }
@@ -70,7 +70,7 @@ impl RayCounts {
 }
 
 impl Stats {
-    /// Counts of the mesh, all zero without one.
+    /// Returns the counts of the mesh, which are all 0 for a frame without a mesh.
     pub fn triangles(&self) -> TriangleCounts {
         self.mesh.clone().unwrap_or_default()
     }

@@ -114,7 +114,7 @@ fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<
     found
 }
 
-/// Checks a small, distant field that `backend` draws.
+/// Draws a small, distant box by `backend`, and compares colours, depths and counts with the model's.
 fn a_field_by(backend: Backend, name: &str) {
     let mut board = running_board();
     let mut renderer = renderer(&mut board).with_backend(backend);
@@ -146,7 +146,7 @@ fn a_field_by(backend: Backend, name: &str) {
 
     let shown = renderer.console().command("info scene").unwrap();
     assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
-    // Without the field the mesh is shown again, and the eye is too far away for it.
+    // Without the field the board draws the mesh again, for which the eye is too far from the origin.
     renderer.console().command("field off").unwrap();
     let error = renderer.redraw().unwrap_err().to_string();
     assert!(

@@ -117,7 +117,8 @@ fn a_bad_upload_leaves_the_old_model() {
         Err(ConsoleError::Refused { .. })
     ));
 
-    // Bytes that arrive unchanged but form no mesh: a chunk without end, an index beyond the vertices.
+    // Bytes that arrive unchanged but form no mesh: a reserved byte of a chunk's header is not 0, or an index is
+    // beyond the vertices.
     let last_triangle = other.len() - 16;
     for (number, at) in [(3, 40), (4, last_triangle + 1)] {
         let mut damaged = other.clone();

@@ -53,7 +53,7 @@ pub fn refused(folder: &Path, arguments: &[&str]) -> String {
 pub const VIEW: &str =
     r#"{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.9,"near":0.1}"#;
 
-/// The RGB pixels of a 16:9 picture.
+/// Reads the RGB pixels of a picture, whose sides must be 16:9.
 pub fn picture(path: &Path) -> Vec<u8> {
     let decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(path).unwrap()));
     let mut reader = decoder.read_info().unwrap();

@@ -36,7 +36,7 @@ fn fields_and_their_files() {
     assert_eq!(stats["evaluations_per_ray"], mean);
     assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
 
-    // The front face, in the colour of its normal, on a white background.
+    // The picture shows the box's front face, in the colour of its normal, on a white background.
     let depth = depths(&folder.join("a.f32"));
     for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
         assert!(

@@ -17,8 +17,8 @@ pub const OWN: [&str; 7] = [
     "i2c_engine",
 ];
 
-/// Engines that consist of own blocks, in several builds, and parts of the raymarcher. The tables list these blocks, but `cargo
-/// xtask test` does not measure them, because that would take too long.
+/// Engines that consist of own blocks, in several builds, and parts of the raymarcher. The tables list them, but they take too
+/// long to be measured by `cargo xtask test`.
 pub const BUILDS: [&str; 10] = [
     "triangle_engine_smooth",
     "raymarcher",

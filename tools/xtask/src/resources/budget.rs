@@ -14,13 +14,13 @@ use crate::paths;
 /// Maximum of each limited resource.
 pub type Limits = BTreeMap<Resource, u32>;
 
-/// The budget file.
+/// The contents of `gateware/budget.toml`.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Budget {
     /// Resources of the FPGA, which are the limits of the SoC.
     pub device: Limits,
-    /// Default limits for each of this project's own blocks.
+    /// Default limits for every block except the SoC.
     own: Limits,
     /// Limits of single blocks, by the block's name.
     block: BTreeMap<String, Limits>,
@@ -29,13 +29,13 @@ pub struct Budget {
 /// A resource of a block that is above its limit.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Excess {
-    /// The block.
+    /// Name of the block.
     pub block: String,
-    /// The resource.
+    /// The resource above its limit.
     pub resource: Resource,
-    /// The limit.
+    /// Limit of the resource.
     pub budget: u32,
-    /// The measured amount.
+    /// Measured amount of the resource.
     pub measured: f64,
 }
 
@@ -53,7 +53,7 @@ impl fmt::Display for Excess {
 }
 
 impl Budget {
-    /// Reads the budget file.
+    /// Reads the budget from `gateware/budget.toml`.
     ///
     /// # Errors
     /// The file cannot be read, or names an unknown block or resource.

@@ -51,7 +51,7 @@ impl Resource {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Size {
-    /// The block.
+    /// Name of the block.
     pub name: String,
     /// Tool of the measurement, with its version.
     pub yosys: String,
