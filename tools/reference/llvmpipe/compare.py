@@ -1,21 +1,21 @@
-"""Compares the coverage of triangles with that of Mesa's software rasterizer, llvmpipe.
+"""Compares an expected coverage of triangles with the coverage by Mesa's software rasterizer, llvmpipe.
 
     python compare.py SCENES.json
 
 SCENES.json is `{"width": W, "height": H, "reach": R, "triangles": [...]}`. llvmpipe clips to the viewport and snaps clipped edges
-again, so the viewport is larger than the picture and extends R pixels from its middle. A triangle has
+again. So the viewport is larger than the picture: it extends R pixels from the picture's middle. A triangle has
 
-    clip      its corners in homogeneous clip coordinates (x, y, z, w) of that viewport, y down the screen, near plane
-              at z = -w
-    screen    its snapped corners, in pixels from the top left, or null when it was clipped
-    covered   the expected coverage: [row, first column, column after the last] for each span
+    clip      its corners in homogeneous clip coordinates (x, y, z, w) of that viewport; y points down the screen, and the
+              near plane is at z = -w
+    screen    its snapped corners, in pixels from the top left; null if the triangle was clipped
+    covered   the expected coverage: [row, first column, column after the last] for each run of covered pixels
 
 Each triangle is drawn alone, from `clip` and, unless null, from `screen`. The standard output is
 `{"renderer": R, "version": V, "triangles": [{"projected": D, "snapped": D or null}]}` with
-D = `{"missing": [[column, row], ...], "extra": [...]}`: `missing` are pixels that only llvmpipe covers, `extra` pixels
-that only `covered` has.
+D = `{"missing": [[column, row], ...], "extra": [...]}`. `missing` lists the pixels that only llvmpipe covers, and `extra`
+lists the pixels that only `covered` contains.
 
-Exits with 3 and a reason on the standard error when llvmpipe is missing.
+If llvmpipe is missing, the script prints the reason to the standard error and exits with status 3.
 """
 
 import json
@@ -53,7 +53,7 @@ def make_context():
         give_up(f"moderngl is not installed ({error})")
     try:
         context = moderngl.create_context(standalone=True, backend="egl")
-    except Exception as error:  # moderngl raises plain Exception when EGL or a driver is missing
+    except Exception as error:  # moderngl raises Exception itself when EGL or a driver is missing
         give_up(f"no OpenGL context without a display ({error})")
     if "llvmpipe" not in context.info["GL_RENDERER"]:
         give_up(f"OpenGL is drawn by {context.info['GL_RENDERER']}, not by llvmpipe")
@@ -61,7 +61,7 @@ def make_context():
 
 
 class Rasterizer:
-    """Draws one triangle at a time and reads its coverage back: a byte a pixel, from the top left."""
+    """Draws one triangle at a time and reads its coverage back, one byte per pixel from the top left."""
 
     def __init__(self, context, width, height, reach):
         self.middle, self.reach = (width // 2, height // 2), reach
@@ -77,8 +77,9 @@ class Rasterizer:
         self.corners.write(b"".join(struct.pack("4f", *corner) for corner in corners))
         self.frame.clear()
         self.triangle.render()
-        # Row 0 of a texture has the smallest y, and in clip coordinates the top of the picture has the smallest y too. So the
-        # rows read back are in the order of the picture, and "top" in llvmpipe's top-left rule is the top of the picture.
+        # Row 0 of a texture has the smallest y. In these clip coordinates, where y points down, the top of the picture has the
+        # smallest y too. So the rows that are read back start at the top of the picture, and "top" in llvmpipe's top-left rule
+        # is the top of the picture.
         return self.frame.read(components=1, alignment=1)
 
     def from_screen(self, points):

@@ -59,22 +59,23 @@ impl Ray {
 /// One of the two eyes of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left eye, at `eye` − `offset`·u of the camera and the stereo parameters.
+    /// The left eye, at eye − offset·u: `eye` and `u` are fields of `Camera`, and `offset` is a field of `Stereo`.
     Left,
-    /// The right eye, at `eye` + `offset`·u of the camera and the stereo parameters.
+    /// The right eye, at eye + offset·u, with the same fields.
     Right,
 }
 
 /// Parameters of two parallel eyes whose pictures are shifted (off-axis projection).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
-    /// Distance of each eye from the camera's `eye` along u, in world units.
+    /// Distance of each of the two eyes from the camera's `eye`, along the camera's direction `u`, in world units.
     pub offset: f64,
-    /// Depth at which both eyes see a point in the same pixel, in world units.
+    /// Depth of the plane without parallax, in world units: both eyes see a point of it in the same pixel.
     pub zero: f64,
 }
 
-/// A pinhole camera: an eye and an orthonormal basis with u × v = n. Its picture lies in the plane at distance 1 along n.
+/// A pinhole camera: an eye and an orthonormal basis with u × v = n. Its picture lies in the plane at distance 1 from the eye
+/// along n.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The centre of projection, in world units.
@@ -85,14 +86,14 @@ pub struct Camera {
     pub v: Vector,
     /// Direction forward, into the scene.
     pub n: Vector,
-    /// Half the width of the picture in the plane at distance 1, in world units.
+    /// Half the width of the picture, in world units in the plane at distance 1.
     pub half_width: f64,
-    /// Distance of the near plane along n, in world units.
+    /// Distance of the near plane from the eye along n, in world units.
     pub near: f64,
 }
 
 impl From<&View> for Camera {
-    /// The camera with the numbers of a view. The conversion to f64 is exact.
+    /// Converts the fixed-point numbers of a view to f64, which is exact.
     fn from(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
@@ -108,9 +109,9 @@ impl From<&View> for Camera {
 /// The size of a picture in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
-    /// Columns.
+    /// Number of columns.
     pub width: u32,
-    /// Rows.
+    /// Number of rows.
     pub height: u32,
 }
 
@@ -132,12 +133,12 @@ impl Camera {
         }
     }
 
-    /// This camera turned about its eye by the angles yaw to the right, then
-    /// pitch downwards, then roll, in degrees, as [`View::look`] turns a view.
+    /// Returns this camera turned about its eye, as [`View::look`] turns a view. `angles` are in degrees and apply in this
+    /// order: yaw to the right, pitch downwards, roll.
     #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
-        // The turned axes in coordinates of this camera: right, up, forward.
+        // The axes of the turned camera before the roll, each in coordinates of this camera: right, up and forward.
         let right = [cy, 0.0, -sy];
         let up = [sp * sy, cp, sp * cy];
         let forward = [cp * sy, -sp, cp * cy];
@@ -153,7 +154,7 @@ impl Camera {
         }
     }
 
-    /// Converts the camera to a view, with each number rounded to the nearest that its fixed-point format has.
+    /// Converts the camera to a view. Each number is rounded to the nearest number of its fixed-point format.
     ///
     /// # Errors
     /// The errors of [`View::new_checked`].
@@ -172,10 +173,10 @@ impl Camera {
         )
     }
 
-    /// The ray through a point of the picture. `pixel` is a column and a row
-    /// from 0: whole numbers are pixel centres, fractions lie between centres.
+    /// Returns the ray from the eye through a point of the picture. `pixel` is a column and a row, counted from 0. Whole
+    /// numbers are the centres of pixels, and fractions lie between the centres.
     ///
-    /// The component of the ray's direction along n is 1, so its parameter t is the depth.
+    /// The ray's direction has a component of 1 along n, so the parameter t of a point of the ray is the point's depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
         let width = f64::from(size.width);
         let right = (2.0 * x + 1.0 - width) / width * self.half_width;
@@ -187,7 +188,7 @@ impl Camera {
         }
     }
 
-    /// The ray from one eye of a stereo pair through a point of the picture, which is given as for [`Self::ray`].
+    /// Returns the ray from one eye of a stereo pair through a point of the picture. `pixel` is as in [`Self::ray`].
     pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
         let offset = match side {
             Side::Left => -stereo.offset,
@@ -200,8 +201,8 @@ impl Camera {
         }
     }
 
-    /// Converts a point of the world to camera coordinates: distances
-    /// to the right of, below and in front of the eye, in world units.
+    /// Converts a point of the world to camera coordinates: how far it lies to the right of the eye, below the eye and in
+    /// front of the eye, in world units.
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
@@ -221,8 +222,8 @@ impl Camera {
         f64::from(size.width) / 2.0 / self.half_width
     }
 
-    /// Clips a convex polygon in camera coordinates: returns the part on or beyond the near plane (Sutherland and Hodgman
-    /// 1974, in homogeneous coordinates: z is the divisor of the projection).
+    /// Clips a convex polygon in camera coordinates: returns its part on or beyond the near plane. The method is that of
+    /// Sutherland and Hodgman (1974), before the division by z.
     pub fn clip_near(&self, polygon: &[Vector]) -> Vec<Vector> {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, &a) in polygon.iter().enumerate() {
@@ -304,7 +305,8 @@ mod tests {
         for ray in [left, right] {
             assert!(length(subtract(ray.at(stereo.zero), meeting)) < 1e-12);
         }
-        // In front of zero parallax the left ray is left of the right ray: so the left eye sees nearer points further right.
+        // In front of the plane without parallax, the left eye's ray through a pixel is to the left of the right eye's ray.
+        // So the left eye sees a near point further to the right than the right eye does.
         assert!(left.at(1.0)[0] < right.at(1.0)[0]);
     }
 

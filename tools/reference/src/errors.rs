@@ -1,9 +1,9 @@
-//! RMS and maximum of a set of errors.
+//! Root mean square (RMS) and maximum of a set of errors.
 
-/// RMS and maximum of errors.
+/// Accumulates errors, and gives their root mean square and their maximum.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Errors {
-    /// Largest magnitude of an error.
+    /// Largest magnitude among the errors.
     pub max: f64,
     squares: f64,
     count: u64,
@@ -17,7 +17,7 @@ impl Errors {
         self.count += 1;
     }
 
-    /// Root of the mean square of the errors; 0 if there are none.
+    /// Returns the root mean square of the errors, or 0 if there are none.
     pub fn rms(&self) -> f64 {
         (self.squares / self.count.max(1) as f64).sqrt()
     }

@@ -1,4 +1,5 @@
-//! References for the errors of Glint's computations, written from the specification and not from the model, and the report.
+//! References that Glint's computations are compared with, written from the specification and not from the model, and the
+//! measurements of the report.
 //!
 //! - [`errors`]: RMS and maximum of a set of errors.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
@@ -6,7 +7,7 @@
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
-//! - [`triangle`]: the exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
+//! - [`triangle`]: an exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
 
 #![forbid(unsafe_code)]
 

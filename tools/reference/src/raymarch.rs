@@ -1,15 +1,15 @@
-//! Solids given by signed distance fields, in f64, and two ways to find where a ray hits them that share no code.
+//! Solids given by signed distance fields, in f64, and two independent methods to find where a ray hits a solid.
 //!
-//! - [`Field::distance`]: the distance fields themselves.
-//! - [`Field::traced`]: hits by sphere tracing, which uses nothing but the field's distance.
-//! - [`Field::hit`]: hits from the geometry of each solid, exact but for the rounding of f64.
-//! - [`views`]: cameras that look at the sponge.
+//! - [`Field::distance`]: the distance of a point from a solid.
+//! - [`Field::traced`]: hits by sphere tracing, which uses only the distance.
+//! - [`Field::hit`]: hits computed from the geometry of each solid, exact apart from the rounding of f64.
+//! - [`views`]: cameras that look at the Menger sponge.
 //! - [`metrics`]: errors of a picture against the reference.
-//! - [`raymarched`]: pictures of Glint's raymarcher in the form that `metrics` compares.
+//! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
 //! - [`variant`]: other marching methods, for comparisons of their cost.
-//! - [`verilated`]: clocks and evaluations that the verilated raymarcher takes for a picture.
+//! - [`verilated`]: number of clocks and of distance evaluations that the verilated raymarcher takes for a picture.
 //!
-//! For a ray that only touches a solid, or lies in the plane of one of its faces, both a hit and a miss are right.
+//! For a ray that only touches a solid, or that lies in the plane of one of the solid's faces, a hit is right and so is a miss.
 
 mod distance;
 mod grid;
@@ -41,7 +41,7 @@ pub enum Field {
         /// Half of the side along each axis.
         half: Vector,
     },
-    /// A convex solid: the points that are behind all of these planes.
+    /// A convex solid: the points that are behind all of the planes.
     Convex(Vec<Plane>),
     /// The union of balls.
     Spheres(Vec<Sphere>),
@@ -59,7 +59,7 @@ pub enum Field {
         /// Half of each cube's side, at most half the period.
         half: f64,
     },
-    /// Everything but the room between a floor at z = −half and a ceiling at z = half.
+    /// The solid outside a room of infinite width, which has its floor at z = −half and its ceiling at z = half.
     Planes {
         /// Half of the room's height.
         half: f64,
@@ -69,7 +69,7 @@ pub enum Field {
     /// The points that are in at least one of two fields, with a fillet where
     /// their surfaces are close (the quadratic smooth minimum of Quilez).
     SmoothUnion {
-        /// Range of the fillet: it exists where the distances to the two members differ by less than `k`.
+        /// Range of the fillet, which is present where the distances to the two members differ by less than `k`.
         k: f64,
         /// The first of the two members.
         a: Box<Self>,
@@ -79,14 +79,14 @@ pub enum Field {
 }
 
 impl Field {
-    /// The first point of a ray, with a parameter from `t_min` to `t_max`, that is in the solid. If the ray is in the solid
-    /// at `t_min` already, the hit is at `t_min` and its face is [`Face::Inside`].
+    /// Finds the first point of a ray that is in the solid and has a parameter from `t_min` to `t_max`. If the point at
+    /// `t_min` is in the solid already, the hit is at `t_min` and its face is [`Face::Inside`].
     ///
     /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a
-    /// ray may pass between their parts for ever.
+    /// ray may pass between the balls or cubes for ever.
     ///
     /// # Panics
-    /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps without an end: see [`Unconverged`].
+    /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps (see [`Unconverged`]).
     pub fn hit(&self, origin: Vector, direction: Vector, t_min: f64, t_max: f64) -> Option<Hit> {
         let ray = Ray { origin, direction };
         let hit = match self {

@@ -1,4 +1,5 @@
-//! Compares the prepass with exact hits: no ray may start behind the surface that it hits.
+//! Compares the raymarcher's prepass with exact hits. The prepass marches a cone for each block of pixels, and the block's rays
+//! start where the cone ended. No ray may start behind the surface that it hits.
 
 use glint_core::camera::View;
 use glint_core::field::Field as Scene;
@@ -8,24 +9,24 @@ use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint}
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::{Field, views};
 
-/// Error by truncation of a point and of the position of a face, in field units.
+/// Largest error by the truncation of a point and of a face's position, in field units (docs/formats.md).
 const STEPS: f64 = 2.0 / 4096.0;
 
 /// Result of comparing a picture's rays with and without a prepass.
 #[derive(Debug, Default)]
 struct Seen {
     hits: usize,
-    /// Rays that start farther along with the prepass than without it.
+    /// Number of rays that start farther along with the prepass than without it.
     helped: usize,
-    /// Largest distance by which a ray starts behind its surface, in field units.
+    /// Largest distance by which a ray starts behind the surface that it hits, in field units.
     behind: f64,
-    /// Rays that end differently with the prepass.
+    /// Number of rays whose kind of result (hit, miss or undecided) is different with the prepass.
     changed: usize,
     /// Mean number of evaluations per ray, first without and then with a prepass.
     cost: [f64; 2],
 }
 
-/// Compares the rays of a picture, one pixel in every `stride` by `stride` pixels.
+/// Compares the rays of a picture in one of every `stride` × `stride` pixels.
 fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     let field = Field::of(&Scene::parse(scene).expect("a field"));
     let size = (setup.width, setup.height);
@@ -69,7 +70,7 @@ fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     seen
 }
 
-/// The frame constants of a picture with a prepass.
+/// Returns the model's constants of a picture with a prepass.
 fn with_prepass(scene: &str, view: &View, size: (u32, u32), stereo: Option<Stereo>) -> FieldSetup {
     let scene = Scene::parse(scene).expect("a field");
     let options = FieldOptions {
@@ -94,8 +95,8 @@ fn no_ray_of_the_views_starts_behind_a_surface() {
     }
 }
 
-/// Draws frames of random cameras of any width, with one and two
-/// eyes, in every field: 39 frames, or as many as `GLINT_CONES` says.
+/// Draws frames of random cameras with any width of view, for one eye and for two
+/// eyes, in every kind of field. There are 39 frames, or as many as `GLINT_CONES` says.
 #[test]
 fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;

@@ -1,6 +1,7 @@
-//! Compares the two references of distance fields with each other: hits from geometry and hits by sphere tracing.
+//! Compares the two reference methods for hits of rays on distance fields with each other: hits computed from the geometry, and
+//! hits by sphere tracing.
 //!
-//! All rays come from fixed seeds, and a failure prints the ray. `--nocapture` shows the measured figures.
+//! All rays are random with fixed seeds, and a failure prints the ray. `--nocapture` shows the measured figures.
 
 use glint_reference::camera::{Ray, Size, Vector};
 use glint_reference::raymarch::metrics::{Outcome, accuracy, expected};
@@ -8,17 +9,18 @@ use glint_reference::raymarch::{Face, Field, Hit, Plane, Sphere, views};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Number of rays of each kind, for each field.
+/// Number of rays of each `Kind` that are compared in each field.
 const RAYS: usize = 10_000;
 
-/// Largest difference between the two hits of a ray, in world units. At a
-/// small angle to the surface, the distance that the trace leaves is added.
+/// Largest allowed distance between the two hits of a ray, in world units. For
+/// rays at a small angle to the surface it is larger: see `apart`.
 const TOLERANCE: f64 = 1e-6;
 
 /// Distance from the surface at which a trace ends, in world units.
 const TRACE: f64 = 1e-9;
 
-/// Tolerance at edges, in world units. The two results may differ if a ray that is moved by this much gives the other result.
+/// Tolerance at edges, in world units. The two methods may give different results for a ray if the geometric result of a ray
+/// that is moved by this much agrees with the trace.
 const BESIDE: f64 = 1e-6;
 
 fn ball(centre: Vector, radius: f64) -> Field {
@@ -29,7 +31,7 @@ fn boxed(field: Field) -> Box<Field> {
     Box::new(field)
 }
 
-/// A box whose corners are cut off by diagonal planes.
+/// Returns a box whose corners are cut off by diagonal planes.
 fn cut_box() -> Field {
     let planes = (0..6).map(|face| {
         let mut normal = [0.0; 3];
@@ -46,7 +48,7 @@ fn cut_box() -> Field {
     Field::Convex(planes.chain(diagonals).collect())
 }
 
-/// Name of each kind of field that has a geometric hit, the field, and the spacing of its faces or centres.
+/// Returns fields of all kinds whose hits are computed from geometry. Each has a name and the spacing of its faces or centres.
 fn fields() -> Vec<(String, Field, f64)> {
     let mut random = Pcg64Mcg::new(2);
     let mut fields: Vec<_> = (1..=6)
@@ -92,16 +94,17 @@ fn fields() -> Vec<(String, Field, f64)> {
     fields
 }
 
-/// How random rays are distributed.
+/// Distribution of random rays.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// Any origin near the field's origin, and any direction.
+    /// Any origin, and a direction towards a random point near the field's middle.
     Any,
     /// Any origin, and a direction along an axis.
     Parallel,
     /// Any origin, and a direction perpendicular to an axis.
     InPlane,
-    /// An origin close to multiples of the spacing, and a direction along an axis or nearly so.
+    /// An origin close to the planes of the field's faces (multiples of the field's spacing), and a direction along an axis or
+    /// nearly so.
     Beside,
     /// An origin in the sponge's large tunnel along y.
     Tunnel,
@@ -119,7 +122,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
     let mut numbers = |reach: f64| [0; 3].map(|_| random.random_range(-reach..reach));
     let mut origin = numbers(3.0);
     let mut direction = numbers(2.0);
-    // The offset is at least 1e-4, because closer to a wall a trace would need too many steps.
+    // The offset from a face is at least 1e-4, because closer to a face a trace would need too many steps.
     let offset = numbers(1e-3).map(|c| c + 1e-4f64.copysign(c));
     let axis = random.random_range(0..3);
     match kind {
@@ -133,7 +136,8 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
         Kind::Beside => {
             let tilt = [0.0, 1e-3, 0.1][random.random_range(0..3)];
             for i in 0..3 {
-                // Multiples of the spacing are counted from the corner of the sponge, because its origin is the middle of a cell.
+                // Multiples of the spacing are counted from the sponge's corner at −1, because the sponge's origin is the middle
+                // of a cell.
                 origin[i] = ((origin[i] + 1.0) / spacing).round() * spacing - 1.0 + offset[i];
                 if i != axis {
                     direction[i] *= tilt;
@@ -153,17 +157,18 @@ fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// Smallest parameter at which hits count, in lengths of the direction.
+/// Smallest parameter of a ray at which a hit counts.
 const NEAR: f64 = 0.01;
 
-/// Largest parameter at which hits count, in lengths of the direction.
+/// Largest parameter of a ray at which a hit counts.
 const FAR: f64 = 20.0;
 
 fn hit(field: &Field, ray: &Ray) -> Option<Hit> {
     field.hit(ray.origin, ray.direction, NEAR, FAR)
 }
 
-/// Distance between two hits of a ray, and the largest distance allowed, in world units.
+/// Returns the distance between two hits of a ray, and the largest allowed distance, in world units. A trace ends at a distance
+/// from the surface, so more is allowed for a ray at a small angle to the surface.
 fn apart(ray: &Ray, a: &Hit, b: &Hit) -> (f64, f64) {
     let speed = length(ray.direction);
     let cosine = dot(ray.direction, a.normal).abs() / speed;
@@ -243,7 +248,7 @@ fn hits_are_where_traces_end() {
     }
 }
 
-/// Unions with a fillet, and their names.
+/// Returns unions with a fillet, each with a name.
 fn smooth_unions() -> Vec<(&'static str, Field)> {
     let smooth = |k, a, b| Field::SmoothUnion {
         k,
@@ -279,7 +284,7 @@ fn smooth_unions() -> Vec<(&'static str, Field)> {
     ]
 }
 
-/// The first parameter from `from` at which a field's distance is zero, found by small steps and then by bisection.
+/// Finds the first parameter between `from` and `to` at which a field's distance is zero, by small steps and then by bisection.
 fn bisected(field: &Field, ray: &Ray, from: f64, to: f64) -> Option<f64> {
     let step = 1e-3 / length(ray.direction);
     let solid = |t| field.distance(ray.at(t)) <= 0.0;
@@ -323,7 +328,7 @@ fn smooth_unions_are_hit_where_their_distance_changes_its_sign() {
                     hits += 1;
                 }
                 (None, None) => {}
-                // The ray crosses the solid within less than one of the small steps, so they may miss it.
+                // The ray crosses a part of the solid that is shorter than a step of `bisected`, which may miss it.
                 (None, Some(hit)) => {
                     let cosine = dot(ray.direction, hit.normal) / length(ray.direction);
                     assert!(cosine.abs() < 0.01, "{}", context());

@@ -1,6 +1,6 @@
-//! Compares the firmware's orientation with the same method in f64, and both with the truth.
+//! Compares the attitude that the firmware computes with the same method in f64, and the two of them with the true attitude.
 //!
-//! With `GLINT_IMU=long` the long motions have their full duration: an hour each, and the soak test a day.
+//! With `GLINT_IMU=long`, long motions have their full duration of an hour each. The ignored soak test always runs for a day.
 
 use glint_core::calibration::Units;
 use glint_core::orientation;
@@ -12,7 +12,7 @@ use glint_reference::imu::motion::Motion;
 use glint_reference::imu::quaternion::Quaternion;
 use glint_reference::imu::sensor::Sensor;
 
-/// Duration of a motion in seconds: `whole` with `GLINT_IMU=long`, otherwise `part`.
+/// Returns the duration of a motion in seconds: `whole` with `GLINT_IMU=long`, otherwise `part`.
 fn seconds(whole: f64, part: f64) -> f64 {
     if std::env::var("GLINT_IMU").is_ok_and(|value| value == "long") {
         whole
@@ -52,7 +52,7 @@ fn the_firmware_is_its_method_in_f64() {
     assert!(error <= 0.002 && norm <= 2e-9, "{error:e} {norm:e}");
 }
 
-/// The error of the firmware's integration of this order against the same method in f64, in degrees.
+/// Measures the largest error of the firmware's integration of order `ORDER` against `method` in f64, in degrees.
 fn order_against_f64<const ORDER: u32>(method: Method) -> f64 {
     let sensor = Sensor::ideal(200.0);
     let rate = |gyro: [i16; 3]| gyro.map(|x| (f64::from(x) / sensor.gyro_lsb).to_radians());
@@ -98,12 +98,13 @@ fn the_method_is_as_near_to_the_truth_as_it_should_be() {
     let coning = method_error(Method::Cubic, CONING, 20.0, 200.0);
     println!("tumble {tumble:.1e}°, coning {coning:.1e}°");
     assert!(tumble <= 0.01 && coning <= 0.05, "{tumble:e} {coning:e}");
-    // Without the firmware's coning coefficient the error is more than five times as large.
+    // With the plain coefficient of the coning term, the error is more than five times as large as with the firmware's.
     let plain = method_error(Method::PlainCubic, CONING, 20.0, 200.0);
     assert!(plain > 5.0 * coning, "{plain:e} {coning:e}");
 }
 
-/// The cubic is of order 4 after its first three steps. The first two of them leave an error of order 3, which dominates here.
+/// Each method must have its known order. The cubic is of order 4 only after its first steps, in which it has too few samples.
+/// In the tumble, the errors of these first steps are of order 3 and dominate.
 #[test]
 fn orders_are_those_of_the_methods() {
     let tumble = Motion::Tumble(700.0);
@@ -129,7 +130,8 @@ fn orders_are_those_of_the_methods() {
     let observed = (slow / fast).log2();
     println!("plain cubic, coning: order {observed:.2}");
     assert!((observed - 4.0).abs() < 0.4, "{observed}");
-    // Adding rates to angles does not converge, because body rates are not the derivatives of yaw, pitch and roll.
+    // Adding rates to angles does not converge, because the rates about the body's axes are not the derivatives of yaw, pitch
+    // and roll.
     assert!(method_error(Method::Angles, Motion::Tumble(700.0), 20.0, 1000.0) > 10.0);
 }
 
@@ -159,7 +161,7 @@ fn yaw_stays_after_calibration() {
     assert!(calibrated(sensor, Motion::Hand).is_err());
 }
 
-/// After a rotation beyond the gyroscope's range, the tilt is restored but yaw is not, and no other state is damaged.
+/// After a rotation beyond the gyroscope's range, the accelerometer restores the tilt within ten seconds. It cannot restore yaw.
 #[test]
 fn saturation_costs_what_it_hides_and_no_more() {
     let sensor = Sensor::real(1000.0);
@@ -189,7 +191,7 @@ fn saturation_costs_what_it_hides_and_no_more() {
     assert!(at[0] > 30.0 && at[1] < 5.0, "{at:?}");
 }
 
-/// A day of the smallest rate, a day of a tumble, and a day of a fast spin.
+/// Runs the firmware for a day of rotation at the smallest rate, and for a day of rotation at a rate near the sensor's limit.
 #[test]
 #[ignore = "minutes: 86.4 million steps each"]
 fn a_day_does_not_wear_it_out() {

@@ -10,11 +10,11 @@ use glint_reference::raymarch::{Field, views};
 
 const SIZE: (u32, u32) = (320, 180);
 
-/// The errors and the cost of a compared picture.
+/// Errors and cost of a picture that was compared with the reference.
 struct Seen {
     name: String,
     found: Accuracy,
-    /// Mean number of evaluations per ray.
+    /// Mean number of evaluations of the field's distance per ray.
     cost: f64,
 }
 
@@ -51,7 +51,7 @@ impl Seen {
         self
     }
 
-    /// Checks that the median and the 99th percentile of the depth errors are at most these.
+    /// Checks that the depth's errors have at most this median and this 99th percentile, in world units.
     fn near(self, median: f64, p99: f64) -> Self {
         let depth = self.found.depth.expect("a hit");
         assert!(
@@ -76,7 +76,7 @@ impl Seen {
     }
 }
 
-/// The camera at `eye` that looks at `target`, with the half width of the views.
+/// Returns the camera at `eye` that looks at `target`, with the half width of the views.
 fn at(eye: Vector, target: Vector) -> Camera {
     views::camera(eye, target)
 }
@@ -95,7 +95,7 @@ fn the_deepest_sponge_is_where_it_is_and_its_smallest_faces_are_not_all_right() 
     for (name, eye, target) in views::views() {
         let seen = see(name, "menger:6", &at(eye, target));
         assert!(seen.found.iou >= 0.999, "{name}");
-        // A cell is 456 steps of a coordinate wide, and the threshold is 28 steps or more.
+        // A cell of the last level is only 456 steps of a coordinate wide, and the threshold of a hit is at least 28 steps.
         seen.near(2e-4, 1.6e-2).faced(0.07).decided(0).cheap(15.0);
     }
 }
@@ -121,7 +121,8 @@ fn other_fields_are_where_they_are() {
         .near(2e-3, 1.1e-2)
         .faced(0.0)
         .cheap(13.0);
-    // Towards the horizon, rays run along faces. Some of them are undecided, and some end at a face that the exact ray passes.
+    // Towards the horizon, rays run along faces. Some of these rays stay undecided, and some end at a face that the exact ray
+    // only passes.
     see("cubes:2,0.5")
         .masked(30)
         .decided(240)
@@ -138,7 +139,7 @@ fn other_fields_are_where_they_are() {
 
 #[test]
 fn a_camera_inside_the_solid_sees_it_at_the_near_plane() {
-    // The eye is in the middle of a cube at the sponge's corner, and then deep inside a box.
+    // In the first case the eye is in the middle of a small cube at the sponge's corner, in the second case deep inside a box.
     let corner = -80.0 / 81.0;
     let cases = [
         ("menger:4", [corner; 3], [corner, 1.0, corner]),
@@ -173,8 +174,8 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
 
 #[test]
 fn a_camera_just_beside_a_face_sees_it() {
-    // The eye is at 0.03 of a cell from the face. At a deeper sponge, an eye at the same part of a cell would be closer to
-    // the face than the smallest near plane.
+    // The eye is 0.03 of a cell's side away from the face. In front of a deeper sponge, this fraction of a cell would be less
+    // than the distance of the smallest near plane.
     let eye = [0.75, -1.0 - 0.03 * 2.0 / 3.0, 0.75];
     see("macro", "menger:1", &at(eye, [0.75, 0.0, 0.765_625]))
         .masked(0)
@@ -189,7 +190,8 @@ fn a_camera_just_beside_a_face_sees_it() {
         .near(2e-4, 4e-3)
         .faced(1e-3)
         .cheap(2.5);
-    // The eye is level with the ceiling and looks to the horizon. A third of the rays are inside the ceiling at the near plane.
+    // The eye is just below the ceiling and looks to the horizon. A third
+    // of the rays are inside the ceiling at the near plane already.
     let under = at([0.0, 0.0, 0.998_046_875], [4.0, 3.0, 0.998_046_875]);
     see("grazing", "planes:1", &under)
         .masked(30)
@@ -224,15 +226,17 @@ fn lenses_may_be_long_and_wide() {
 fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
-    // The line of sight is along all walls at once. So the picture shows mostly the depths of tunnels, which are only a few
-    // thresholds wide at this distance. Rays that should pass through a tunnel end at its wall.
+    // The camera looks along the walls of the sponge's tunnels, so the picture shows mostly the depths of tunnels. The threshold
+    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. So many rays that should pass through
+    // a tunnel end at its wall.
     let seen = see("far away", "menger:4", &camera);
     assert!(seen.found.iou >= 0.98);
     seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);
 }
 
-/// Marches rays exactly along an axis, which no pixel has. Beside a wall, a step is as long as the distance to the wall, and
-/// the threshold doubles every 64 steps. So a ray within an eighth of a cell of a wall ends there. No other error may occur.
+/// Marches rays exactly along an axis, a direction that no pixel's ray has. Next to a wall, each step is only as long as the
+/// distance to the wall, and the threshold of a hit doubles every 64 steps. So a ray may end at a wall that is nearer than an
+/// eighth of a cell. No other error may occur.
 #[test]
 fn rays_along_the_axes_end_at_the_walls() {
     let sponge = Field::Menger { depth: 4 };
@@ -321,7 +325,7 @@ fn a_surface_at_the_end_of_a_ray_is_seen_and_none_behind_it() {
     for (x, y) in pixels() {
         let ray = free.ray(0, x, y);
         let (end, found) = (free.march(&ray), short.march(&ray));
-        // For a hit, the far limit is compared with the end of the last step, t + gap.
+        // A ray hits only if the end of its last step, t + gap, is not beyond the far limit.
         let reach = end.t + end.gap;
         if reach <= options.tuning.far {
             assert_eq!(found, end, "{x} {y}");

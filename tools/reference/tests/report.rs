@@ -1,5 +1,5 @@
-//! Tests of the report. A quick run writes its files. The committed tables agree with today's code, as far as this is cheap
-//! to check. The committed pages are those that the committed tables give.
+//! Tests of the report. They check that a quick run writes its files, that the committed tables agree with today's code (as far
+//! as this is cheap to check), and that the committed pages are those that are made from the committed tables.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ use glint_reference::sine::sweep::sweep;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
-/// Lines of the console as the firmware prints them. With this transcript no board is needed.
+/// Transcript of the console, in the form in which the firmware prints it. With a transcript, the report needs no board.
 const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
 
 fn folder(name: &str) -> PathBuf {
@@ -88,12 +88,12 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
     );
 }
 
-/// The rows of a committed table in docs/report.
+/// Reads the rows of a committed table in docs/report.
 fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
     read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
 }
 
-/// Checks that a committed figure is equal to today's, to a relative `tolerance`.
+/// Checks that the figure `committed` is equal to the figure `now`, up to a relative error of `tolerance`.
 fn assert_close(committed: f64, now: f64, tolerance: f64, what: &str) {
     assert!(
         (committed - now).abs() <= tolerance * now,
@@ -155,8 +155,8 @@ fn the_committed_errors_of_sines_hold() {
     assert!(recomputed >= 2);
 }
 
-/// Counts the evaluations of the sponge's small frames again. The cycles
-/// of these frames need the whole SoC and are not measured again.
+/// Counts the distance evaluations of the sponge's small frames again. The cycles of
+/// these frames are not measured again, because that needs the whole SoC.
 #[test]
 fn the_committed_frames_a_second_are_of_these_frames() {
     let rows: Vec<rates::Row> = committed("raymarch-rates.csv");
@@ -190,7 +190,7 @@ fn the_committed_frames_a_second_are_of_these_frames() {
     assert_eq!(counted, 4 * views::path().len());
 }
 
-/// Draws the views with Glint's configuration on the verilated raymarcher again, and compares the cycles.
+/// Draws the views again with Glint's configuration on the verilated raymarcher, and compares the cycles.
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
@@ -205,7 +205,7 @@ fn the_committed_cycles_of_pictures_hold() {
     let shipped = rows.iter().find(|row| row.shipped);
     let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // The first lane to get a ray depends on the picture before, which changes the cycles of a picture by one.
+    // The picture before decides which lane gets the first ray of a picture. This can change the cycles of the picture by one.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"

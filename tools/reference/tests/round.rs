@@ -7,8 +7,8 @@ use glint_model::raymarch::{FieldOptions, Lights, Palette, paint};
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::raymarched::{Measured, Subject, rounds};
 
-/// In bounded fields, normals must be within 0.3° and depths within 3e-3. Lattices have larger tolerances, because their
-/// spheres at the horizon are smaller than a pixel.
+/// In bounded fields, the 99th percentiles of the errors must be at most 0.3° for normals and 3e-3 world units for depths.
+/// Lattices have larger tolerances, because their spheres at the horizon are smaller than a pixel.
 #[test]
 fn round_fields_are_where_they_are() {
     for subject in rounds((320, 180)) {
@@ -21,14 +21,14 @@ fn round_fields_are_where_they_are() {
         let horizon = subject.scene.starts_with("lattice");
         let (most, angle) = if horizon { (6e-3, 0.7) } else { (3e-3, 0.3) };
         assert!(depth.median <= 3e-4 && depth.p99 <= most);
-        // Some views show only faces, so they have no normals of round surfaces.
+        // Some views show only flat faces, so there are no normals of round surfaces to compare.
         let normal = found.normal.map_or(0.0, |normal| normal.p99);
         assert!(normal <= angle, "{normal}");
     }
 }
 
-/// Checks each kind of bounded field. Unbounded fields are skipped: they have
-/// small faces and spheres at the horizon, and rays that run along faces.
+/// Checks each kind of bounded field. Unbounded fields are skipped, because their faces and
+/// spheres at the horizon are small, and because rays towards the horizon run along faces.
 #[test]
 fn every_kind_of_field_is_where_it_is() {
     for scene in Primitive::EXAMPLES {
@@ -57,7 +57,8 @@ fn every_kind_of_field_is_where_it_is() {
     }
 }
 
-/// Compares the channels of a lit sphere with max(0, n·l), computed from the exact normals n and the light's direction l.
+/// Compares the colours of a lit sphere with the material times the light: the sum of the ambient light and, for each light, its
+/// colour times max(0, n·l). Here n is the exact normal, and l the direction to the light.
 #[test]
 fn spheres_are_lit_as_they_should_be() {
     let light = |text| Light::parse(text).expect("a light");

@@ -1,4 +1,4 @@
-//! `report`: measures the error of Glint's kernels against their run time and writes the pages of `docs/report`.
+//! `report`: measures the errors and run times of Glint's computations and writes the pages of `docs/report`.
 
 #![forbid(unsafe_code)]
 
@@ -74,7 +74,7 @@ enum Page {
     },
 }
 
-/// Options of a page with cycles of kernels on the soft core.
+/// Options of a page that contains cycles of kernels on the soft core.
 #[derive(Args)]
 struct Bench {
     #[command(flatten)]
@@ -94,7 +94,7 @@ struct Output {
 }
 
 impl Output {
-    /// The folder for the results, which is created if it is missing. `partial` selects the default folder of a quick run.
+    /// Returns the folder for the results, and creates it if it is missing. `partial` selects the default folder of a quick run.
     fn folder(&self, partial: bool) -> Result<PathBuf> {
         let default = if partial {
             "target/report"
@@ -107,7 +107,7 @@ impl Output {
         Ok(folder)
     }
 
-    /// Prints rows as JSON or as a table, which `table` makes of them.
+    /// Prints rows as JSON or as a table. `table` formats the rows as a table.
     fn print<T: Serialize>(&self, rows: &[T], table: fn(&[T]) -> String) -> Result<()> {
         if self.json {
             println!("{}", serde_json::to_string_pretty(rows)?);

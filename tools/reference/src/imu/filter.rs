@@ -1,4 +1,4 @@
-//! Attitude filters that correct the tilt by the accelerometer, in f64.
+//! Attitude filters in f64: they integrate the gyroscope's rates and correct the tilt by the accelerometer.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -8,34 +8,36 @@ use super::method::{Integrator, Method};
 use super::quaternion::Quaternion;
 use crate::camera::{Vector, cross, dot};
 
-/// How the accelerometer corrects the attitude. Times are in seconds.
+/// The method by which the accelerometer corrects the attitude. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
     /// The accelerometer is ignored.
     None,
-    /// Complementary filter with this time constant: after each step, pitch and roll of the attitude move towards those of
-    /// the accelerometer's reading, by the exact gain of an exponential.
+    /// Complementary filter with this time constant τ: after each step, pitch and roll of the attitude move towards those of
+    /// the accelerometer's reading, by the fraction 1 − exp(−dt/τ) of the difference.
     Complementary(f64),
-    /// Mahony's filter: the deviation of the normalised reading from the attitude's up direction corrects the rate and the bias.
+    /// Mahony's filter: the deviation of the accelerometer's normalised reading from the attitude's up direction corrects the
+    /// gyroscope's rate (proportional term) and bias (integral term).
     Mahony {
         /// Proportional gain in 1/s.
         proportional: f64,
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// Laidig and Seel's VQF without its bias estimate, with this time constant: the readings are rotated to world axes by the
-    /// gyroscope's attitude and pass a second-order low pass; the attitude is turned so that the filtered reading points upwards.
+    /// The filter VQF of Laidig and Seel without its estimate of the bias, with this time constant: the gyroscope's attitude
+    /// rotates the accelerometer's readings to world axes, where they pass a second-order low pass. Then the attitude is
+    /// turned so that the filtered reading points upwards.
     LowPass(f64),
     /// The firmware's filter, with this time constant.
     Tilt(f64),
-    /// The firmware's filter, changed to ignore readings whose strength is outside a range.
+    /// The firmware's filter, changed to ignore readings of the accelerometer whose strength is outside a range.
     Gated {
         /// Time constant in seconds.
         tau: f64,
-        /// Lowest and highest strength of a reading that is used, in g.
+        /// Lowest and highest strength (length of the vector) of a reading that is used, in g.
         range: [f64; 2],
     },
-    /// The firmware's filter with this time constant τ and the explicit gain dt/τ instead of the exact one.
+    /// The firmware's filter with this time constant τ, but with the gain dt/τ per step instead of 1 − exp(−dt/τ).
     Explicit(f64),
 }
 
@@ -60,29 +62,32 @@ impl Filter {
     }
 }
 
-/// Estimates an attitude from samples by an integration method and a filter.
+/// Estimates an attitude from samples of a gyroscope and an accelerometer, by an integration method and a filter.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     filter: Filter,
     gyro_lsb: f64,
     accel_lsb: f64,
-    /// Bias that is subtracted from the gyroscope's rates, in rad/s.
+    /// Assumed bias, which is subtracted from the gyroscope's rates, in rad/s.
     bias: Vector,
     integrator: Integrator,
     last: Option<u32>,
-    /// First attitude of a filter that ignores the accelerometer.
+    /// Attitude at the first sample, for a filter that ignores the accelerometer.
     start: Quaternion,
+    /// Time constant in use, in seconds: it grows from a small value to the filter's own, so that the tilt settles quickly.
     age: f64,
-    /// Correction by the last reading: half an angle about each of the body's axes, which the next step applies.
+    /// Correction by the last reading of the accelerometer, which the next step applies: half the angle of the rotation about
+    /// each of the body's axes, in radians.
     correction: Vector,
-    /// Low passes of [`Filter::LowPass`], one for each world axis.
+    /// The low passes of [`Filter::LowPass`], one for each world axis.
     low_pass: [Butterworth; 3],
-    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's own attitude to the corrected world axes.
+    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's attitude, which drift, to the corrected
+    /// world axes.
     upright: Quaternion,
 }
 
 impl Estimator {
-    /// An estimator that has not seen a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
+    /// Makes an estimator that has not seen a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -104,17 +109,17 @@ impl Estimator {
         self.bias = lsb.map(|x| (x / self.gyro_lsb).to_radians());
     }
 
-    /// Sets the first attitude for a filter that ignores the accelerometer (default: identity).
+    /// Sets the attitude at the first sample, for a filter that ignores the accelerometer. The default is the identity.
     pub fn begin_at(&mut self, attitude: Quaternion) {
         self.start = attitude;
     }
 
-    /// The attitude at the last sample.
+    /// Returns the attitude at the last sample.
     pub fn attitude(&self) -> Quaternion {
         self.upright.times(self.integrator.attitude())
     }
 
-    /// Takes a sample. Ignores it if its time is not later than that of the last sample.
+    /// Takes a sample into account, unless its time is not later than that of the last sample.
     pub fn on_sample(&mut self, sample: &Sample) {
         let rate = [0, 1, 2]
             .map(|i| (f64::from(sample.gyro[i]) / self.gyro_lsb).to_radians() - self.bias[i]);
@@ -214,7 +219,8 @@ impl Estimator {
         }
     }
 
-    /// The exact gain of a step of `step` seconds. During the first `tau` seconds it is close to the gain of a running mean.
+    /// Returns the fraction of the tilt error that a step of `step` seconds corrects, for the time constant `tau`. During about
+    /// the first `tau` seconds, the time constant in use is shorter, so that the filter acts nearly as a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -223,7 +229,8 @@ impl Estimator {
     }
 }
 
-/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds it returns the running mean instead.
+/// A second-order Butterworth low pass by the bilinear transform. During the first τ seconds, it returns the mean of all inputs
+/// so far instead.
 #[derive(Clone, Copy, Debug, Default)]
 struct Butterworth {
     age: f64,
@@ -244,7 +251,7 @@ impl Butterworth {
             self.sum += x;
             self.count += 1.0;
             let mean = self.sum / self.count;
-            // Sets the state that the low pass would have after a long constant input of `mean`.
+            // The state that the low pass would have after a long constant input of `mean`.
             self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
             return mean;
         }

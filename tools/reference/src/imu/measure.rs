@@ -1,4 +1,4 @@
-//! Measurements of the attitude that the tests and the report share.
+//! Measurements of the attitude's errors, which the tests and the report share.
 
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
@@ -16,7 +16,8 @@ use crate::errors::Errors;
 /// Time constant of the firmware's tilt correction, in seconds.
 pub const TAU: f64 = TIME_CONSTANT as f64 * 1e-6;
 
-/// The firmware's tracker for a sensor. It knows the sensor's bias, rounded to 1/256 LSB.
+/// Makes the firmware's attitude tracker for a sensor, with the sensor's true bias rounded to 1/256 LSB. `tilt` says whether
+/// it uses the accelerometer.
 ///
 /// # Panics
 /// When the firmware does not support the sensor's units.
@@ -28,23 +29,25 @@ pub fn tracker(sensor: &Sensor, tilt: bool) -> Tracker {
     tracker
 }
 
-/// The sensor's bias in 1/256 LSB.
+/// Returns the sensor's bias in units of 1/256 LSB.
 fn bias(sensor: &Sensor) -> [f64; 3] {
     sensor
         .bias
         .map(|bias| (bias * sensor.gyro_lsb * 256.0).round())
 }
 
-/// Largest errors of the firmware over a motion.
+/// Largest errors of the firmware's attitude during a motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Angle between the firmware's attitude and that of the same method in f64 on the same samples, in degrees.
+    /// Angle in degrees between the firmware's attitude and the attitude
+    /// that the same method in f64 computes from the same samples.
     pub angle: f64,
-    /// Difference of the length of the firmware's quaternion from 1.
+    /// Magnitude of the difference between the length of the firmware's quaternion and 1.
     pub norm: f64,
 }
 
-/// Runs the firmware beside the same method in f64 on the same samples. `tilt` says whether both use the accelerometer.
+/// Compares the firmware's attitude with the same method in f64, both run on the same samples of a motion of this many
+/// seconds. `tilt` says whether the accelerometer is used.
 pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> Largest {
     let mut tracker = tracker(&sensor, tilt);
     let filter = if tilt {
@@ -66,8 +69,8 @@ pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> 
     largest
 }
 
-/// The error in degrees of a method's attitude at the end of a motion.
-/// The method takes exact, unrounded rates `rate` times a second.
+/// Computes the error in degrees of a method's attitude after `seconds` seconds of a motion. The
+/// method receives the exact rate of the motion, without noise or rounding, `rate` times a second.
 pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> f64 {
     let start = motion.attitude(0.0).unwrap_or(Quaternion::IDENTITY);
     let mut integrator = Integrator::new(method, start, motion.rate(0.0));
@@ -82,10 +85,11 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
 
 /// Assumed remaining error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
-/// Time in seconds from which errors of the inclination are counted.
+/// Start of the time in which errors of the inclination are counted, in seconds.
 const SETTLED: f64 = 10.0;
 
-/// Errors of the firmware's inclination against the truth, in degrees, when its bias is wrong by [`LEFT_BIAS`].
+/// Computes the errors of the firmware's inclination against the true one, in degrees, when the bias that the firmware assumes
+/// is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.
@@ -106,7 +110,8 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     errors
 }
 
-/// Errors of the inclination by a filter in f64 against the truth, in degrees, when its bias is wrong by [`LEFT_BIAS`].
+/// Computes the errors of a filter's inclination, in f64, against the true one, in degrees, when the bias that the filter
+/// assumes is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.
@@ -145,7 +150,8 @@ pub fn calibrated(sensor: Sensor, motion: Motion) -> Result<Report, SampleError>
     unreachable!("a calibration ends after the requested number of samples");
 }
 
-/// Drift of yaw in °/h at rest after the calibration in `report`. With `follow` the firmware tracks the bias, otherwise keeps it.
+/// Computes the drift of the firmware's yaw at rest, in °/h, after the calibration in `report`. If `follow` is set, the firmware
+/// adapts its bias while the sensor rests; otherwise it keeps the calibrated bias.
 pub fn yaw_drift(sensor: Sensor, report: &Report, hours: f64, follow: bool) -> f64 {
     let mut tracker = tracker(&sensor, true);
     tracker.set_bias(report.bias);

@@ -9,24 +9,24 @@ use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
 pub enum Method {
     /// Adds the rates about the body's axes directly to yaw, pitch and roll.
     Angles,
-    /// q + q·ω·dt/2, normalised; ω is the newest sample.
+    /// Replaces the attitude q by q + q·ω·dt/2, normalised. The rate ω is the newest sample.
     FirstOrder,
-    /// Rotation by the newest sample, through the quaternion exponential.
+    /// Rotates by the newest sample's rate times dt, through the quaternion exponential.
     Newest,
-    /// Rotation by the mean of the last two samples, through the quaternion exponential.
+    /// Rotates by the mean rate of the last two samples times dt, through the quaternion exponential.
     Trapezoid,
-    /// The trapezoid with the coning term of a rate that is linear between the two samples.
+    /// As `Trapezoid`, with a coning term: the effect of a rotation axis that turns during the step, for a rate linear in time.
     Coning,
-    /// Rotation by the parabola through the last three samples, with its coning term.
+    /// Integrates the parabola through the last three samples, with a coning term.
     Parabola,
-    /// Rotation by the cubic through the last four samples, with the firmware's coning coefficient.
+    /// Integrates the cubic through the last four samples, with the coning term of the firmware.
     Cubic,
-    /// The firmware's cubic with the coning term that follows from the cubic itself.
+    /// As `Cubic`, but with the coning term that follows from the cubic.
     PlainCubic,
 }
 
 impl Method {
-    /// All methods, in the order of their cost, the cheapest first.
+    /// All methods in the order of their cost, the cheapest first.
     pub const ALL: [Self; 8] = [
         Self::Angles,
         Self::FirstOrder,
@@ -72,7 +72,7 @@ fn combine(a: Vector, b: Vector, factor: f64) -> Vector {
 }
 
 impl Integrator {
-    /// An integrator that starts at an attitude and a rate, in rad/s.
+    /// Makes an integrator that starts at an attitude and at a rate in rad/s.
     pub fn new(method: Method, attitude: Quaternion, rate: Vector) -> Self {
         Self {
             method,
@@ -86,7 +86,7 @@ impl Integrator {
         }
     }
 
-    /// Restarts the interpolation at a rate, and keeps the attitude.
+    /// Restarts the interpolation of the rate at `rate`, as if no earlier sample existed. The attitude stays.
     pub fn restart(&mut self, rate: Vector) {
         self.last = rate;
         self.steps = 0;
@@ -97,23 +97,24 @@ impl Integrator {
         self.method
     }
 
-    /// Replaces the attitude and continues from it.
+    /// Replaces the attitude, from which the integration continues.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude;
         self.angles = attitude.angles();
     }
 
-    /// The current attitude.
+    /// Returns the current attitude.
     pub fn attitude(&self) -> Quaternion {
         self.attitude
     }
 
-    /// Takes the rate that was measured `step` seconds after the previous one, and turns the attitude.
+    /// Turns the attitude by the rotation during the last `step` seconds. `rate` was measured at their end, in rad/s.
     pub fn advance(&mut self, rate: Vector, step: f64) {
         self.advance_corrected(rate, step, [0.0; 3]);
     }
 
-    /// As [`Self::advance`], with an additional rotation by `correction`: half an angle about each of the body's axes.
+    /// As [`Self::advance`], with an additional small rotation. `correction` is half its angle about each of the body's axes,
+    /// in radians. `Method::Angles` and `Method::FirstOrder` ignore it.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {
@@ -134,9 +135,9 @@ impl Integrator {
         self.last = rate;
     }
 
-    /// The rotation vector of a step of `step` seconds that ends at `rate`.
+    /// Computes the rotation vector of a step of `step` seconds, at the end of which the rate is `rate`.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
-        // The firmware's times are whole microseconds, so steps that differ by less than a nanosecond count as equal.
+        // The firmware compares whole microseconds. Here, steps that differ by less than a nanosecond count as equal.
         let within = |longest: f64| step <= longest + 1e-9;
         let curved = within(f64::from(LONGEST_CURVE) * 1e-6)
             && (self.steps == 0 || within(f64::from(MOST_STRETCH) * self.ages[0]));

@@ -9,7 +9,7 @@ use crate::camera::Vector;
 /// The standard acceleration of gravity, in m/s².
 pub const GRAVITY: f64 = 9.806_65;
 
-/// The function a·sin(τ·f·t + p) as its amplitude a, frequency f in Hz and phase p in radians; τ is 2π.
+/// Amplitude a, frequency f in Hz and phase p in radians of the function a·sin(2π·f·t + p) of the time t.
 type Wave = [f64; 3];
 
 fn value(waves: &[Wave], t: f64) -> f64 {
@@ -33,7 +33,7 @@ pub enum Motion {
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),
-    /// Rotation about all axes at rates up to this one, in °/s. Its attitude has no closed form.
+    /// Rotation about all axes at once, at rates of up to this many °/s. The attitude has no closed form.
     Tumble(f64),
     /// The body's z axis moves around a cone.
     Coning {
@@ -53,8 +53,8 @@ pub enum Motion {
     Hand,
     /// Hand motion about a wrist 10 cm away, mostly up and down.
     Nod,
-    /// A walk: accelerations of ±3 m/s² up and down at 2 Hz, of ±1.5 m/s²
-    /// fore and aft, and of 10 m/s² upwards for 50 ms with every step.
+    /// Motion of a walking person: accelerations of ±3 m/s² up and down and of ±1.5 m/s²
+    /// fore and aft, both at 2 Hz, and of 10 m/s² upwards for 50 ms at every footstep.
     Walk,
 }
 
@@ -69,7 +69,7 @@ const WALK: [&[Wave]; 3] = [&[[0.3, 0.1, 0.0]], &[[0.05, 2.0, 0.4]], &[[0.07, 1.
 const ARM: Vector = [0.1, 0.0, 0.0];
 
 impl Motion {
-    /// The rate about the body's axes at time `t`, in rad/s.
+    /// Returns the rate about the body's axes at time `t`, in rad/s.
     pub fn rate(self, t: f64) -> Vector {
         match self {
             Self::Rest => [0.0; 3],
@@ -110,7 +110,7 @@ impl Motion {
         }
     }
 
-    /// Yaw, pitch and roll as sums of waves, for motions that are defined by them.
+    /// Returns yaw, pitch and roll as sums of waves, for the motions that are defined by these sums.
     fn waves(self) -> [&'static [Wave]; 3] {
         match self {
             Self::Hand => HAND,
@@ -120,7 +120,7 @@ impl Motion {
         }
     }
 
-    /// The attitude at time `t`, for motions that have one in closed form.
+    /// Returns the attitude at time `t`, for the motions whose attitude has a closed form.
     pub fn attitude(self, t: f64) -> Option<Quaternion> {
         match self {
             Self::Rest => Some(Quaternion::IDENTITY),
@@ -142,8 +142,8 @@ impl Motion {
         }
     }
 
-    /// The attitude after `seconds`: [`Self::attitude`] if there is a closed form,
-    /// otherwise integrated from the identity with 16 · `rate` steps a second.
+    /// Returns the attitude after `seconds` seconds. It is [`Self::attitude`] if there is a
+    /// closed form, otherwise it is integrated from the identity with 16 · `rate` steps a second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);
@@ -157,8 +157,8 @@ impl Motion {
         })
     }
 
-    /// The reading of an accelerometer along the body's axes at time `t`, in g. A motion without a position gives gravity
-    /// alone, and a motion without an attitude in closed form gives gravity along z.
+    /// Returns the exact reading of an accelerometer along the body's axes at time `t`, in g. In a pure rotation the reading is
+    /// gravity alone, and without a closed form of the attitude, it is gravity along the body's z axis.
     pub fn force(self, t: f64) -> Vector {
         let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
         let [x, y, z] = self.acceleration(t);
@@ -168,11 +168,11 @@ impl Motion {
             .map(|x| x / GRAVITY)
     }
 
-    /// The acceleration of the sensor in world axes at time `t`, in m/s².
+    /// Returns the acceleration of the sensor along the world's axes at time `t`, in m/s².
     fn acceleration(self, t: f64) -> Vector {
         match self {
             Self::Hand | Self::Nod => {
-                // The error of this second difference, about 1e-6 m/s², is negligible.
+                // The second derivative of the position as a difference quotient, whose error of about 1e-6 m/s² is negligible.
                 let step = 1e-3;
                 let [a, b, c] = [t - step, t, t + step].map(|t| {
                     let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);

@@ -15,10 +15,10 @@ impl From<orientation::Quaternion> for Quaternion {
 }
 
 impl Quaternion {
-    /// The rotation by no angle.
+    /// The rotation by an angle of zero.
     pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
-    /// The rotation whose rotation vector is twice `half`, in radians (the quaternion exponential of `half`).
+    /// Returns the quaternion exponential of `half`: the rotation whose rotation vector is twice `half`, in radians.
     pub fn exp(half: Vector) -> Self {
         let angle = dot(half, half).sqrt();
         // Below 1e-8 the sine and the angle are equal in f64.
@@ -31,7 +31,8 @@ impl Quaternion {
         Self([angle.cos(), x, y, z])
     }
 
-    /// The rotation by yaw about z, then pitch about the new y, then roll about the new x, in radians.
+    /// Returns the rotation by yaw about z, then by pitch about the turned y axis, then by roll about the turned x axis. The
+    /// angles are in radians.
     pub fn of_angles([yaw, pitch, roll]: Vector) -> Self {
         let about = |axis: usize, angle: f64| {
             let mut half = [0.0; 3];
@@ -41,7 +42,7 @@ impl Quaternion {
         about(2, yaw).times(about(1, pitch)).times(about(0, roll))
     }
 
-    /// The product of two rotations: first `other`, then this one.
+    /// Returns the product of two quaternions: the rotation `other` followed by this rotation.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let ([aw, ax, ay, az], [bw, bx, by, bz]) = (self.0, other.0);
@@ -53,7 +54,7 @@ impl Quaternion {
         ])
     }
 
-    /// The inverse of this quaternion, which has length 1.
+    /// Returns the inverse of this quaternion, which must have length 1.
     #[must_use]
     pub fn inverse(self) -> Self {
         let [w, x, y, z] = self.0;
@@ -80,25 +81,25 @@ impl Quaternion {
         [0, 1, 2].map(|i| v[i] + w * twice[i] + again[i])
     }
 
-    /// The world's z axis in coordinates of the body.
+    /// Returns the world's z axis in coordinates of the body.
     pub fn up(self) -> Vector {
         self.inverse().rotate([0.0, 0.0, 1.0])
     }
 
-    /// The angle between two attitudes, in degrees.
+    /// Returns the angle of the rotation between two attitudes, in degrees.
     pub fn angle_to(self, other: Self) -> f64 {
         let [w, x, y, z] = self.inverse().times(other).0;
         2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
     }
 
-    /// The angle between the up directions of two attitudes, in degrees; yaw does not count.
+    /// Returns the angle between the up directions of two attitudes, in degrees. It does not depend on their yaw.
     pub fn inclination_to(self, other: Self) -> f64 {
         let (a, b) = (self.up(), other.up());
         let sine = cross(a, b);
         dot(sine, sine).sqrt().atan2(dot(a, b)).to_degrees()
     }
 
-    /// Yaw, pitch and roll in radians; the inverse of [`Self::of_angles`].
+    /// Returns yaw, pitch and roll in radians: the inverse function of [`Self::of_angles`].
     pub fn angles(self) -> Vector {
         let [w, x, y, z] = self.0;
         let level = [w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z)];

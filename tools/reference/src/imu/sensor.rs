@@ -1,4 +1,4 @@
-//! Sensors that turn a motion into samples.
+//! Simulated sensors, which turn a motion into samples.
 
 use glint_core::orientation::Sample;
 use rand::{Rng, RngExt, SeedableRng};
@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use super::motion::Motion;
 use crate::camera::Vector;
 
-/// Properties and errors of a gyroscope and an accelerometer.
+/// Properties and errors of a simulated gyroscope and accelerometer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensor {
     /// Counts (LSB) of the gyroscope per °/s.
@@ -20,18 +20,19 @@ pub struct Sensor {
     pub noise: f64,
     /// Standard deviation of the noise in each sample of the accelerometer, in g.
     pub accel_noise: f64,
-    /// Relative error of the gyroscope's scale: a fraction of the rate.
+    /// Relative error of the gyroscope's scale, as a fraction of the rate.
     pub scale_error: f64,
     /// Samples per second.
     pub rate: f64,
-    /// Largest deviation of a sample's time from the even grid, as a fraction of the period.
+    /// Largest deviation of a sample's time from the evenly spaced times, as a fraction of the sampling period.
     pub jitter: f64,
     /// Fraction of the samples that are lost.
     pub lost: f64,
 }
 
 impl Sensor {
-    /// A sensor without errors except the rounding to counts, with ranges of ±2000 °/s and ±8 g.
+    /// Makes a sensor with ranges of ±2000 °/s and ±8 g, whose only error
+    /// is the rounding to counts. It takes `rate` samples a second.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,
@@ -46,7 +47,7 @@ impl Sensor {
         }
     }
 
-    /// A sensor with the noise and bias of a real sensor whose samples were logged.
+    /// Makes a sensor with the noise and the bias of a real sensor, as found in its logged samples.
     pub fn real(rate: f64) -> Self {
         Self {
             bias: [4.5, 0.05, 1.1],
@@ -56,7 +57,8 @@ impl Sensor {
         }
     }
 
-    /// The samples of a motion: `count`, minus the lost ones. The first and the last are never lost and have no jitter.
+    /// Returns the samples of a motion. There are `count` of them, minus the lost ones. The first sample and the last sample
+    /// are never lost and have no jitter. `seed` starts the random numbers.
     pub fn samples(self, motion: Motion, count: u64, seed: u64) -> impl Iterator<Item = Sample> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let period = 1e6 / self.rate;
@@ -68,7 +70,7 @@ impl Sensor {
                 0.0
             };
             let lost = uniform(&mut random) < self.lost && inner;
-            // Time stamps are whole microseconds, and the sample is taken exactly at its time stamp.
+            // Time stamps are whole microseconds, and the motion is sampled exactly at the rounded time stamp.
             let t_us = ((i as f64 + jitter) * period).round();
             let t = t_us * 1e-6;
             let (rate, force) = (motion.rate(t), motion.force(t));
@@ -89,7 +91,7 @@ impl Sensor {
     }
 }
 
-/// Rounds to the nearest count, and saturates like the sensor.
+/// Rounds to the nearest count. A value beyond the range of i16 saturates, as in the sensor.
 fn counts(x: f64) -> i16 {
     x.round() as i16
 }
@@ -98,7 +100,7 @@ fn uniform(random: &mut impl Rng) -> f64 {
     random.random()
 }
 
-/// A random number of a normal distribution with mean 0 and this standard deviation.
+/// Draws a random number from the normal distribution with mean 0 and the standard deviation `deviation`.
 fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     if deviation == 0.0 {
         0.0
@@ -107,7 +109,7 @@ fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
     }
 }
 
-/// A random number of the standard normal distribution, by the method of Box and Muller.
+/// Draws a random number from the standard normal distribution, by the method of Box and Muller.
 fn normal(random: &mut impl Rng) -> f64 {
     let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
     radius * (std::f64::consts::TAU * uniform(random)).cos()

@@ -1,17 +1,18 @@
-//! Signed distances of fields: negative inside a solid; outside, never larger than the true distance to the surface.
+//! Signed distances of points from solids. A signed distance is negative inside the solid, and outside it is not larger than
+//! the true distance to the surface.
 //!
-//! Distances to flat fields are in the maximum norm, distances to round fields in the Euclidean
-//! norm. From one point to another a field's distance changes by at most the Euclidean length
-//! of the way, so a ball about a point whose radius is the point's distance is empty.
+//! Distances from flat solids are in the maximum norm, distances from round solids in the Euclidean norm. Between two points,
+//! the signed distance differs by at most the Euclidean distance of the points. So the ball about a point, with the point's
+//! signed distance as radius, contains no part of the solid.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};
 
 impl Field {
-    /// The signed distance of a point, in world units.
+    /// Returns the signed distance of the point `p` from the solid, in world units.
     ///
-    /// For [`Field::SmoothUnion`] it is min(a, b) − h²k/4, with h = max(k
-    /// − |a − b|, 0)/k and the distances a and b to the two members.
+    /// For [`Field::SmoothUnion`] it is min(a, b) − h²k/4, with h = max(k − |a − b|, 0)/k and the signed distances a and b of
+    /// the two members.
     pub fn distance(&self, p: Vector) -> f64 {
         match self {
             Self::Menger { depth } => {
@@ -37,40 +38,43 @@ impl Field {
 }
 
 impl Plane {
-    /// The distance of a point to the plane in the maximum norm. Within a cube of half side
-    /// r about a point, the scalar product with the normal changes by up to r times the sum
-    /// of the magnitudes of the normal's components. So the distance is divided by that sum.
+    /// Returns the signed distance of a point from the plane, in the maximum norm: the scalar product minus the offset, divided
+    /// by the sum of the magnitudes of the normal's components. For, within a cube of half side r about the point, the scalar
+    /// product changes by up to r times this sum.
     fn distance(&self, p: Vector) -> f64 {
         let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
         (dot(self.normal, p) - self.offset) / sum
     }
 }
 
-/// The distance of a point to a box about the origin, in the maximum norm.
+/// Returns the signed distance of a point from a box about the origin, in the maximum norm. `half` is half of the box's sides.
 fn box_distance(half: Vector, p: Vector) -> f64 {
     let beyond = |axis: usize| p[axis].abs() - half[axis];
     beyond(0).max(beyond(1)).max(beyond(2))
 }
 
-/// The position of a point relative to the nearest point whose coordinates are all integer multiples of the period.
+/// Returns the position of a point relative to the nearest of the
+/// points whose coordinates are all integer multiples of the period.
 fn about_nearest(period: f64, p: Vector) -> Vector {
     p.map(|c| c - (c / period).round() * period)
 }
 
-/// The smooth minimum of `a` and `b` by a quadratic polynomial (I. Quilez, "smooth minimum").
+/// Returns the smooth minimum of `a` and `b`, by a quadratic polynomial
+/// where they differ by less than `k` (I. Quilez, "smooth minimum").
 fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
     let h = (k - (a - b).abs()).max(0.0) / k;
     a.min(b) - h * h * k / 4.0
 }
 
-/// Moves a point by reflections and shifts so that the nearest cube of the sponge's last level has its centre at the
-/// origin. Returns the moved point, in units of the cube's side, and the side in world units.
+/// Maps a point, by reflections and shifts, so that the nearest cube of the sponge's last level has its centre at the
+/// origin. Returns the mapped point, in units of that cube's side, and the cube's side in world units.
 ///
-/// At each level, 27 cubes of side s meet, with centres at 0 and ±s. The point is mirrored into the corner where all
-/// coordinates are at +s. It is then expressed relative to that corner with each axis reversed, so that the middle is at s.
-/// Of the cubes with one coordinate in the middle, only the one along the largest coordinate can be the nearest. The cubes
-/// with two coordinates in the middle are holes of the sponge. Every step keeps lengths on each side of a fold and is
-/// continuous across it. So the distance still changes by at most the length of the way.
+/// Each level divides a cube into 27 cubes of side s, whose centres have the coordinates 0 and ±s. The point is mirrored so
+/// that all its coordinates are positive. Then it is expressed relative to the centre of the corner cube at (s, s, s), with
+/// each axis reversed, so that the middle of the divided cube is at (s, s, s). Of the three cubes that are in the middle along
+/// one axis, only the cube along the largest coordinate can be the nearest. The cubes that are in the middle along two or
+/// three axes are holes of the sponge. Each step keeps lengths on either side of a fold and is continuous across the
+/// fold. So the mapped point's distance changes by at most the length by which the original point moves.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);
@@ -83,7 +87,7 @@ fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     (p, 2.0 / side)
 }
 
-/// The Euclidean distance of a point outside the sponge to its surface.
+/// Returns the Euclidean distance from a point outside the sponge to the sponge's surface, and 0 for a point inside.
 pub(super) fn euclidean(depth: u32, p: Vector) -> f64 {
     let (folded, unit) = fold(depth, p);
     length(folded.map(|c| (c.abs() - 0.5).max(0.0))) * unit
@@ -96,7 +100,7 @@ mod tests {
 
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {
-        // Points and their distances are in units of 1/162 of the sponge's half side.
+        // Points with their distances from the sponge, both in units of 1/162 of the sponge's half side.
         let cases = [
             ([0.0; 3], 76.37),
             ([0.0, 0.0, 80.0], 54.0),
@@ -115,7 +119,7 @@ mod tests {
         assert!(close([0.0; 3], 1.0 / 3.0));
         assert!(close([2.0, 0.0, 0.0], 1.0));
         assert!(close([-1.5, 3.0, 0.2], 2.0));
-        // The middle of a small tunnel, and then the middle of the small cube beside the tunnel.
+        // First the middle of a small tunnel, then the middle of a small cube of the sponge beside that tunnel.
         assert!(close([2.0 / 3.0, 1.0, 2.0 / 3.0], 1.0 / 9.0));
         assert!(close([8.0 / 9.0, 8.0 / 9.0, 8.0 / 9.0], -1.0 / 9.0));
     }
@@ -151,7 +155,7 @@ mod tests {
         let (a, b) = (ball(-2.0), ball(2.0));
         let union = Field::SmoothUnion { k: 0.5, a, b };
         assert_eq!(union.distance([0.0; 3]), 1.0 - 0.125);
-        // Where the distances differ by half of `k`, the fillet adds a quarter of its largest thickness.
+        // Where the distances to the balls differ by half of `k`, the fillet has a quarter of its largest thickness.
         assert_eq!(union.distance([0.125, 0.0, 0.0]), 0.875 - 0.03125);
         assert_eq!(union.distance([-4.0, 0.0, 0.0]), 1.0);
     }

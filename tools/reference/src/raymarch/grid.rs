@@ -3,11 +3,12 @@
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// The first hit of a ray with copies of a solid, one about each point whose coordinates are integer multiples of the period.
+/// Finds the first hit of a ray with copies of a solid. There is a copy about each point whose coordinates are integer
+/// multiples of the period, and this point is the copy's centre.
 ///
-/// `hit` returns the hit of a given ray with the copy about the origin. Cells are visited in the order in which the ray
-/// passes them (Amanatides and Woo 1987), up to `t_max`. Every point
-/// of a copy must be nearer to its own centre than to any other.
+/// `hit` returns the hit of a given ray with the copy about the origin. The cells around the centres are visited in the order
+/// in which the ray passes them, up to the parameter `t_max` (Amanatides and Woo 1987). Every point of a copy must be nearer
+/// to the copy's centre than to the centre of any other copy.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,
@@ -25,7 +26,7 @@ pub(super) fn nearest(
             direction: ray.direction,
         };
         best = Hit::nearer(best, hit(&local));
-        // Each border is computed from its cell's number, because a running sum of steps would drift.
+        // Each border is computed from the cell's number, because rounding errors would add up in a running sum.
         let border = |axis: usize| {
             let d = ray.direction[axis];
             if d == 0.0 {

@@ -1,13 +1,14 @@
 //! Hits of rays on the Menger sponge, by traversal of its cells.
 //!
-//! A cell of the last level has a number along each axis, 0 to 3^depth − 1. In base 3, each digit of the number is the position
-//! of an enclosing cell in the cell of the level above. An enclosing cell with the digit 1 along two or three axes is a hole.
+//! A cell of the last level has a number along each axis, from 0 to 3^depth − 1. It lies in one cell of each earlier level. In
+//! base 3, each digit of the number is the position (0, 1 or 2) of one of these cells in the cell of the level before. A cell
+//! with the digit 1 along two or three axes is a hole.
 
 use super::solids::Slabs;
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// The first point of a ray inside the sponge, at a parameter of at least `t_min`.
+/// Finds the first point of a ray in the sponge with a parameter of at least `t_min`.
 pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new([1.0; 3], ray)?;
     if slabs.exit <= t_min {
@@ -19,11 +20,11 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
             .map(|c| ((c + 1.0) / 2.0 * count as f64).floor() as i64)
     };
     let mut t = slabs.enter.max(t_min);
-    // The axis of the face through which the ray has entered the current cell; `None` for a ray that starts in it.
+    // Axis perpendicular to the face through which the ray has entered the current cell; `None` if the ray starts in this cell.
     let mut entered = (slabs.enter >= t_min).then_some(slabs.axis);
     let mut cell = number(t).map(|i| i.clamp(0, count - 1));
     while let Some(side) = hole(cell, count) {
-        // The border of a hole lies at multiples of the hole's side.
+        // The borders of a hole are multiples of the hole's side, so its first cell along each axis is one too.
         let first = cell.map(|i| i / side * side);
         let border = |axis: usize| {
             let d = ray.direction[axis];
@@ -45,7 +46,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
         let reached = number(t);
         for axis in 0..3 {
             let forward = ray.direction[axis] > 0.0;
-            // Cells may only change in the ray's direction, whatever the rounding: otherwise the traversal might not end.
+            // Rounding must not move the cell against the ray's direction, because then the traversal might not end.
             cell[axis] = match (axis == across, forward) {
                 (true, true) => first[axis] + side,
                 (true, false) => first[axis] - 1,
@@ -63,7 +64,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     })
 }
 
-/// The side, in cells of the last level, of the largest hole that contains the cell; `None` if the cell is solid.
+/// Returns the side of the largest hole that contains the cell, in cells of the last level; `None` if the cell is solid.
 fn hole(cell: [i64; 3], count: i64) -> Option<i64> {
     let mut side = count;
     while side > 1 {
@@ -108,9 +109,9 @@ mod tests {
             let (at, hit) = found.expect("a wall");
             (at - t).abs() < 1e-12 && hit == face(axis)
         };
-        // A hit on the ceiling of the tunnel through which the ray enters.
+        // A ray that rises steeply, to the ceiling of the tunnel through which it enters.
         assert!(near(along([0.0, 2.0, 0.5]), 2.0 / 3.0, 2));
-        // A ray through the middle of the sponge, to the far wall of the tunnel along z.
+        // A ray that rises less: it crosses the middle of the sponge and hits the far wall of the tunnel along z.
         assert!(near(along([0.0, 2.0, 0.3]), 7.0 / 6.0, 1));
     }
 

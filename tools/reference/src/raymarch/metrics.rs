@@ -1,12 +1,12 @@
-//! Errors of a picture against the reference.
+//! Errors of a raymarched picture against the reference picture.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Size, Vector, cross, dot, length};
 
-/// Offset in pixels of the four neighbouring rays that tell whether a pixel is stable (`Expected::stable`).
+/// Distance in pixels between the ray through a pixel's centre and each of the four neighbouring rays of `Expected::stable`.
 const BESIDE: f64 = 0.05;
 
-/// Largest relative difference in depth between a stable pixel and its neighbouring rays.
+/// Largest relative difference in depth between the ray through a stable pixel's centre and its neighbouring rays.
 const STEADY: f64 = 1e-3;
 
 /// The reference result of a pixel.
@@ -14,9 +14,9 @@ const STEADY: f64 = 1e-3;
 pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
-    /// Whether the rays 0.05 pixels to the left, right, top and bottom give the same as the ray through the centre: the
-    /// same face of the same member at a depth that differs by at most a thousandth, or also a miss. At an unstable pixel
-    /// a correct picture may differ from the reference.
+    /// Whether the rays 0.05 pixels to the left, to the right, above and below have the same result as the ray through the
+    /// centre. The result is the same if all hit the same face of the same member, at a depth that differs by at most a
+    /// thousandth, or if all miss. At an unstable pixel a correct picture may differ from the reference.
     pub stable: bool,
 }
 
@@ -48,8 +48,8 @@ pub fn expected(
         .collect()
 }
 
-/// Whether a pixel stays stable: whether the hit of a neighbouring
-/// ray is on the same surface as that of the ray through the centre.
+/// Whether a neighbouring ray has the same result as the ray through the pixel's
+/// centre: the same surface at nearly the same depth, or also a miss.
 fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     match (centre, beside) {
         (None, None) => true,
@@ -78,10 +78,11 @@ pub enum Outcome {
     Undecided,
 }
 
-/// Quantiles by nearest rank: each is the smallest of the values that is not below the given share of them.
+/// Quantiles of a list of values by nearest rank: the quantile of p % is the smallest of the values that at least p % of all
+/// values do not exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
-    /// Quantile of 50 %: at least half of the values are not above it.
+    /// Quantile of 50 %.
     pub median: f64,
     /// Quantile of 99 %.
     pub p99: f64,
@@ -90,7 +91,7 @@ pub struct Quantiles {
 }
 
 impl Quantiles {
-    /// The quantiles of a list of values; `None` for an empty list.
+    /// Computes the quantiles of a list of values; `None` for an empty list.
     fn new(mut values: Vec<f64>) -> Option<Self> {
         values.sort_by(f64::total_cmp);
         let max = *values.last()?;
@@ -103,15 +104,15 @@ impl Quantiles {
     }
 }
 
-/// Errors of a picture against the reference. All pixels count, also unstable ones.
+/// Errors of a picture against the reference, over all pixels, including the unstable ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
-    /// Number of compared pixels, with one ray each.
+    /// Number of compared pixels. Each pixel has one ray.
     pub rays: usize,
     /// Share of unstable pixels.
     pub unstable: f64,
-    /// Intersection over union of the hits: the number of pixels where picture and reference both hit, divided by the
-    /// number where at least one of them hits; 1 if neither hits anywhere. Undecided pixels are not hits.
+    /// Intersection over union of the hits: the number of pixels with a hit in both picture and reference, divided by the
+    /// number of pixels with a hit in at least one of them. It is 1 if there are no hits. Undecided pixels are not hits.
     pub iou: f64,
     /// Pixels where the reference hits and the picture misses.
     pub false_miss: usize,
@@ -119,11 +120,11 @@ pub struct Accuracy {
     pub false_hit: usize,
     /// Pixels of the picture that are undecided.
     pub undecided: usize,
-    /// Absolute difference of the parameters of the hits, over the pixels where both hit.
+    /// Absolute difference of the rays' parameters at the hit, over the pixels with a hit in both picture and reference.
     pub depth: Option<Quantiles>,
-    /// Share of pixels with a different face, among the pixels where both hit; 0 without such pixels.
+    /// Share of pixels where the faces differ, among the pixels with a hit in both picture and reference; 0 if there are none.
     pub wrong_faces: f64,
-    /// Angle between the normals in degrees, over the pixels where both hit a round face.
+    /// Angle between the normals in degrees, over the pixels where picture and reference both hit a round face.
     pub normal: Option<Quantiles>,
 }
 
@@ -170,9 +171,9 @@ pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
     }
 }
 
-/// The angle between two directions, in degrees.
+/// Returns the angle between two directions, in degrees.
 fn degrees(a: Vector, b: Vector) -> f64 {
-    // Not by the arc cosine, which is inexact for small angles.
+    // The arc tangent is exact for small angles too, unlike the arc cosine.
     length(cross(a, b)).atan2(dot(a, b)).to_degrees()
 }
 
@@ -283,7 +284,7 @@ mod tests {
             let ray = |pixel| camera.ray(pixel, size);
             expected(field, size, (camera.near, 100.0), ray)
         };
-        // The face extends 33 2/3 pixels to each side of the middle, so that no ray is close to its border.
+        // The cube's front face extends 33 2/3 pixels to each side of the picture's middle, so no ray is close to its border.
         let cube = Field::Box { half: [1.0; 3] };
         let front = seen(&cube, [0.0, -4.0, 0.0], [0.0; 3]);
         assert!(front.iter().all(|pixel| pixel.stable));

@@ -1,4 +1,5 @@
-//! Pictures of the model's raymarcher in the form that [`metrics`] compares, and the number of evaluations of each ray.
+//! Pictures of the model's raymarcher in the form that [`metrics`] compares, and the number of times that each ray evaluates
+//! the distance to the field.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -12,21 +13,22 @@ use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
 use super::{Face, Field, Plane, Sphere, views};
 use crate::camera::{Camera, Size, length};
 
-/// Result and cost of one ray of a picture.
+/// Result of one ray of a picture, and its cost: the number of evaluations of the field's distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderedRay {
-    /// Result of the ray. The parameter of a hit is its depth along n, computed from t, in world units.
+    /// Result of the ray. The depth of a hit (its distance along the camera's n, in world units) is computed from the ray's
+    /// parameter t.
     pub outcome: Outcome,
-    /// Depth along n of a hit, computed from its depth code, in world units; `None` without a hit or such a depth.
+    /// Depth of a hit in world units, computed from its depth code. `None` if there is no hit, or if the code gives no depth.
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
     pub steps: u32,
-    /// Number of evaluations by the cones that were marched just before the ray.
+    /// Number of evaluations by the cones of the prepass that were marched just before the ray.
     pub cones: u64,
 }
 
 impl RenderedRay {
-    /// [`Self::outcome`], but with the depth that was computed from the depth code.
+    /// Returns [`Self::outcome`] with the depth that was computed from the depth code, if there is such a depth.
     pub fn by_code(&self) -> Outcome {
         match (self.outcome, self.coded) {
             (Outcome::Hit { face, normal, .. }, Some(t)) => Outcome::Hit { t, face, normal },
@@ -35,9 +37,10 @@ impl RenderedRay {
     }
 }
 
-/// Draws the picture of one eye on the model, row by row. Eye 0 is the left eye, or the only one.
+/// Draws the picture of one eye with the model, row by row. Eye 0 is the left eye of a stereo picture or the only eye.
 ///
-/// With a prepass, the evaluations of a row of cones are counted with the first ray of that row of blocks.
+/// With a prepass, which marches a cone for each block of pixels, the evaluations by the cones of a row of blocks are counted
+/// with the first ray of that row.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
@@ -52,7 +55,7 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
         .collect()
 }
 
-/// Converts the model's result of one ray to the form that the comparison uses. The cones' evaluations are left at 0.
+/// Converts `end`, the model's result of one ray, to the form that the comparison uses. `cones` of the result is 0.
 pub fn rendered_ray(
     setup: &FieldSetup,
     ray: &raymarch::Ray,
@@ -113,18 +116,19 @@ pub fn rendered_ray(
     }
 }
 
-/// The depth along n of a ray at the far limit, in world units.
+/// Returns the depth at which a ray reaches the far limit, in world units along the camera's n.
 fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
-/// The depth along n of a ray at its parameter t, in world units.
+/// Returns the depth of a ray at its parameter `t` in the model's format, in world units along the camera's n.
 pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()
 }
 
-/// The reference picture up to the far limit of the model's rays. A view must be able to hold the numbers of `camera` exactly.
+/// Computes the reference picture up to the far limit of the model's rays. The numbers of `camera` must be exact in the formats
+/// of a `View`.
 fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected> {
     let size = Size {
         width: setup.width,
@@ -141,14 +145,14 @@ fn expected(setup: &FieldSetup, field: &Field, camera: &Camera) -> Vec<Expected>
     picture
 }
 
-/// The columns and rows of all pixels, row by row.
+/// Returns column and row of every pixel of a picture, row by row.
 fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
     let width = setup.width;
     (0..setup.height).flat_map(move |y| (0..width).map(move |x| (x, y)))
 }
 
 impl Field {
-    /// Converts a field of the engine to the reference solid with the same numbers.
+    /// Converts a field as the engine describes it to the reference's solid with the same numbers.
     pub fn of(scene: &Scene) -> Self {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
@@ -228,17 +232,18 @@ pub struct Subject {
     pub size: (u32, u32),
     /// The camera, with numbers that a view holds exactly.
     pub camera: Camera,
-    /// The field as a solid of the reference.
+    /// The field, as the reference describes it.
     pub field: Field,
     /// The reference picture, up to the default far limit.
     pub expected: Vec<Expected>,
-    /// The field as the engine takes it.
+    /// The field, as the engine describes it.
     pub parsed: Scene,
     view: View,
 }
 
 impl Subject {
-    /// `scene` is the text form of a field, and `size` is one of [`glint_model::SIZES`].
+    /// Makes a subject and computes its reference picture. `scene` is the
+    /// text form of a field, and `size` is one of [`glint_model::SIZES`].
     ///
     /// # Panics
     /// If the field, the camera or the size is invalid.
@@ -260,18 +265,18 @@ impl Subject {
         subject
     }
 
-    /// The frame constants of the model for this subject with these options.
+    /// Returns the model's constants of a frame that shows this subject with these options.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
         FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a supported size")
     }
 
-    /// The picture of this subject that the model draws with these options.
+    /// Draws this subject with the model and these options.
     pub fn picture(&self, options: &FieldOptions) -> Vec<RenderedRay> {
         picture(&self.setup(options), 0)
     }
 }
 
-/// Subjects with the sponge of depth 4, one for each of the [`views`].
+/// Returns subjects that show the Menger sponge of depth 4, one from each of the [`views`].
 pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
     views::views()
         .into_iter()
@@ -281,7 +286,8 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Subjects with the other flat fields, seen from the side. All but the box extend to the horizon.
+/// Returns subjects that show the flat fields other than the sponge, seen from the side. Except for the box, these fields
+/// extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
     [
@@ -295,7 +301,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// Subjects with round fields and unions, seen from the side and from within.
+/// Returns subjects that show round fields and unions, each field from the side and from within.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",
@@ -325,23 +331,23 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Errors and evaluations of a picture.
+/// Errors of a picture, and the number of evaluations of the field's distance that it took.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Errors of the picture, with depths computed from t.
+    /// Errors of the picture, with depths computed from the rays' parameters t.
     pub accuracy: Accuracy,
-    /// Errors of depths computed from depth codes, over the pixels where picture and reference both hit.
+    /// Errors of the depths that are computed from depth codes, over the pixels with a hit in both picture and reference.
     pub coded: Option<Quantiles>,
     /// Number of evaluations of the field by all rays and cones.
     pub evaluations: u64,
     /// Number of evaluations by cones alone.
     pub cones: u64,
-    /// Number of evaluations of the ray that took most.
+    /// Largest number of evaluations by a single ray.
     pub most: u32,
 }
 
 impl Measured {
-    /// Compares one picture, or several concatenated ones, with the reference.
+    /// Compares a picture, or the concatenated rays of several pictures, with the reference.
     pub fn new(expected: &[Expected], found: &[RenderedRay]) -> Self {
         let outcomes = |of: fn(&RenderedRay) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
         Self {
@@ -356,7 +362,7 @@ impl Measured {
         }
     }
 
-    /// Mean number of evaluations per ray, those by cones included.
+    /// Returns the mean number of evaluations per ray, including the evaluations by cones.
     pub fn cost(&self) -> f64 {
         self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }

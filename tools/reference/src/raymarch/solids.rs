@@ -1,4 +1,4 @@
-//! Hits of rays on boxes, convex solids and balls from outside, and on two parallel planes from the room between them.
+//! Hits of rays that come from outside a box, a convex solid or a ball, or from the room between two parallel planes.
 
 use super::surface::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
@@ -14,7 +14,8 @@ pub(super) struct Slabs {
 }
 
 impl Slabs {
-    /// The part inside the box of half sides `half`; `None` if the whole line of the ray misses it (Kay and Kajiya 1986).
+    /// Computes the part of the ray's line inside the box with the half sides `half` (Kay and Kajiya 1986); `None` if the line
+    /// misses the box.
     pub fn new(half: Vector, ray: &Ray) -> Option<Self> {
         let mut slabs = Self {
             enter: f64::NEG_INFINITY,
@@ -39,7 +40,7 @@ impl Slabs {
     }
 }
 
-/// Hit of a ray on a box about the origin.
+/// Finds the hit of a ray on a box about the origin, from the parameter `t_min` on.
 pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new(half, ray)?;
     if slabs.enter >= t_min {
@@ -49,7 +50,7 @@ pub(super) fn box_hit(half: Vector, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// Hit of a ray on the intersection of half-spaces (Cyrus and Beck 1978).
+/// Finds the hit of a ray on the intersection of the half-spaces behind the planes (Cyrus and Beck 1978).
 pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit> {
     let (mut enter, mut exit, mut normal) = (f64::NEG_INFINITY, f64::INFINITY, [0.0; 3]);
     for plane in planes {
@@ -82,7 +83,7 @@ pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit>
     }
 }
 
-/// Hit of a ray on a ball about the origin.
+/// Finds the hit of a ray on a ball about the origin.
 ///
 /// The quadratic equation is solved without differences of nearly equal numbers, after E. Haines, J. Günther and T.
 /// Akenine-Möller, "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
@@ -90,7 +91,7 @@ pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     let a = dot(d, d);
     let b = -dot(o, d);
-    // Distance from the ball's centre to the point of the line nearest to it.
+    // Distance between the ball's centre and the ray's line.
     let nearest = length(add_scaled(o, d, b / a));
     if nearest >= radius {
         return None;
@@ -114,7 +115,7 @@ pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     }
 }
 
-/// First hit of a ray on any of several balls.
+/// Finds the first hit of a ray on any of several balls.
 pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<Hit> {
     let hits = spheres.iter().enumerate().map(|(member, sphere)| {
         let ray = Ray {
@@ -126,7 +127,7 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
     hits.fold(None, Hit::nearer)
 }
 
-/// Hit of a ray on the floor at z = −half or the ceiling at z = half of the room between them.
+/// Finds the hit of a ray, from inside a room, on the room's floor at z = −half or its ceiling at z = half.
 pub(super) fn planes_hit(half: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin[2], ray.direction[2]);
     if (o + t_min * d).abs() > half {

@@ -1,4 +1,4 @@
-//! Balls and planes, of which solids are made, and the hits of rays.
+//! Balls and planes, of which solids consist, and the hits of rays on solids.
 
 use crate::camera::Vector;
 
@@ -11,7 +11,7 @@ pub struct Sphere {
     pub radius: f64,
 }
 
-/// A plane in the surface of a solid that lies behind it.
+/// A plane that bounds a solid. The solid lies behind the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
     /// Normal that points out of the solid, of any length but 0.
@@ -32,7 +32,7 @@ pub enum Face {
     },
     /// A plane perpendicular to a diagonal.
     Diagonal {
-        /// For each axis, whether the outward normal points along it rather than against it.
+        /// For each axis, whether the component of the outward normal along the axis is positive.
         positive: [bool; 3],
     },
     /// A curved surface.
@@ -42,7 +42,7 @@ pub enum Face {
 }
 
 impl Face {
-    /// The face whose outward normal is `normal`, which points along an axis or a diagonal.
+    /// Returns the face with the outward normal `normal`, which must point along an axis or a diagonal.
     pub fn of_normal(normal: Vector) -> Self {
         let largest = normal
             .iter()
@@ -59,7 +59,7 @@ impl Face {
         }
     }
 
-    /// The face perpendicular to `axis` through which a ray of this direction enters a solid.
+    /// Returns the face perpendicular to `axis` through which a ray of this direction enters a solid.
     pub(super) fn entered(axis: usize, direction: Vector) -> Self {
         Self::Axis {
             axis,
@@ -68,7 +68,7 @@ impl Face {
     }
 }
 
-/// The first point of a ray inside a solid.
+/// The first point of a ray that is in a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray's parameter at the hit: the distance in multiples of the direction's length.
@@ -77,13 +77,13 @@ pub struct Hit {
     pub normal: Vector,
     /// Kind of surface at the hit.
     pub face: Face,
-    /// Number of the ball in `Field::Spheres`, or of the member of the
-    /// outermost union; 0 for other fields, and if the ray starts inside.
+    /// What was hit, in a field of several parts: the index of the ball in `Field::Spheres`, or the number (0 or 1) of the
+    /// outermost union's member. It is 0 for other fields, and if the ray starts inside the solid.
     pub member: usize,
 }
 
 impl Hit {
-    /// Hit at parameter `t` of a ray that is inside the solid there already.
+    /// Makes the hit of a ray that starts inside the solid, at the start's parameter `t`.
     pub(super) fn inside(t: f64) -> Self {
         Self {
             t,
@@ -93,7 +93,7 @@ impl Hit {
         }
     }
 
-    /// Hit at parameter `t`, on the face perpendicular to `axis` through which a ray of this direction enters.
+    /// Makes the hit at parameter `t` of a ray of this direction that enters a solid through a face perpendicular to `axis`.
     pub(super) fn entered(t: f64, axis: usize, direction: Vector) -> Self {
         let mut normal = [0.0; 3];
         normal[axis] = -direction[axis].signum();
@@ -105,7 +105,7 @@ impl Hit {
         }
     }
 
-    /// Sets the number of the hit member. If the ray starts inside, the
+    /// Returns the hit with its `member` set. If the ray starts inside the solid, the
     /// number stays 0, because several members may contain the start.
     pub(super) fn of(mut self, member: usize) -> Self {
         if self.face != Face::Inside {
@@ -114,7 +114,7 @@ impl Hit {
         self
     }
 
-    /// The nearer of two hits; at equal parameters the first.
+    /// Returns the hit with the smaller parameter, or `a` if the parameters are equal.
     pub(super) fn nearer(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(if b.t < a.t { b } else { a }),

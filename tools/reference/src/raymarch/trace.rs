@@ -1,4 +1,5 @@
-//! Sphere tracing (J. C. Hart 1996): each step is as long as the field's distance, within which no surface lies.
+//! Sphere tracing (J. C. Hart 1996): each step along a ray is as long as the field's distance at the ray's point, because no
+//! surface is nearer.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Vector, length, normalised, subtract};
@@ -10,10 +11,10 @@ const NEAR: f64 = 1e-9;
 /// Step to either side of a point in the central difference for the gradient, in world units.
 const STEP: f64 = 1e-6;
 
-/// Limit of steps, sufficient for every ray that is not almost parallel to a face close by.
+/// Limit of the number of steps, which is sufficient unless the ray runs almost parallel to a face and close to it.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// The error of a trace that has not ended after 2^20 steps, because its ray runs close to a surface and nearly parallel to it.
+/// The error of a trace that has not ended after 2^20 steps, because the ray runs close to a surface and nearly parallel to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
     /// Parameter of the ray at the last step.
@@ -29,11 +30,11 @@ impl fmt::Display for Unconverged {
 impl std::error::Error for Unconverged {}
 
 impl Field {
-    /// As [`Self::hit`], but computed from the field's distance alone, in the same way for every field.
+    /// Finds the same point as [`Self::hit`], but from the field's distance alone, in the same way for every field.
     ///
-    /// A trace ends 1e-9 world units from the surface. So a ray that only passes within that
-    /// distance hits, and a ray that starts on a surface hits immediately. The found parameter is
-    /// smaller than that of the surface by 1e-9 divided by the cosine of the angle of incidence.
+    /// A trace ends 1e-9 world units from the surface. So it also hits a surface that the ray only passes at a smaller distance,
+    /// and a ray that starts on a surface hits immediately. The hit is before the surface by 1e-9 world units divided by the
+    /// cosine of the angle of incidence.
     ///
     /// # Errors
     /// When the ray has not ended after 2^20 steps, because it runs close to a surface.
@@ -70,7 +71,7 @@ impl Field {
         Err(Unconverged { t })
     }
 
-    /// The face, the normal and the member's number at a point of the surface.
+    /// Returns the face, the outward normal and the number of the member at a point of the surface.
     pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
             Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {
@@ -111,7 +112,7 @@ impl Field {
         }
     }
 
-    /// The gradient of the field's distance at a point, by central differences.
+    /// Computes the gradient of the field's distance at a point, by central differences.
     fn slope(&self, p: Vector) -> Vector {
         [0, 1, 2].map(|axis| {
             let beside = |step: f64| {
@@ -124,7 +125,7 @@ impl Field {
     }
 }
 
-/// Which of two fields is nearer to a point: 0 for `a`, 1 for `b`.
+/// Returns the number of the field that is nearer to a point: 0 for `a`, 1 for `b`.
 fn nearer(a: &Field, b: &Field, p: Vector) -> usize {
     usize::from(b.distance(p) < a.distance(p))
 }

@@ -1,4 +1,4 @@
-//! Other methods of marching to the sponge, in f64, to compare their number of steps with Glint's method.
+//! Other methods to march rays to the Menger sponge, in f64, whose numbers of steps are compared with Glint's method.
 
 use super::distance::euclidean;
 use super::metrics::Outcome;
@@ -24,38 +24,39 @@ impl Norm {
     }
 }
 
-/// A method of marching to the sponge.
+/// A method to march rays to the Menger sponge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
     /// Norm in which the distance to the sponge is computed.
     pub distance: Norm,
-    /// Norm in which a ray's direction has length 1. If it is the norm of the distances, a step
-    /// is as long as the distance allows. Rays of Euclidean length 1 take shorter steps with
-    /// distances in the maximum norm. Euclidean distances require the Euclidean norm here.
+    /// Norm in which the length of a step is equal to the distance. If it is the norm of `distance`, steps are as long as the
+    /// distance allows. With distances in the maximum norm, steps of the Euclidean norm are shorter than the distance allows.
+    /// Euclidean distances require the Euclidean norm here.
     pub rays: Norm,
-    /// Constant part of the threshold at which a ray ends, in world units.
+    /// Constant part of the threshold, in world units. A ray hits where its distance from the sponge is below the threshold.
     pub threshold: f64,
     /// Growth of the threshold for each unit of distance that the ray has travelled.
     pub footprint: f64,
     /// Limit of the number of steps.
     pub cap: u32,
-    /// Number of steps after each of which the threshold doubles; `None` for a constant threshold.
+    /// Number of steps after which the threshold doubles, again and again; `None` if it never doubles.
     pub relax: Option<u32>,
-    /// Whether the end of a ray that approaches a face is moved on to the plane of the face, by the distance divided by the
-    /// component of the ray's direction along the normal.
+    /// Whether the hit of a ray that approaches a face is moved forward to the plane of the face. The ray's parameter grows by
+    /// the remaining distance divided by the component of the ray's direction along the normal.
     pub correct: bool,
 }
 
 impl Method {
-    /// Marches a ray to a sponge of this depth, from the parameter `start` of the ray.
+    /// Marches a ray to a sponge with `depth` levels of holes, from the ray's parameter `start`.
     ///
-    /// The normal of a hit points along the axis of the largest component of the gradient of the distance in the maximum norm.
+    /// The normal of a hit points along an axis: the axis of the largest component in the gradient of the distance, which is
+    /// computed in the maximum norm.
     pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
             Norm::Maximum => sponge.distance(p),
-            // Inside the sponge this distance is 0, which ends the ray like a negative distance.
+            // Inside the sponge the result is 0, which ends the ray just as a negative distance does.
             Norm::Euclidean => euclidean(depth, p).max(sponge.distance(p).min(0.0)),
         };
         let mut t = start;
@@ -96,12 +97,12 @@ impl Method {
     }
 }
 
-/// Whether a ray moves away from the plane through the origin perpendicular to `axis`, at the point `p`.
+/// Whether a ray at the point `p` moves away from the plane through the origin that is perpendicular to `axis`.
 fn outward(ray: &Ray, axis: usize, p: Vector) -> bool {
     (p[axis] < 0.0) == (ray.direction[axis] < 0.0)
 }
 
-/// The parameter at which a ray enters the cube around the sponge; 0 for a ray that starts inside the cube.
+/// Returns the parameter at which a ray enters the cube around the sponge, or 0 if the ray starts inside the cube.
 pub fn entry(ray: &Ray) -> f64 {
     (0..3)
         .filter(|&axis| !outward(ray, axis, ray.origin))
@@ -109,21 +110,21 @@ pub fn entry(ray: &Ray) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Places of the distances from which a normal is estimated.
+/// Choice of the points whose distances give an estimate of the normal at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taps {
-    /// The point itself, and one neighbour along each axis.
+    /// The point, and one neighbour along each axis.
     Forward,
     /// The corners of a tetrahedron around the point.
     Tetrahedron,
 }
 
 impl Taps {
-    /// Number of distances for a normal.
+    /// Number of distances that are evaluated for one normal.
     pub const COUNT: u32 = 4;
 
-    /// The face perpendicular to the axis of the gradient's largest component. The gradient is estimated from distances
-    /// that are `step` apart from the point `p`.
+    /// Estimates the face at the point `p`: it is perpendicular to the axis of the gradient's largest component. The gradient is
+    /// estimated from the distances of points whose coordinates differ from `p` by `step`, in world units.
     pub fn face(self, field: &Field, p: Vector, step: f64) -> Face {
         let beside = |offset: Vector| field.distance([0, 1, 2].map(|i| p[i] + step * offset[i]));
         let slope = match self {

@@ -1,33 +1,34 @@
-//! The verilated raymarcher, which measures the clocks and evaluations of a picture.
+//! The verilated raymarcher (its SystemVerilog, simulated), which measures the clocks and distance evaluations of a picture.
 
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's module, built with every field. The bench opens each band immediately, and accepts every pixel immediately.
+/// The raymarcher's module, built with all kinds of fields. This bench opens each band of the picture immediately, and accepts
+/// each pixel immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
     counters: Counters,
-    /// Counters at the end of the previous picture.
+    /// Values of the counters at the end of the previous picture.
     counted: Taken,
 }
 
-/// Clocks and evaluations of a picture.
+/// Clocks and distance evaluations that a picture takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
     /// Clocks from the start of the picture to its end.
     pub clocks: u64,
-    /// Number of evaluations of the field.
+    /// Number of evaluations of the field's distance.
     pub evaluations: u64,
 }
 
 impl Raymarcher {
-    /// Number of lanes of the built raymarcher.
+    /// Number of parallel lanes in the built raymarcher.
     pub const LANES: u32 = 2;
 
-    /// A raymarcher after reset.
+    /// Makes a raymarcher and resets it.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -44,7 +45,7 @@ impl Raymarcher {
         }
     }
 
-    /// Draws a picture, compares each pixel with the model, and returns the clocks and evaluations.
+    /// Draws a picture, compares each pixel with the model, and returns the clocks and evaluations of the picture.
     ///
     /// # Panics
     /// When a pixel differs from the model's.
@@ -94,7 +95,7 @@ impl Raymarcher {
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        // The last events are signalled some clocks after the end of the picture.
+        // The counters receive the last events a few clocks after the end of the picture.
         (0..4).for_each(|_| self.clock());
         let counted = Taken {
             clocks: self.counters.get("cycles_busy"),

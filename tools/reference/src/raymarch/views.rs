@@ -1,38 +1,39 @@
-//! Cameras that look at the sponge, shared by the measurements and the tests.
+//! Cameras that look at the Menger sponge, which the measurements and the tests share.
 
 use crate::camera::{Camera, Vector};
 
-/// Half the width of each picture in the plane at distance 1, in world units.
+/// Half the width of each picture, in world units in the plane at distance 1.
 pub const HALF_WIDTH: f64 = 0.9;
 
-/// Distance of the near plane for each picture, in world units.
+/// Distance of the near plane from the eye for each picture, in world units.
 pub const NEAR: f64 = 0.01;
 
-/// Name, position of the eye and target of each view. Positions are in world units, and +z is up.
+/// Returns name, position of the eye and position of the target of each view. Positions are in world units, and +z is up.
 ///
 /// Every coordinate is a multiple of 1/64, and is therefore exact in every fixed-point format.
 pub fn views() -> [(&'static str, Vector, Vector); 4] {
     [
         ("outside", [2.1875, 1.6875, 1.3125], [0.0; 3]),
-        // A quarter of a unit in front of the face at y = −1, looking at an angle to a corner of the largest hole.
+        // The eye is a quarter of a unit in front of the face at y = −1 and looks obliquely at a corner of the largest hole.
         ("close", [0.5, -1.25, 0.4375], [0.375, -1.0, 0.3125]),
-        // The eye is in the largest tunnel along y.
+        // The eye is in the sponge's largest tunnel along y.
         (
             "tunnel",
             [0.0625, -0.8125, 0.09375],
             [-0.125, 0.9375, 0.03125],
         ),
-        // A sixteenth of a unit above the face at z = 1, looking down at it by less than two degrees.
+        // The eye is a sixteenth of a unit above the face at z = 1 and looks down at it at an angle of less than two degrees.
         ("grazing", [-1.1875, -0.9375, 1.0625], [0.8125, 0.5625, 1.0]),
     ]
 }
 
-/// The camera at `eye` that looks at `target`, with `HALF_WIDTH` and `NEAR`.
+/// Returns the camera at `eye` that looks at `target`, with `HALF_WIDTH` and `NEAR`.
 pub fn camera(eye: Vector, target: Vector) -> Camera {
     Camera::looking_at(eye, target, HALF_WIDTH, NEAR)
 }
 
-/// Rotations of a head that looks around for a second: yaw to the right, pitch downwards and roll in degrees, each starting at 0.
+/// Returns rotations of a head that looks around for a second. Each rotation is yaw to the right, pitch downwards and roll, in
+/// degrees. The first rotation is zero.
 ///
 /// # Panics
 /// When the file `look-around.csv` (time in milliseconds and the three angles) is damaged.

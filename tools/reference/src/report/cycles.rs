@@ -1,4 +1,4 @@
-//! Cycles of kernels on the soft core, as measured by the firmware's `bench`.
+//! Cycles that kernels take on the soft core, as measured by the firmware's console command `bench`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,12 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Cycles of one call of a kernel.
+/// Cycles of the calls of a kernel, in clocks of the soft core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
     /// Cycles of the fastest call.
     pub min: u64,
-    /// Median over the calls.
+    /// Median of the calls' cycles.
     pub median: u64,
     /// Cycles of the slowest call.
     pub max: u64,
@@ -71,10 +71,10 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Limit in cycles for the start of the firmware, and for the run of all kernels. Each takes several times less.
+/// Limit in cycles, both for the start of the firmware and for the run of all kernels. Each of the two takes several times less.
 const LIMIT: u64 = 500_000_000;
 
-/// Where the cycles are measured: on the virtual board, or read from a transcript.
+/// Command-line arguments that choose the source of the cycles: a run on the virtual board, or a transcript.
 #[derive(clap::Args)]
 pub struct Source {
     /// Verilated SoC [default: the build of `cargo xtask gateware`]
@@ -89,7 +89,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// The cycles that the console's command `bench KERNELS` reports.
+    /// Returns the cycles that the console command `bench KERNELS` reports.
     ///
     /// # Errors
     /// When the transcript cannot be read, or the run on the virtual board fails.
@@ -102,20 +102,20 @@ impl Source {
         measure(&self.library(), &self.firmware(), kernels)
     }
 
-    /// Path of the library with the verilated SoC.
+    /// Returns the path of the library with the verilated SoC.
     fn library(&self) -> PathBuf {
         let built = || workspace::path("target/gateware/virtual/libglint_soc.so");
         self.library.clone().unwrap_or_else(built)
     }
 
-    /// Path of the firmware's image.
+    /// Returns the path of the firmware's image.
     pub fn firmware(&self) -> PathBuf {
         let built = || workspace::path("target/firmware/glint-peers.bin");
         self.firmware.clone().unwrap_or_else(built)
     }
 }
 
-/// Runs the console's command `bench KERNELS` on the virtual board.
+/// Runs the console command `bench KERNELS` on the virtual board and returns the cycles that it reports.
 ///
 /// # Errors
 /// When the board or the firmware is not built, or the console does not answer.
@@ -157,7 +157,7 @@ fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     parse(&reply).with_context(|| format!("`{command}` on the virtual board"))
 }
 
-/// Whether the reply to a command is complete: whether its last line is `ok` or an error.
+/// Whether the reply to a command is complete, which means that its last line is `ok` or an error.
 fn ends(reply: &[u8]) -> bool {
     let last = reply.strip_suffix(PROMPT.as_bytes()).unwrap_or(reply);
     let last = last

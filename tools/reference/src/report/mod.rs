@@ -1,7 +1,7 @@
-//! The report on error against run time, in docs/report.
+//! The report on errors and run times, whose pages are in docs/report.
 //!
-//! [`experiments`] measure and return rows. [`table`] writes and reads rows as CSV files. [`pages`] makes the pages and
-//! diagrams from the CSV files alone, so that a page can be rebuilt and checked without measuring again.
+//! The [`experiments`] measure and return rows. The functions of [`table`] write rows to CSV files and read them. The [`pages`]
+//! and their diagrams are made from the CSV files alone, so that a page can be rebuilt and checked without new measurements.
 
 pub mod cycles;
 pub mod experiments;

@@ -1,5 +1,5 @@
-//! Work-precision diagrams: the error is on the horizontal axis and the cost on the vertical axis. An axis is logarithmic
-//! unless its values stay within a decade.
+//! Diagrams of the report, as SVG files. In a work-precision diagram the error is on the horizontal axis and the cost on the
+//! vertical axis. An axis is logarithmic unless its values stay within a decade.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ const SIZE: (u32, u32) = (960, 600);
 /// Range of the cost axis if no point has a cost.
 const EMPTY: Span = Span(10.0, 100_000.0);
 
-/// Colours of the families of points, dark enough for thin text.
+/// Colours of the families of points. All are dark enough for thin text.
 const COLOURS: [RGBColor; 8] = [
     RGBColor(176, 24, 48),
     RGBColor(24, 120, 48),
@@ -41,13 +41,13 @@ pub struct Point {
     pub label: String,
     /// Position on the horizontal axis: the error of the configuration.
     pub error: f64,
-    /// Position on the vertical axis. A point without a cost becomes a dashed line at its error.
+    /// Position on the vertical axis: the cost. A point without a cost is drawn as a vertical dashed line at its error.
     pub cost: Option<f64>,
-    /// Whether Glint uses the configuration. Such a point gets a ring.
+    /// Whether Glint uses the configuration. A point of such a configuration is marked by a ring.
     pub shipped: bool,
 }
 
-/// Writes a diagram with one line for each family of points.
+/// Writes a work-precision diagram with one line for each family of points.
 ///
 /// # Errors
 /// When the file cannot be written.
@@ -97,7 +97,7 @@ fn draw(
 
 /// The area between two lines of a diagram.
 pub struct Band {
-    /// Name in the legend.
+    /// Name of the band in the legend.
     pub name: &'static str,
     /// Points of the lower edge.
     pub low: Vec<(f64, f64)>,
@@ -108,7 +108,7 @@ pub struct Band {
 /// A line of a diagram: its name in the legend and its points.
 pub type Line = (&'static str, Vec<(f64, f64)>);
 
-/// Writes a diagram of lines in front of a band. Both axes are logarithmic.
+/// Writes a diagram with lines in front of a band. The two axes are logarithmic.
 ///
 /// # Errors
 /// When there are no points or the file cannot be written.
@@ -239,7 +239,7 @@ where
     Ok(())
 }
 
-/// A number in scientific notation with one digit if that is exact, otherwise with three.
+/// Formats a number in scientific notation: with one digit if that is exact, otherwise with three digits.
 fn number(error: &f64) -> String {
     let short = format!("{error:.0e}");
     if short
@@ -262,13 +262,13 @@ fn families(points: &[Point]) -> Vec<&str> {
     found
 }
 
-/// Range of an axis: lowest and highest value.
+/// Range of an axis: its lowest and its highest value.
 #[derive(Clone, Copy)]
 struct Span(f64, f64);
 
 impl Span {
-    /// The range for these positive values: whole decades around them, with
-    /// a margin for labels. Values within a decade get the margin alone.
+    /// Computes the range of an axis for positive values, with a margin for labels; `None` if there are no values. The range
+    /// extends to whole decades, unless all values are within one decade.
     fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
         let range = values.fold(None, |range: Option<(f64, f64)>, value| match range {
             None => Some((value, value)),
@@ -284,7 +284,7 @@ impl Span {
         ))
     }
 
-    /// Whether the range is less than a decade. A logarithmic axis would then have no numbers.
+    /// Whether the range is less than a decade, so that a logarithmic axis would have no numbers.
     fn is_narrow(self) -> bool {
         self.1 < 10.0 * self.0
     }

@@ -3,7 +3,7 @@
 use anyhow::Result;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A progress bar of `steps` steps that shows a message and the time left.
+/// Makes a progress bar of `steps` steps, which shows a message and the remaining time.
 ///
 /// # Errors
 /// When the terminal refuses the bar's template.

@@ -1,19 +1,20 @@
-//! The state of the source and the versions of the tools with which figures were measured.
+//! The provenance of measurements: the state of the source and the versions of the tools at the time.
 
 use std::process::Command;
 
 use super::workspace;
 
-/// Commit and tools of a measurement, for its rows.
+/// Commit and tools with which rows were measured.
 pub struct Provenance {
-    /// The last commit that touched the measured source, followed by `-dirty` if there are uncommitted changes.
+    /// The last commit that changed the measured source. `-dirty` is appended if the source has uncommitted changes.
     pub commit: String,
     /// Versions of the compiler and of the libraries that are compared.
     pub tools: String,
 }
 
 impl Provenance {
-    /// Reads both fields from git, the compiler and the lock file. A value that cannot be read is `unknown`.
+    /// Finds the commit by git, the version of the compiler by running it, and the versions of the libraries in `Cargo.lock`. A
+    /// value that cannot be found is `unknown`.
     pub fn find() -> Self {
         let lock = std::fs::read_to_string(workspace::path("Cargo.lock")).unwrap_or_default();
         let mut tools = vec![output("rustc", &["--version"])];
@@ -41,7 +42,7 @@ fn commit() -> String {
     git(&["log", "-1", "--format=%h", "--abbrev=12"]) + if changed { "-dirty" } else { "" }
 }
 
-/// A program's standard output, or `unknown` if the program fails.
+/// Runs a program in the workspace and returns its standard output, or `unknown` if the program fails.
 fn output(program: &str, arguments: &[&str]) -> String {
     let run = Command::new(program)
         .args(arguments)

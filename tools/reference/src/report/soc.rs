@@ -1,4 +1,4 @@
-//! Cycles that frames take on the whole SoC.
+//! Measurement of the cycles that frames take on the whole SoC, which runs in simulation.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -8,17 +8,18 @@ use anyhow::{Context, Result, bail};
 use glint::board::SimulatedBoard;
 use glint::render::BoardRenderer;
 
-/// Clock frequencies of the SoC in Hz: the default, and the faster one.
+/// Clock frequencies of the SoC in Hz: first the default, then a faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
 
-/// Counters over frames that are drawn back to back, by their names in the console's reply.
+/// Totals of counters over many frames that are drawn back to back, by the counters' names in the console's reply.
 pub struct BackToBack {
     kernel: String,
     values: BTreeMap<String, f64>,
 }
 
 impl BackToBack {
-    /// Draws the scene that the renderer shows, back to back. `kernel` is the engine's name in the console's command `bench`.
+    /// Draws the scene that the renderer shows many times, back to back.
+    /// `kernel` is the engine's name in the console command `bench`.
     ///
     /// # Errors
     /// When the console reports an error, or its reply has no line for this kernel.
@@ -40,7 +41,7 @@ impl BackToBack {
         })
     }
 
-    /// The mean value of a counter per frame.
+    /// Returns the mean of a counter per frame.
     ///
     /// # Errors
     /// When the reply has no counter of this name.
@@ -57,8 +58,8 @@ impl BackToBack {
     }
 }
 
-/// Runs `work` on all items and returns the results in the order of the
-/// items. Two run at a time, because each simulation keeps a core busy.
+/// Runs `work` on all items and returns the results in the order of the items. Only
+/// two items are in work at a time, because each simulation keeps a core busy.
 ///
 /// # Errors
 /// When `work` fails or panics.

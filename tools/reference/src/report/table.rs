@@ -1,4 +1,4 @@
-//! Rows as CSV files and as Markdown tables.
+//! Reading and writing of rows as CSV files, and formatting of Markdown tables.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -34,7 +34,7 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         .with_context(|| format!("{}: unexpected line", path.display()))
 }
 
-/// As [`read_csv`], but returns no rows if the file is missing, as after a run with `--quick`.
+/// As [`read_csv`], but returns no rows if the file is missing. A run with `--quick` does not write every file.
 ///
 /// # Errors
 /// When a line does not have the columns of such a row.
@@ -52,7 +52,7 @@ pub struct Table<const N: usize> {
 }
 
 impl<const N: usize> Table<N> {
-    /// An empty table. A heading that ends in `:` makes its column right-aligned.
+    /// Makes a table without rows. If a heading ends in `:`, its column is right-aligned.
     pub fn new(headings: [&str; N]) -> Self {
         let mut table = Self {
             text: String::new(),
@@ -71,19 +71,19 @@ impl<const N: usize> Table<N> {
         let _ = writeln!(self.text, "| {} |", cells.join(" | "));
     }
 
-    /// The complete table as text, with a line end after the last row.
+    /// Returns the complete table as text, with a line end after the last row.
     pub fn finish(self) -> String {
         self.text
     }
 }
 
-/// `text` as Markdown, in bold if `bold` is set.
+/// Formats `text` as Markdown, in bold if `bold` is set.
 pub fn bold(text: impl std::fmt::Display, bold: bool) -> String {
     let mark = if bold { "**" } else { "" };
     format!("{mark}{text}{mark}")
 }
 
-/// The value as text, or an empty text if there is none.
+/// Formats the value as text, or returns an empty text if there is no value.
 pub fn optional<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }

@@ -1,4 +1,4 @@
-//! The measured kernels of sine and cosine, each with all inputs of its own format.
+//! The measured kernels of sine and cosine, each with the inputs it is measured at.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -13,23 +13,24 @@ use micromath::F32Ext;
 use super::statistics::Statistics;
 use super::truth::{Image, OCTANT, SinCos, TURN};
 
-/// A kernel and its inputs, which are measured in steps with numbers from 0. A step may cover several inputs.
+/// A kernel and the inputs it is measured at. The measurement runs
+/// in steps, numbered from 0, and a step may cover several inputs.
 pub struct Kernel {
     /// Name of the kernel, as in the firmware's `bench sine`.
     pub name: &'static str,
-    /// Name of the kernel's line in the work-precision diagram.
+    /// Name of the line that joins the kernel and its variants in the work-precision diagram.
     pub family: &'static str,
-    /// Name of the variant of the kernel, for instance the order of its series.
+    /// Name of the variant of the kernel, for example the order of its series.
     pub config: &'static str,
     /// Number format of the outputs.
     pub format: &'static str,
-    /// Unit in the last place of the outputs' format. For floats it is that of numbers just below 1.
+    /// Unit in the last place of the outputs' format. For floats, it is the unit in the last place of numbers just below 1.
     pub ulp: f64,
     /// Description of the measured inputs.
     pub inputs: &'static str,
-    /// Whether the inputs are phases. Their symmetries can be checked bit for bit.
+    /// Whether the inputs are phases (fractions of a turn), so that the symmetries of the circle can be checked bit for bit.
     pub by_phase: bool,
-    /// Whether Glint uses the kernel.
+    /// Whether Glint itself uses the kernel.
     pub shipped: bool,
     steps: u64,
     run: Box<Run>,
@@ -50,13 +51,13 @@ impl Kernel {
         (self.run)(range, stride, statistics);
     }
 
-    /// Description of the input with this number, as in the statistics.
+    /// Describes the input with the number `number`, in the numbering of `Statistics::worst_input`.
     pub fn show_input(&self, number: u64) -> String {
         (self.show)(number)
     }
 }
 
-/// All measured kernels; those of Glint come first.
+/// Returns all measured kernels, Glint's own first.
 pub fn kernels() -> Vec<Kernel> {
     vec![
         Kernel {
@@ -126,14 +127,14 @@ pub fn kernels() -> Vec<Kernel> {
 
 const GLINT: &str = "glint: table of 64 and Taylor";
 
-/// Which inputs are measured: the spacing of the measured inputs of a format, and their description.
+/// The choice of inputs to measure: every n-th input of a format, and the description of this choice in words.
 type Inputs = (u32, &'static str);
 
 const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");
 const ALL_PHASES: Inputs = (1, "all 2^32 phases");
 const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants");
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
-/// Inputs of a slow kernel whose format has more than 10^9 inputs, so that only a part is measured.
+/// Part of the inputs, for a slow kernel whose format has more than 10^9 inputs.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
 
 fn q14(angle: u32) -> (i32, i32) {
@@ -146,7 +147,7 @@ fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     (sin.to_bits(), cos.to_bits())
 }
 
-/// Glint's Q2.30 kernel with its Taylor series cut off at a lower `ORDER`, measured on a part of the phases.
+/// Makes Glint's Q2.30 kernel with its Taylor series cut off at the lower order `ORDER`, measured at a part of the phases.
 fn lower_order<const ORDER: u32>(name: &'static str, config: &'static str) -> Kernel {
     let labels = [name, GLINT, config, "Q2.30"];
     phases(labels, 30, SOME_PHASES, q30::<ORDER>)
@@ -157,7 +158,7 @@ fn cordic_sin_cos<T: CordicNumber + Fixed<Bits = i32>>(angle: i32) -> (i32, i32)
     (sin.to_bits(), cos.to_bits())
 }
 
-/// Unit in the last place of a format with this number of fraction bits.
+/// Returns the unit in the last place of a format with `fraction_bits` fraction bits.
 fn last_place(fraction_bits: u32) -> f64 {
     (-f64::from(fraction_bits)).exp2()
 }
@@ -170,9 +171,10 @@ fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
     }
 }
 
-/// Makes a kernel whose inputs are phases. A step is a phase of the first octant, evaluated at its images in all eight
-/// octants. Images whose outputs have the same bits, apart from signs and order, have the same error. So their error is
-/// computed once and counted for all of them; each other image is measured on its own.
+/// Makes a kernel whose inputs are phases. A step takes a phase of the first octant and evaluates the kernel at the images of
+/// the phase in all eight octants. Images whose outputs have the same bits as those of the phase, apart from signs and order,
+/// also have the same error. So this error is computed once and counted for each of these images, while an image with
+/// different bits is measured separately.
 fn phases(
     [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -216,8 +218,8 @@ fn phases(
     }
 }
 
-/// Makes a kernel of radians in fixed point, with as many fraction bits
-/// as its outputs. It measures every `spacing`-th input in [−π, π].
+/// Makes a kernel whose inputs are radians in fixed point, with as many fraction bits as its outputs. Every `spacing`-th
+/// input in [−π, π] is measured.
 fn radians(
     [name, family, config, format]: [&'static str; 4],
     fraction_bits: u32,
@@ -249,7 +251,8 @@ fn radians(
     }
 }
 
-/// Makes a kernel of f32 radians. It measures all floats from 2^-24 to 2π; at smaller angles the sine is equal to its angle.
+/// Makes a kernel whose inputs are radians in f32. All floats from 2^-24 to 2π are measured; at smaller angles, the sine
+/// rounds to the angle itself.
 fn floats(
     [name, family, config, format]: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
@@ -283,7 +286,7 @@ fn floats(
     }
 }
 
-/// A table of sines with one entry per degree, measured at all angles in [0°, 360°) in Q16.16.
+/// Makes a kernel that looks the sine up in a table with one entry per degree, measured at all Q16.16 angles in [0°, 360°).
 fn degrees() -> Kernel {
     let table: Vec<f64> = (0..=180)
         .map(|degree| (f64::from(degree).to_radians().sin() * 65536.0).round() / 65536.0)
@@ -330,7 +333,7 @@ mod tests {
             .expect("a kernel")
     }
 
-    /// Bounds of the largest errors, known from theory or from the libraries' documents.
+    /// The largest error of each kernel lies in a range that is known from theory or from the library's documentation.
     #[test]
     fn other_libraries_have_their_documented_errors() {
         for (name, at_least, at_most) in [
@@ -348,10 +351,10 @@ mod tests {
 
     #[test]
     fn the_weight_of_a_float_is_its_part_of_the_circle() {
-        // Half of all input floats are below 2^-11 rad, where even an output that is always sin 0 and cos 0 is nearly right.
+        // About half of all input floats are below 2^-11 rad, where the constant outputs sin 0 and cos 0 are nearly right.
         let careless = floats(["", "", "", ""], |_| (0.0, 1.0));
         let statistics = sweep(&careless, 997, &|_| ());
-        // With weights by angle, the mean over the circle is (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.
+        // With weights by angle, the mean square of the error over the circle is (sin² + (cos − 1)²)/2 = (1/2 + 3/2)/2 = 1.
         assert!(
             (statistics.rms() - 1.0).abs() < 1e-3,
             "{}",
@@ -366,7 +369,7 @@ mod tests {
         });
         let statistics = sweep(&crooked, 1, &|_| ());
         assert_eq!(statistics.inputs, 1 << 16);
-        // The first-octant phase has a wrong output, so the outputs at its seven other images differ from it.
+        // The output at the phase of the first octant is wrong, so the outputs at its seven other images do not match it.
         assert_eq!(statistics.asymmetric, 7);
     }
 }

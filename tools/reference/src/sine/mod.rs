@@ -1,9 +1,9 @@
 //! Errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //!
-//! - [`truth`]: the exact values in f64, and their own error.
+//! - [`truth`]: the reference values in f64, and the error of these references.
 //! - [`statistics`]: maximum, RMS and percentiles of the errors.
-//! - [`kernels`]: the measured kernels, each with all inputs of its format.
-//! - [`sweep`]: runs a kernel over its inputs on all cores.
+//! - [`kernels`]: the measured kernels, each with the inputs it is measured at.
+//! - [`sweep`]: measurement of a kernel over its inputs on all cores of the computer.
 
 pub mod kernels;
 pub mod statistics;

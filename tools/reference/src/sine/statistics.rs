@@ -2,7 +2,7 @@
 
 use super::truth::SinCos;
 
-/// The sine or the cosine, as an output of a kernel.
+/// One of the two outputs of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Function {
     /// The sine.
@@ -20,28 +20,31 @@ impl std::fmt::Display for Function {
     }
 }
 
-/// Buckets of the histogram in one octave of error sizes; percentiles have a relative resolution of 1/64.
+/// Number of buckets of the histogram per octave (factor of two) of the error's size. It gives percentiles a relative
+/// resolution of 1/64.
 const BUCKETS_PER_OCTAVE: u64 = 64;
-/// Octaves of the histogram below 1. Errors below 2^-64 share the first bucket, and errors of 1 or more share the last.
+/// Number of octaves that the histogram has below an error of 1. Errors below 2^-64 share the first bucket, and errors of 1 or
+/// more share the last bucket.
 const OCTAVES: u64 = 64;
 
 /// Statistics of the absolute errors of sine and cosine together.
 ///
-/// Each input has a weight: the part of the circle that it stands for. So means are means over the angle, even if inputs
-/// are denser in some places, as floats are near zero.
+/// Each input is weighted by the part of the circle that it stands for. So a mean is taken evenly over the angle, even where
+/// inputs are dense, such as floats near zero.
 #[derive(Clone, Debug)]
 pub struct Statistics {
-    /// Number of inputs. Each input adds an error of the sine and one of the cosine.
+    /// Number of inputs. Each input adds two errors, of the sine and of the cosine.
     pub inputs: u64,
     /// The largest error of an output.
     pub max: f64,
-    /// Number, as the kernel counts its inputs, of the first input with the largest error.
+    /// Number of an input with the largest error, as `Kernel::show_input` numbers the inputs.
     pub worst_input: u64,
     /// Whether the sine or the cosine has the largest error.
     pub worst_function: Function,
-    /// The largest |sin² + cos² − 1| of an input's outputs.
+    /// The largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of inputs whose outputs differ, bit for bit, from those of their image in the first octant.
+    /// Number of inputs whose outputs do not follow from the outputs of their image in the first octant by a change of signs and
+    /// order alone.
     pub asymmetric: u64,
     weight: f64,
     sum_of_squares: f64,
@@ -67,13 +70,15 @@ impl Default for Statistics {
 }
 
 impl Statistics {
-    /// Adds the errors of one input. `got` are the kernel's outputs, and `truth` the exact values.
+    /// Adds the errors of one input. `got` holds the kernel's outputs, `truth` the exact values, and `weight` is the part of
+    /// the circle that the input stands for, in any unit.
     pub fn add(&mut self, input: u64, truth: SinCos, got: SinCos, weight: f64) {
         self.inputs += 1;
         self.add_both(input, truth, got, weight);
     }
 
-    /// Adds the errors of `count` images of an input. Their outputs and exact values are equal apart from signs and order.
+    /// Adds the errors of `count` images of an input. The images' outputs are those of the input apart from signs and order, and
+    /// so are their exact values.
     pub fn add_images(&mut self, input: u64, truth: SinCos, got: SinCos, count: u64) {
         self.inputs += count;
         self.add_both(input, truth, got, count as f64);
@@ -100,10 +105,10 @@ impl Statistics {
         }
     }
 
-    /// Adds the statistics of other inputs, which were measured later.
+    /// Adds `later`, the statistics of other inputs of the same kernel.
     pub fn merge(&mut self, later: &Self) {
         self.inputs += later.inputs;
-        // Later inputs may have smaller numbers. Of equal errors, that of the smaller number is kept.
+        // `later` may contain smaller input numbers. If two inputs share the largest error, the smaller number is kept.
         if later.max > self.max || (later.max == self.max && later.worst_input < self.worst_input) {
             (self.max, self.worst_input, self.worst_function) =
                 (later.max, later.worst_input, later.worst_function);
@@ -118,17 +123,17 @@ impl Statistics {
         }
     }
 
-    /// Root of the mean squared error, over both outputs of all inputs.
+    /// Returns the root mean square of the errors of all outputs.
     pub fn rms(&self) -> f64 {
         (self.sum_of_squares / self.weight).sqrt()
     }
 
-    /// Mean error of the outputs' magnitude: positive if outputs are too far from zero.
+    /// Returns the mean error of the outputs' magnitudes, which is positive if outputs tend to be too far from zero.
     pub fn bias(&self) -> f64 {
         self.sum / self.weight
     }
 
-    /// The 99th percentile of the errors, too large by at most 1/64 of itself.
+    /// Returns the 99th percentile of the errors' sizes. The result is up to 1/64 of its value too large.
     pub fn p99(&self) -> f64 {
         let mut below = 0.0;
         for (index, count) in self.histogram.iter().enumerate() {
@@ -141,8 +146,8 @@ impl Statistics {
     }
 }
 
-/// Number of low bits of an f64 that do not matter for its bucket.
-/// The remaining bits are the exponent and six bits of the mantissa.
+/// Number of low bits of an f64 that have no influence on its bucket. The
+/// other bits are the exponent and the six high bits of the mantissa.
 const SHIFT: u32 = 52 - BUCKETS_PER_OCTAVE.ilog2();
 const FIRST: u64 = (1023 - OCTAVES) * BUCKETS_PER_OCTAVE;
 

@@ -1,4 +1,4 @@
-//! Runs a kernel over its inputs on all cores. The result does not depend on the number of cores.
+//! Measures a kernel over its inputs on all cores of the computer. The result does not depend on the number of cores.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -7,11 +7,12 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Number of steps in a part, the unit of work of a core. Results of the parts are added in order, so the sum is reproducible.
+/// Number of steps in a part, which one core measures at a time. The results of the parts are added in order of their numbers,
+/// so that the rounded sum is reproducible.
 const PART: u64 = 1 << 18;
 
-/// The errors of `kernel` over every `stride`-th of its steps. After
-/// each completed part, `progress` receives the part's number of steps.
+/// Measures the errors of `kernel` in every `stride`-th of its steps. After
+/// each completed part, `progress` is called with the part's number of steps.
 pub fn sweep(kernel: &Kernel, stride: u64, progress: &(dyn Fn(u64) + Sync)) -> Statistics {
     let steps = kernel.steps().div_ceil(stride);
     let parts = steps.div_ceil(PART);

@@ -1,4 +1,4 @@
-//! The f64 reference values of sine and cosine, and their own error.
+//! The reference values of sine and cosine in f64, and the error of these references.
 
 use std::f64::consts::PI;
 
@@ -30,7 +30,8 @@ impl SinCos {
     }
 }
 
-/// One of the eight angles whose sine and cosine are those of an angle in the first octant, apart from signs and order.
+/// A symmetry of the circle that maps an angle of the first octant to an angle of some octant, the image. Sine and cosine of
+/// the image are those of the first-octant angle, apart from signs and order.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
     quarter: u32,
@@ -38,10 +39,10 @@ pub struct Image {
 }
 
 impl Image {
-    /// The images of a phase in the first octant: at most one angle in each octant.
+    /// Returns the images of a phase of the first octant, no more than one in each octant.
     ///
-    /// Over all phases from 0 to [`OCTANT`], the images are all 2^32 angles, each once. An angle at the border of two
-    /// octants is listed for one of them only.
+    /// Together, the phases from 0 to [`OCTANT`] have each of the 2^32 angles as an image exactly once: an angle at the border
+    /// of two octants is an image in one of the two only.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {
@@ -51,7 +52,7 @@ impl Image {
             .filter(move |image| phase != if image.mirrored { 0 } else { OCTANT })
     }
 
-    /// The angle of this image of the first-octant phase `phase`, in units of 2^-32 turns.
+    /// Returns the angle of this image of the first-octant phase `phase`, in units of 2^-32 turns.
     pub fn angle(self, phase: u32) -> u32 {
         let start = self.quarter << 30;
         if self.mirrored {
@@ -61,7 +62,7 @@ impl Image {
         }
     }
 
-    /// Sine and cosine of this image, by exact identities from those of the first-octant phase.
+    /// Converts sine and cosine of a first-octant phase to those of this image, by exact identities.
     pub fn carry<T: Copy + std::ops::Neg<Output = T>>(self, sin: T, cos: T) -> (T, T) {
         let (sin, cos) = if self.mirrored {
             (cos, sin)
@@ -77,8 +78,8 @@ impl Image {
     }
 }
 
-/// The largest error of [`SinCos::of_octant`] over every `stride`-th phase, in
-/// comparison with a series in 62-bit integers whose own error is below 2^-56.
+/// Measures the largest error of [`SinCos::of_octant`] over every `stride`-th phase. The
+/// comparison is with a series in integers of 62 fraction bits, whose error is below 2^-56.
 pub fn reference_error(stride: u32) -> f64 {
     let apart = |exact: i128, value: f64| (exact - (value * ONE as f64) as i128).abs();
     let worst = (0..=OCTANT)
@@ -98,16 +99,16 @@ const ONE: i128 = 1 << 62;
 /// π with 93 fraction bits, rounded to nearest.
 const PI_Q93: i128 = 31_112_826_664_028_885_653_815_243_078;
 
-/// Sine and cosine of a first-octant phase with 62 fraction bits, by Taylor's series: about twenty terms, each truncated by
-/// less than four units in the last place.
+/// Computes sine and cosine of a first-octant phase with 62 fraction bits, by Taylor's series. It has about twenty terms, and
+/// truncation changes each by less than four units in the last place.
 fn series(phase: u32) -> (i128, i128) {
-    // The angle is phase·2π/2^32 = phase·π/2^31. The product stays below 2^124, so it fits.
+    // The angle is phase·2π/2^32 = phase·π/2^31. The product with `PI_Q93` stays below 2^124, so it fits an i128.
     let angle = (i128::from(phase) * PI_Q93) >> 62;
     let square = (angle * angle) >> 62;
     let sum = |first: i128, start: i128| {
         let (mut term, mut total, mut n) = (first, first, start);
         while term != 0 {
-            // Division of the magnitude, with the sign applied afterwards, truncates toward zero.
+            // The shift and the division act on the magnitude, so that they truncate toward zero.
             term = -(term.signum() * (((term.abs() * square) >> 62) / (n * (n + 1))));
             total += term;
             n += 2;

@@ -2,13 +2,13 @@
 //!
 //! The rule is that of Direct3D and Vulkan: a pixel is covered if its centre lies inside the triangle or on a *top* or
 //! *left* edge. A top edge is exactly horizontal, with the triangle below it. A left edge is not horizontal and has the
-//! triangle to its right. On which side of an edge the triangle lies is known
-//! from the position of the third vertex, so the winding does not matter.
+//! triangle to its right. The triangle lies on that side of an edge on which its third vertex lies, so the order of the
+//! vertices (the winding) does not matter.
 
-/// Steps of the grid of snapped vertices in one pixel.
+/// Number of steps per pixel in the grid to which vertices are snapped.
 pub const SUBPIXELS: i64 = 256;
 
-/// Steps of a vertex's depth in one depth code.
+/// Number of steps of a vertex's depth per depth code.
 pub const DEPTH_STEPS: i64 = 64;
 
 /// A vertex whose position is snapped to the grid of the screen.
@@ -22,21 +22,22 @@ pub struct SnappedVertex {
     pub w: i64,
 }
 
-/// An edge as a linear function of the position, which is positive on the side of the opposite vertex.
+/// An edge of a triangle as a linear function of the position. The function is positive on the side of the third vertex.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
     x: i128,
     y: i128,
     dx: i128,
     dy: i128,
+    /// Whether a pixel centre exactly on the edge's line belongs to the triangle.
     owns_its_line: bool,
 }
 
 impl Edge {
-    /// The edge from `a` to `b` of a triangle. Its third vertex `opposite` must not lie on the edge's line.
+    /// Makes the edge from `a` to `b` of a triangle whose third vertex is `opposite`, which must not lie on the edge's line.
     fn new(a: SnappedVertex, b: SnappedVertex, opposite: SnappedVertex) -> Self {
         let top = a.y == b.y && opposite.y > a.y;
-        // From the upper to the lower end of the edge, points to the right on the screen have a negative orientation.
+        // Seen from the upper to the lower end of the edge, a point to the right of it on the screen has a negative orientation.
         let (upper, lower) = if a.y < b.y { (a, b) } else { (b, a) };
         let left = a.y != b.y && orientation(upper, lower, opposite) < 0;
         let sign = orientation(a, b, opposite).signum();
@@ -59,7 +60,8 @@ impl Edge {
     }
 }
 
-/// Twice the signed area of the triangle a, b, c: positive if they run clockwise on the screen (y points down).
+/// Returns twice the signed area of the triangle with the vertices a, b and c. It is positive if they run clockwise on the
+/// screen, where y points down.
 fn orientation(a: SnappedVertex, b: SnappedVertex, c: SnappedVertex) -> i128 {
     let (abx, aby) = (i128::from(b.x - a.x), i128::from(b.y - a.y));
     let (acx, acy) = (i128::from(c.x - a.x), i128::from(c.y - a.y));
@@ -70,13 +72,13 @@ fn orientation(a: SnappedVertex, b: SnappedVertex, c: SnappedVertex) -> i128 {
 #[derive(Clone, Debug)]
 pub struct ExactTriangle {
     vertices: [SnappedVertex; 3],
-    /// The edge `edges[i]` lies opposite to the vertex `vertices[i]`.
+    /// The three edges; `edges[i]` is opposite to `vertices[i]`.
     edges: [Edge; 3],
     doubled_area: i128,
 }
 
 impl ExactTriangle {
-    /// The triangle of three snapped vertices in any order; `None` if its area is zero.
+    /// Makes the triangle of three snapped vertices in any order, or `None` if its area is zero.
     pub fn new(vertices: [SnappedVertex; 3]) -> Option<Self> {
         let [a, b, c] = vertices;
         let doubled_area = orientation(a, b, c).abs();
@@ -113,7 +115,7 @@ impl ExactTriangle {
         }
     }
 
-    /// The depth of the plane through the three vertices, at the centre of the pixel in this column and row.
+    /// Returns the depth at the centre of the pixel in this column and row, on the plane through the three vertices.
     pub fn depth(&self, column: i64, row: i64) -> ExactDepth {
         let (x, y) = centre(column, row);
         let weighted = |i: usize| self.edges[i].at(x, y) * i128::from(self.vertices[i].w);
@@ -123,7 +125,7 @@ impl ExactTriangle {
         }
     }
 
-    /// The largest slope of the plane of depth, in depth codes per pixel.
+    /// Returns the largest slope of the plane of depth over all directions on the screen, in depth codes per pixel.
     pub fn depth_slope(&self) -> f64 {
         let here = self.depth(0, 0).codes();
         let (right, below) = (self.depth(1, 0).codes(), self.depth(0, 1).codes());
@@ -144,12 +146,12 @@ pub struct ExactDepth {
 }
 
 impl ExactDepth {
-    /// The depth in codes, rounded to f64 with a relative error below 2^-51.
+    /// Returns the depth in depth codes, rounded to f64 with a relative error below 2^-51.
     pub fn codes(&self) -> f64 {
         self.numerator as f64 / self.denominator as f64
     }
 
-    /// `code` minus this depth, in codes. The difference is exact before it is rounded to f64.
+    /// Returns `code` minus this depth, in depth codes. The difference is exact before it is rounded to f64.
     pub fn error_of(&self, code: u32) -> f64 {
         (i128::from(code) * self.denominator - self.numerator) as f64 / self.denominator as f64
     }
@@ -171,7 +173,7 @@ mod tests {
 
     #[test]
     fn centres_on_top_and_left_edges_belong_and_those_on_right_and_bottom_edges_do_not() {
-        // The two triangles whose union is the square between the pixel centres (0, 0) and (2, 2).
+        // Two triangles that together form the square between the centres of the pixels (0, 0) and (2, 2).
         let upper = triangle([(128, 128), (640, 128), (640, 640)]);
         let lower = triangle([(128, 128), (128, 640), (640, 640)]);
         assert_eq!(pixels(&upper), [(0, 0), (1, 0), (1, 1)]);
@@ -197,7 +199,7 @@ mod tests {
 
     #[test]
     fn depth_is_the_plane_through_the_vertices() {
-        // w is 64·(10 + column + 2·row) at the pixel centres.
+        // The depth of a vertex is 10 + column + 2·row, in depth codes.
         let vertex = |column: i64, row: i64| SnappedVertex {
             x: column * 256 + 128,
             y: row * 256 + 128,

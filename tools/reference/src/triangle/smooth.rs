@@ -1,5 +1,5 @@
-//! Errors of smooth shading: of the model's pixels, and of interpolation without the division by depth. Both are compared
-//! with the exact quotient of the planes through a triangle's vertices.
+//! Errors of smooth shading. The colours of the model's pixels, and colours that are linear on the screen, are compared with
+//! exact perspective interpolation: the quotient of two planes through the triangle's vertices, light/z and 1/z.
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
@@ -14,10 +14,10 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::errors::Errors;
 
-/// Steps of the red, green and blue channel that correspond to a light of 1.
+/// Number of steps of the red, green and blue channel that a light of 1 spans. These steps are the unit of all colours here.
 const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
-/// A triangle on the screen whose light is interpolated exactly.
+/// A triangle on the screen, whose light is interpolated between the vertices in f64.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolated {
     places: [[f64; 2]; 3],
@@ -26,7 +26,7 @@ pub struct Interpolated {
 }
 
 impl Interpolated {
-    /// The triangle of three snapped vertices and the light at each of them.
+    /// Makes the triangle of three snapped vertices, with the light `lit[i]` at `vertices[i]`.
     pub fn new(vertices: &[ScreenVertex; 3], lit: &[Lit; 3]) -> Self {
         Self {
             places: vertices.map(|v| [v.x, v.y].map(|x| f64::from(x) / 256.0)),
@@ -38,12 +38,12 @@ impl Interpolated {
         }
     }
 
-    /// Barycentric coordinates of a point: the parts of the three vertices.
+    /// Returns the barycentric coordinates of a point: the weight of each vertex, with a sum of 1.
     fn parts(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let [a, b, c] = self.places.map(|[px, py]| [px - x, py - y]);
         let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
         let areas = [cross(b, c), cross(c, a), cross(a, b)];
-        // The divisor is not the sum of the three areas, because each has a rounding error of its own.
+        // The divisor is computed from the vertices, because the sum of the three areas would contain their rounding errors.
         let side = |k: usize| [0, 1].map(|axis| self.places[k][axis] - self.places[0][axis]);
         areas.map(|area| area / cross(side(1), side(2)))
     }
@@ -58,41 +58,41 @@ impl Interpolated {
         })
     }
 
-    /// The exact channels at a point, in steps: light is linear on the triangle in space.
+    /// Returns red, green and blue at a point, in steps, for light that is linear on the triangle in space (the exact result).
     pub fn perspective(&self, point: [f64; 2]) -> [f64; 3] {
         let parts = self.parts(point);
         self.weighted([0, 1, 2].map(|i| parts[i] * self.w[i]))
     }
 
-    /// The channels at a point, in steps, if light is linear on the screen.
+    /// Returns red, green and blue at a point, in steps, for light that is linear on the screen.
     pub fn affine(&self, point: [f64; 2]) -> [f64; 3] {
         self.weighted(self.parts(point))
     }
 }
 
-/// Counts and errors of a scene. Errors are in steps of a channel.
+/// Counts and errors over the triangles of a scene. Errors are in steps of a channel.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Measured {
-    /// Triangles on the screen, whole or made by the clipper.
+    /// Number of triangles on the screen: whole triangles, and those that the clipper made.
     pub triangles: u64,
-    /// Triangles on the screen that the clipper made.
+    /// Number of triangles on the screen that the clipper made.
     pub clipped: u64,
-    /// Triangles on the screen that show their back face.
+    /// Number of triangles on the screen that show their back face.
     pub back: u64,
-    /// Covered pixels, summed over the triangles.
+    /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
     /// The smallest depth code of a covered pixel.
     pub farthest: u32,
-    /// Errors of the model's pixels.
+    /// Errors of the colours that the model draws.
     pub model: Errors,
-    /// Errors of the exact channels rounded to a step. No method that returns whole steps has smaller errors.
+    /// Errors of the exact colours after rounding to whole steps. No method that returns whole steps has smaller errors.
     pub rounded: Errors,
-    /// Errors of channels that are linear on the screen, rounded to a step.
+    /// Errors of colours that are linear on the screen, after rounding to whole steps.
     pub affine: Errors,
 }
 
 impl Measured {
-    /// Draws a triangle alone and adds its pixels to the figures.
+    /// Draws a triangle on an empty picture of this width and height, and adds its pixels to the counts and errors.
     fn add(&mut self, triangle: &Oriented, lit: &[Lit; 3], (width, height): (u32, u32)) {
         let Some(bounds) = Bounds::new(&triangle.vertices, width, height) else {
             return;
@@ -129,7 +129,7 @@ impl Measured {
     }
 }
 
-/// A scene with a limit for the model's error.
+/// A scene with a bound of the model's error.
 pub struct Scene {
     /// Description of the scene.
     pub name: &'static str,
@@ -146,12 +146,12 @@ enum Content {
         size: (u32, u32),
         cull: bool,
     },
-    /// Triangles given by their snapped vertices and the light at them.
+    /// Triangles given by their snapped vertices and by the light at each vertex.
     Screen(Vec<([ScreenVertex; 3], [Lit; 3])>),
 }
 
 impl Scene {
-    /// Draws each triangle of the scene alone and measures its pixels.
+    /// Draws each triangle of the scene on an empty picture and measures the errors of its pixels.
     ///
     /// # Panics
     /// When the mesh is malformed.
@@ -186,7 +186,7 @@ impl Scene {
     }
 }
 
-/// The triangles that the model draws for a mesh, after clipping.
+/// Returns the triangles that the model draws for an encoded mesh, after clipping.
 fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> Vec<DrawnTriangle> {
     let mesh = Mesh::new_checked(bytes).expect("a scene's mesh is good");
     let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
@@ -214,17 +214,18 @@ fn drawn(bytes: &[u8], view: &View, (width, height): (u32, u32), cull: bool) -> 
     drawn
 }
 
-/// Largest error of a channel, in steps, for depth codes of at least `farthest`: half a step by the last rounding, plus the
-/// bound in docs/formats.md, "Smooth shading".
+/// Returns a bound of the error of a channel, in steps, for depth codes of at least `farthest`. It is half a step for the last
+/// rounding, plus the bound in docs/formats.md, "Smooth shading".
 fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }
 
-/// Smallest depth code that any camera and mesh can give.
+/// Smallest depth code that a camera and a mesh can give.
 const FARTHEST: f64 = 228.0;
+/// Largest depth of a vertex, in steps of 1/64 depth code.
 const LARGEST: u32 = ((1 << 18) - 4) * 64;
 
-/// The view along +y from the point (0, `y`, 0).
+/// Returns the view along +y from the eye at (0, `y`, 0).
 fn along(y: f64, half_width: f64, near: f64) -> Box<View> {
     let json = format!(
         r#"{{"eye":[0,{y},0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":{near}}}"#
@@ -247,7 +248,7 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
                 random.random_range(-0.7..0.7),
             ]
             .map(quantised),
-            // Half of the colours are white or black, because these give the steepest change of light.
+            // Half of the colours are white or black, because light changes most steeply between them.
             colour: Rgb565(
                 [0, 0xFFFF, random.random(), random.random()][random.random_range(0..4)],
             ),
@@ -263,7 +264,8 @@ fn soup(random: &mut Pcg64Mcg, triangles: &[[[f64; 3]; 3]]) -> Vec<u8> {
     encode(&vertices, &triangles).expect("a small mesh")
 }
 
-/// Random triangles on the screen, of every shape and over the whole range of depths; with `thin`, slivers.
+/// Makes random triangles on the screen, over the whole range of depths. If `thin` is set they are slivers, otherwise they
+/// have any shape.
 fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3])> {
     const GUARD: i32 = 2047 << 8;
     (0..300)
@@ -275,7 +277,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
             };
             let [a, b, mut c] = [corner(), corner(), corner()];
             if thin {
-                // The third corner is close to the middle of the edge between the others.
+                // The third corner is close to the middle of the edge between the first two corners.
                 c = [0, 1].map(|k| (a[k] + b[k]) / 2 + random.random_range(-64..=64));
             }
             let vertices = [a, b, c].map(|[x, y]| ScreenVertex {
@@ -296,7 +298,7 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
         .collect()
 }
 
-/// The measured scenes, common and extreme ones.
+/// Returns the measured scenes, from common to extreme ones.
 pub fn scenes() -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
     let [small, _, large] = glint_model::SIZES;
@@ -305,7 +307,8 @@ pub fn scenes() -> Vec<Scene> {
         let made = glint::convert::convert(&polygons, glint::convert::Options::default());
         made.expect("a good mesh").0
     };
-    // A floor that extends from just in front of the eye to the largest coordinates of a mesh.
+    // Two triangles of a floor: its narrow near edge is at y = `from`, just in front of the eye, and its wide far edge is at
+    // y = 1.99, near the largest coordinate that a mesh can have.
     let floor = |from: f64| {
         let (near, far) = (0.05, 1.9);
         [

@@ -1,8 +1,9 @@
-//! The visible surface of each pixel of a scene that is exact, without snapping, and the pixels that snapping may change.
+//! The visible surface of each pixel of a scene whose vertices are exact, and the pixels where snapping the vertices to the
+//! subpixel grid may change the result.
 //!
-//! The classes of pixels follow the rasterization checks of the Khronos conformance tests
-//! (dEQP). A pixel whose centre is inside a triangle by more than the tolerance must be
-//! drawn, and one that is outside by more must not. In between, both results are right.
+//! The classes of pixels follow the rasterization checks of the Khronos conformance tests (dEQP). A pixel whose centre is
+//! inside a triangle by at least the tolerance must be drawn. A pixel whose centre is outside by at least the tolerance must
+//! not be drawn. For a pixel in between, both results are right.
 
 use crate::camera::{Camera, Size, Vector, cross, dot, subtract};
 
@@ -20,18 +21,19 @@ pub enum Class {
 /// A triangle clipped and projected in f64.
 #[derive(Clone, Debug)]
 pub struct ProjectedTriangle {
-    /// Corners, in pixels, of the part of the triangle beyond the near plane; empty if there is no such part.
+    /// Corners, in pixels, of the part of the triangle beyond the near plane. Empty if there is no such part.
     pub corners: Vec<[f64; 2]>,
-    /// Lines through the edges as (a, b, c): a·x + b·y + c is the distance to the edge in pixels, positive inside the triangle.
+    /// Lines through the edges, each as (a, b, c): the distance of the point (x, y) to the edge is a·x + b·y + c in pixels,
+    /// positive inside the triangle.
     edges: Vec<Vector>,
     /// Plane of the inverse depth: 1/z = plane · (x, y, 1), with x and y in pixels and z in world units.
     inverse_depth: Vector,
-    /// Whether the front face is visible: whether the vertices run counter-clockwise on the screen.
+    /// Whether the front face is visible, which means that the vertices run counter-clockwise on the screen.
     pub front: bool,
 }
 
 impl ProjectedTriangle {
-    /// Clips and projects a triangle of the world.
+    /// Clips and projects a triangle given by its vertices in world coordinates.
     pub fn new(camera: &Camera, size: Size, triangle: [Vector; 3]) -> Self {
         let points = triangle.map(|point| camera.coordinates(point));
         let normal = cross(
@@ -51,7 +53,7 @@ impl ProjectedTriangle {
         let c = normal[2] - a * f64::from(size.width) / 2.0 - b * f64::from(size.height) / 2.0;
         let front = offset < 0.0;
         let inverse_depth = if offset == 0.0 {
-            // The triangle is seen edge-on, so its depth is no function of the position.
+            // The triangle is seen edge-on, so its depth is not a function of the position on the screen.
             [0.0, 0.0, f64::INFINITY]
         } else {
             [a / offset, b / offset, c / offset]
@@ -64,13 +66,13 @@ impl ProjectedTriangle {
         }
     }
 
-    /// The class of the pixel in `column` and `row`, for a tolerance in pixels.
+    /// Returns the class of the pixel in `column` and `row`, for a tolerance in pixels.
     pub fn classify(&self, column: u32, row: u32, tolerance: f64) -> Class {
         if self.corners.is_empty() {
             return Class::None;
         }
         let here = centre(column, row);
-        // Fewer than three edges enclose no area, so no centre can be inside.
+        // Fewer than three edges enclose no area, so no pixel centre can be inside.
         let most = if self.edges.len() < 3 {
             0.0
         } else {
@@ -90,18 +92,19 @@ impl ProjectedTriangle {
         }
     }
 
-    /// 1/z of the triangle's plane at the centre of a pixel, with z in world units along n; infinite for a triangle seen edge-on.
+    /// Returns 1/z of the triangle's plane at the centre of a pixel, where z is the depth in world units. The result is infinite
+    /// if the triangle is seen edge-on.
     pub fn inverse_depth(&self, column: u32, row: u32) -> f64 {
         dot(self.inverse_depth, centre(column, row))
     }
 
-    /// The largest slope of 1/z, per pixel.
+    /// Returns the largest slope of 1/z over all directions on the screen, per pixel.
     pub fn inverse_depth_slope(&self) -> f64 {
         self.inverse_depth[0].hypot(self.inverse_depth[1])
     }
 
-    /// The pixels of the picture whose centres may be within a pixel
-    /// of the triangle: the range of columns, then the range of rows.
+    /// Returns the ranges of columns and of rows that contain all pixels whose
+    /// centres lie in the triangle or within a pixel of it.
     pub fn bounds(&self, size: Size) -> [std::ops::Range<u32>; 2] {
         let range = |axis: usize, limit: u32| {
             let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -116,12 +119,12 @@ impl ProjectedTriangle {
     }
 }
 
-/// Length in pixels below which the direction of an edge is not reliable, so that the edge is left out. Without it the
-/// polygon becomes larger only where it is about as narrow as this length.
+/// Length in pixels below which an edge is left out, because its direction is not reliable. Leaving an edge out enlarges the
+/// polygon only where the polygon is about as narrow as this length.
 const SHORTEST_EDGE: f64 = 1e-6;
 
-/// The edges of a convex polygon as lines whose normals point inwards. A front face runs counter-clockwise in the world.
-/// Its picture does so on the screen too, where y points down, so its signed area is negative.
+/// Returns the edges of a convex polygon as lines whose normals point inwards. The corners of a front face run
+/// counter-clockwise on the screen, where y points down, so the signed area of a front face is negative.
 fn inward_edges(corners: &[[f64; 2]], front: bool) -> Vec<Vector> {
     let sign = if front { -1.0 } else { 1.0 };
     let mut edges = Vec::with_capacity(corners.len());
@@ -141,21 +144,21 @@ fn centre(column: u32, row: u32) -> Vector {
     [f64::from(column) + 0.5, f64::from(row) + 0.5, 1.0]
 }
 
-/// The visible surface of a pixel, as far as snapping cannot change it.
+/// The visible surface of a pixel, where snapping the vertices cannot change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// No surface, however vertices are snapped.
+    /// No surface, however the vertices are snapped.
     Background,
-    /// This triangle, however vertices are snapped.
+    /// A triangle that is visible however the vertices are snapped.
     Surface {
-        /// Index of the triangle in the scene's list.
+        /// Index of the triangle in the scene's list of triangles.
         triangle: usize,
-        /// 1/z at the pixel's centre, z in world units.
+        /// Value of 1/z at the pixel's centre, where z is the depth in world units.
         inverse_depth: f64,
         /// The largest slope of 1/z on the triangle, per pixel.
         slope: f64,
     },
-    /// The result depends on the snapping of vertices or on the rounding of depth.
+    /// The visible surface depends on how vertices are snapped or depths are rounded.
     Unstable,
 }
 
@@ -168,10 +171,10 @@ pub struct Tolerance {
     pub inverse_depth: f64,
 }
 
-/// The visible surface of each pixel of a picture, row by row.
+/// Computes the visible surface of each pixel of a picture, row by row.
 ///
-/// With `cull`, back faces are left out. But pixels near their edges stay
-/// unstable, because snapping can turn a very thin back face into a front face.
+/// With `cull`, back faces are left out. Pixels near the edges of a back face are unstable
+/// nevertheless, because snapping can turn a very thin back face into a front face.
 pub fn visible_surfaces(
     camera: &Camera,
     size: Size,
@@ -273,7 +276,7 @@ mod tests {
         inverse_depth: 1e-5,
     };
 
-    /// A front face in the plane at this z, which covers the left half of the picture and more.
+    /// Returns a front face in the plane at this z. It covers the left half of the picture and extends beyond the border.
     fn half(z: f64) -> [Vector; 3] {
         [[0.0, 9.0, z], [0.0, -9.0, z], [-9.0, 0.0, z]]
     }

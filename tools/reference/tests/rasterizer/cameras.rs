@@ -1,4 +1,4 @@
-//! Views from cameras in f64, and random cameras.
+//! Conversion of cameras in f64 to views, and random cameras.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
@@ -6,7 +6,7 @@ use glint_reference::camera::{Camera, Vector};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
-/// Converts a camera to a view, with each number rounded to the nearest.
+/// Converts a camera to a view. Each number is rounded to the nearest number of its fixed-point format.
 pub fn view(camera: &Camera) -> View {
     let basis = |row: Vector| row.map(Q2_23::from_num);
     let made = View::new_checked(
@@ -23,7 +23,7 @@ pub fn view(camera: &Camera) -> View {
     }
 }
 
-/// A camera at `eye` that looks at `target`, rolled by `roll` radians about its line of sight.
+/// Returns a camera at `eye` that looks at `target`, turned by `roll` radians about its line of sight.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
     let n = unit(minus(target, eye));
     // An arbitrary direction that is not parallel to n.
@@ -46,7 +46,7 @@ pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near:
     }
 }
 
-/// A camera at `distance` in a random direction from its target, which is a random point near the origin.
+/// Returns a random camera. It looks at a random point near the origin, from a random direction and this distance.
 pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> Camera {
     let target = [(); 3].map(|()| random.random_range(-0.3..0.3));
     let direction = direction(random);
@@ -60,7 +60,7 @@ pub fn around(random: &mut Pcg64, distance: f64, half_width: f64, near: f64) -> 
     )
 }
 
-/// A random direction, uniformly distributed on the sphere.
+/// Returns a random direction, uniformly distributed on the sphere.
 pub fn direction(random: &mut Pcg64) -> Vector {
     let z: f64 = random.random_range(-1.0..1.0);
     let (sin, cos) = random.random_range(0.0..std::f64::consts::TAU).sin_cos();
@@ -68,7 +68,7 @@ pub fn direction(random: &mut Pcg64) -> Vector {
     [across * cos, across * sin, z]
 }
 
-/// A random number whose logarithm is uniformly distributed.
+/// Returns a random number from `low` to `high` whose logarithm is uniformly distributed.
 pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
     random
         .random_range(low.ln()..high.ln())

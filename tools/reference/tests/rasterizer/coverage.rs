@@ -1,5 +1,6 @@
-//! Checks coverage and depth of single triangles: against the exact rasterizer, with the model's own snapped vertices, and
-//! against the unsnapped triangle, by the classes of the conformance tests.
+//! Checks the pixels that the model draws for single triangles. Coverage and depth are compared with the exact rasterizer, which
+//! takes the vertices as the model snapped them. Coverage is also compared with the unsnapped triangle: pixels more than a
+//! tolerance inside it must be drawn, and pixels more than a tolerance outside must not (see `surface::Class`).
 
 use glint_reference::camera::{Camera, Size};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
@@ -38,10 +39,11 @@ impl Tally {
     }
 }
 
-/// Largest allowed deviation of a depth from the exact plane, in codes.
+/// Largest allowed deviation of a depth from the plane through the snapped vertices, in depth codes.
 const DEPTH_LIMIT: f64 = 2.0;
 
-/// Largest allowed displacement of an edge by snapping, in pixels. The conformance tests allow three steps of the grid.
+/// Returns the largest allowed displacement of an edge by snapping, in pixels. The Khronos conformance tests allow three steps
+/// of the subpixel grid, which are 3/256 pixel.
 pub fn snap_limit(size: Size) -> f64 {
     if size == LARGE {
         2.0 / 256.0
@@ -50,7 +52,7 @@ pub fn snap_limit(size: Size) -> f64 {
     }
 }
 
-/// Draws each triangle of a case alone and compares all pixels with both references.
+/// Draws each triangle of a case alone and compares all pixels with the exact rasterizer and with the unsnapped triangle.
 pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     let view = view(&case.camera);
     let camera = Camera::from(&view);
@@ -77,7 +79,8 @@ pub fn check(renderer: &mut Renderer, case: &Case) -> Tally {
     total
 }
 
-/// Compares the renderer's last picture, of one triangle, with the exact coverage and depth of the parts that the model drew.
+/// Compares the renderer's last picture, which shows one triangle, with the exact coverage and depth of the parts into which the
+/// model clipped the triangle.
 fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     let mut tally = Tally::default();
     let mut left = renderer.depth.clone();
@@ -85,7 +88,8 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
         part.for_each_pixel(size.width, size.height, |column, row| {
             let code = &mut left[(row * size.width + column) as usize];
             if *code == 0 {
-                // The pixel was not drawn, or was already counted for another part. Parts do not overlap, so both are errors.
+                // The pixel was not drawn, or it was already counted for another part. The second case is an error too, because
+                // parts do not overlap.
                 tally.missing += 1;
             } else {
                 tally.covered += 1;
@@ -99,7 +103,7 @@ fn against_exact(renderer: &Renderer, size: Size) -> Tally {
     tally
 }
 
-/// Compares the renderer's last picture, of one triangle, with the classes of the unsnapped triangle.
+/// Compares the renderer's last picture, which shows one triangle, with the class of each pixel for the unsnapped triangle.
 fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, tally: &mut Tally) {
     let size = case.size;
     let triangle = ProjectedTriangle::new(camera, size, scene.corners(0));
@@ -121,7 +125,7 @@ fn classify(renderer: &Renderer, camera: &Camera, scene: &Scene, case: &Case, ta
             }
         }
     }
-    // The pixels that remain are outside the triangle's bounds, so none should have been drawn.
+    // The drawn pixels that remain are outside the triangle's bounds, where nothing should be drawn.
     tally.class_extra += drawn;
 }
 

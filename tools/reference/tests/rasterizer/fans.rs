@@ -9,11 +9,11 @@ use crate::cameras::{around, log_range, view};
 use crate::renderer::{Renderer, exact};
 use crate::scenes::{Case, ONE, SMALL, Scene};
 
-/// Steps along an edge of a [`Cut`].
+/// Number of lattice steps along each of the two sides of a [`Cut`].
 const STEPS: i64 = 200;
 
-/// A large triangle that is cut into many with shared edges. All vertices lie on a lattice in the plane of the triangle, so
-/// the parts together are exactly the whole.
+/// A large triangle that is cut into many triangles with shared edges. All vertices lie on a lattice in the plane of the large
+/// triangle, so the small triangles together are exactly the large one.
 struct Cut {
     origin: [i64; 3],
     sides: [[i64; 3]; 2],
@@ -22,7 +22,7 @@ struct Cut {
 }
 
 impl Cut {
-    /// A random triangle whose corners have coordinates of magnitude `reach` at most.
+    /// Makes a random triangle, still uncut, whose corners have coordinates from −`reach` to `reach`.
     fn new(random: &mut Pcg64, reach: f64) -> Self {
         let reach = (reach * ONE) as i64;
         let mut corner = || [(); 3].map(|()| random.random_range(-reach..reach));
@@ -36,8 +36,8 @@ impl Cut {
         }
     }
 
-    /// Cuts one triangle in three at an inner lattice point, if there is one. Each part starts
-    /// at a random one of its vertices, because the first vertex is the origin of the depth plane.
+    /// Cuts a random one of the triangles into three at a lattice point inside it, if there is one. The first vertex of
+    /// each part is chosen at random, because the model computes the plane of depth from the first vertex.
     fn cut(&mut self, random: &mut Pcg64) {
         let chosen = random.random_range(0..self.triangles.len());
         let [a, b, c] = self.triangles[chosen];
@@ -79,12 +79,13 @@ impl Cut {
     }
 }
 
-/// Twice the signed area of a triangle.
+/// Returns twice the signed area of a triangle.
 fn area([a, b, c]: [[i64; 2]; 3]) -> i64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])
 }
 
-/// A random whole triangle as a scene, and its parts as another scene. Some parts are turned over.
+/// Returns a random large triangle as a scene, and the triangles into which it is cut as another scene. About half of the parts
+/// show their back face.
 fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     let mut cut = Cut::new(random, reach);
     let whole = cut.scene();
@@ -96,7 +97,7 @@ fn whole_and_parts(random: &mut Pcg64, reach: f64) -> (Scene, Scene) {
     (whole, parts)
 }
 
-/// Turns over about half of the triangles.
+/// Swaps two vertices in about half of the triangles, which turns these triangles over.
 fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     for triangle in &mut scene.triangles {
         if random.random_bool(0.5) {
@@ -105,7 +106,7 @@ fn mix_winding(random: &mut Pcg64, scene: &mut Scene) {
     }
 }
 
-/// Number of triangles of a case that cover each pixel. The triangles are drawn one by one.
+/// Counts for each pixel how many triangles of a case cover it. The triangles are drawn one by one.
 fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     let view = view(&case.camera);
     let mut counts = vec![0; (case.size.width * case.size.height) as usize];
@@ -118,8 +119,9 @@ fn counts(renderer: &mut Renderer, case: &Case) -> Vec<u32> {
     counts
 }
 
-/// Checks coverage counts against the outline of all triangles together: one
-/// inside, none outside, and at most one within the tolerance of the outline.
+/// Checks the number of triangles that cover each pixel: one inside the outline of all triangles together, none outside, and at
+/// most one where the pixel's centre is close to the outline. Returns the number of pixels inside. `outline` is the index of the
+/// outline in the scene `whole`.
 fn check_against_outline(case: &Case, outline: usize, whole: &Scene, counts: &[u32]) -> u64 {
     let camera = Camera::from(&view(&case.camera));
     let outline = ProjectedTriangle::new(&camera, case.size, whole.corners(outline));
@@ -163,7 +165,7 @@ fn a_cut_triangle_covers_what_it_did_before_and_once() {
         let counts = counts(&mut renderer, &case);
         check_against_outline(&case, 0, &whole, &counts);
 
-        // If nothing was clipped, the snapped corners of the outline say exactly which pixels are inside.
+        // Nothing is clipped here, so the outline's snapped corners tell exactly which pixels are inside.
         renderer.draw(&whole, &view(&case.camera), case.size, false);
         let mut expected = vec![0; counts.len()];
         if let Some(outline) = renderer.drawn.first().and_then(exact) {

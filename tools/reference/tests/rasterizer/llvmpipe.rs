@@ -1,7 +1,7 @@
-//! Compares coverage with Mesa's software rasterizer llvmpipe, on machines that have Mesa and moderngl.
+//! Compares the model's coverage with Mesa's software rasterizer llvmpipe, on machines that have Mesa and moderngl.
 //!
-//! llvmpipe draws each triangle twice. First it draws from the model's snapped vertices, and must cover the same pixels.
-//! Then it draws from vertices in f64 and snaps these itself, so pixels may differ only if it snaps a vertex differently.
+//! llvmpipe draws each triangle twice. From the model's snapped vertices, it must cover the same pixels as the model. From
+//! unsnapped vertices, which it snaps by itself, pixels may differ only if llvmpipe snaps a vertex differently.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -66,25 +66,26 @@ impl Differences {
 struct Subject {
     name: String,
     exact: ProjectedTriangle,
-    /// Positions of the triangle's corners on the screen in f64, in pixels; undefined for corners behind the eye.
+    /// Unsnapped positions of the triangle's corners on the screen, in pixels. They have no meaning for corners behind the eye.
     places: [[f64; 2]; 3],
     /// The triangle's corners as the model snapped them, in the order of `places`; `None` if the triangle was clipped.
     snapped: Option<[SnappedVertex; 3]>,
     covered: Vec<bool>,
 }
 
-/// Extent of llvmpipe's viewport from the middle of the picture, in pixels. It is larger than the model's guard band, so
-/// llvmpipe clips only triangles that the model clips too.
+/// Distance in pixels from the middle of the picture to each border of llvmpipe's viewport. The viewport is larger than the
+/// model's guard band, so llvmpipe clips only triangles that the model clips too.
 const REACH: u32 = 2400;
 
-/// The clip coordinates of a point of the world. x and y are −1 and 1 at the ends of the viewport, and z ≥ −w is the near plane.
+/// Converts a point of the world to clip coordinates. x/w and y/w are −1 and 1 at the borders of the viewport, and the near plane
+/// is at z = −w.
 fn clip_coordinates(camera: &Camera, size: Size, point: Vector) -> [f64; 4] {
     let [x, y, z] = camera.coordinates(point);
     let scale = camera.pixels_per_unit(size) / f64::from(REACH);
     [x * scale, y * scale, z - 2.0 * camera.near, z]
 }
 
-/// Runs of covered pixels, row by row.
+/// Returns the runs of covered pixels, row by row. Each run is its row, its first column, and the column after its last.
 fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     let mut spans = Vec::new();
     for (row, pixels) in (0..).zip(covered.chunks(size.width as usize)) {
@@ -100,7 +101,8 @@ fn spans(covered: &[bool], size: Size) -> Vec<[u32; 3]> {
     spans
 }
 
-/// The snapped vertices of the model's only triangle, in the order of the corners' positions; `None` if it was clipped.
+/// Returns the snapped vertices of the triangle that the model has drawn, in the order of `places`, the corners' unsnapped
+/// positions. Returns `None` if the triangle was clipped.
 fn snapped_corners(renderer: &Renderer, places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [drawn] = renderer.drawn.as_slice() else {
         return None;
@@ -159,15 +161,17 @@ fn subjects() -> (Scenes, Vec<Subject>) {
     (scenes, subjects)
 }
 
-/// The grid step to which llvmpipe snaps a coordinate in f64; `None` if its floats may round to either side.
+/// Returns the coordinate to which llvmpipe snaps `place`, in steps of 1/256 pixel; `None` if this is not certain, because
+/// llvmpipe computes in f32, whose rounding errors may decide.
 fn llvmpipe_snap(place: f64) -> Option<i64> {
     let steps = place * 256.0;
-    // Bound of a few roundings of 2^-24, on numbers as large as the position and the picture.
+    // Bound of the error of a few f32 operations, each with a relative error of 2^-24, on numbers as large as the position and
+    // the picture.
     let uncertain = 0.01 + (steps.abs() + 160.0 * 256.0) * 4.0 / 16_777_216.0;
     ((steps - steps.floor() - 0.5).abs() > uncertain).then(|| steps.round() as i64)
 }
 
-/// The vertices as llvmpipe snaps them; `None` if this is not certain.
+/// Returns the vertices as llvmpipe snaps them; `None` if this is not certain.
 fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     let [a, b, c] = places.map(|[x, y]| {
         let (x, y) = (llvmpipe_snap(x)?, llvmpipe_snap(y)?);
@@ -176,7 +180,7 @@ fn llvmpipe_vertices(places: [[f64; 2]; 3]) -> Option<[SnappedVertex; 3]> {
     Some([a?, b?, c?])
 }
 
-/// llvmpipe's coverage, from the model's coverage and the pixels that differ.
+/// Returns llvmpipe's coverage, which is the model's coverage with the differing pixels inverted.
 fn llvmpipe_coverage(subject: &Subject, differences: &Differences) -> Vec<bool> {
     let mut covered = subject.covered.clone();
     for &[column, row] in differences.pixels() {
@@ -215,12 +219,12 @@ fn llvmpipe_differs_only_where_a_vertex_snapped_differently() {
 /// Counts of compared triangles and differing pixels.
 #[derive(Debug, Default)]
 struct Tally {
-    /// Triangles that were drawn without clipping.
+    /// Number of triangles that were drawn without clipping.
     whole: usize,
     covered: usize,
     snapped_differently: usize,
     differing_pixels: usize,
-    /// Triangles that were clipped or have no pixels.
+    /// Number of triangles that were clipped or not drawn.
     others: usize,
     other_covered: usize,
     other_differing_pixels: usize,
@@ -230,8 +234,8 @@ impl Tally {
     fn add(&mut self, subject: &Subject, comparison: &Comparison) {
         let covered = subject.covered.iter().filter(|&&covered| covered).count();
         let projected = &comparison.projected;
-        // Both rasterizers follow one rule and their vertices differ by a
-        // step at most, so only pixels within a step of an edge can differ.
+        // The model and llvmpipe follow the same rule, and their vertices differ by one step of the grid
+        // at most. So only pixels close to an edge can differ.
         for &[column, row] in projected.pixels() {
             let class = subject.exact.classify(column, row, 2.0 / 256.0);
             assert_eq!(
@@ -273,7 +277,7 @@ impl Tally {
             self.snapped_differently += 1;
             self.differing_pixels += projected.count();
         }
-        // Where llvmpipe's snapping is certain, it must cover the same pixels as the exact rasterizer with these vertices.
+        // If llvmpipe's snapped vertices are certain, it must cover the same pixels as the exact rasterizer with these vertices.
         if let Some(theirs) = theirs {
             let mut expected = vec![false; subject.covered.len()];
             if let Some(triangle) = ExactTriangle::new(theirs) {
@@ -291,7 +295,7 @@ impl Tally {
     }
 }
 
-/// Runs compare.py on scenes. The error is the reason why it cannot run.
+/// Runs compare.py on scenes and returns its results. The error is the reason why llvmpipe cannot be used.
 fn compare(scenes: &Scenes) -> Result<Results, String> {
     let reference = Path::new(env!("CARGO_MANIFEST_DIR"));
     let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("llvmpipe-scenes.json");
@@ -311,7 +315,7 @@ fn compare(scenes: &Scenes) -> Result<Results, String> {
     read(&output)
 }
 
-/// Reads the results of compare.py, or the reason why there are none. Any reason except a machine without llvmpipe is a failure.
+/// Reads the results of compare.py, or the reason why llvmpipe cannot be used. Panics if compare.py failed in another way.
 fn read(output: &Output) -> Result<Results, String> {
     let complaint = String::from_utf8_lossy(&output.stderr).trim().to_owned();
     match output.status.code() {

@@ -1,6 +1,7 @@
-//! Compares the model's triangle pipeline with the exact rasterizer and with the scene in f64.
+//! Compares the model of the triangle engine with an exact rasterizer and with computations in f64.
 //!
-//! All scenes come from fixed seeds, and a failure names the case and the triangle. `--nocapture` shows the measured figures.
+//! All scenes are random with fixed seeds, and a failure names the
+//! case and the triangle. `--nocapture` shows the measured figures.
 
 mod cameras;
 mod coverage;

@@ -1,4 +1,4 @@
-//! A simple interface to the model, which draws a scene and returns the picture and the drawn triangles.
+//! A simple interface to the model of the triangle engine, which draws a scene and keeps the picture and the drawn triangles.
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
@@ -8,7 +8,7 @@ use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
 use crate::scenes::Scene;
 
-/// Draws on the model. The buffers are kept from one picture to the next.
+/// Draws scenes with the model, and keeps the last picture. The buffers are reused for the next picture.
 #[derive(Default)]
 pub struct Renderer {
     /// Colours of the last picture, in RGB565.
@@ -56,7 +56,7 @@ impl Renderer {
     }
 }
 
-/// Converts a vertex of the model to one of the exact rasterizer.
+/// Converts a vertex of the model to a vertex of the exact rasterizer.
 pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     SnappedVertex {
         x: vertex.x.into(),
@@ -65,7 +65,7 @@ pub fn snapped(vertex: ScreenVertex) -> SnappedVertex {
     }
 }
 
-/// Converts a drawn triangle to one of the exact rasterizer; `None` if its area is 0.
+/// Converts a drawn triangle to a triangle of the exact rasterizer, or returns `None` if its area is 0.
 pub fn exact(drawn: &DrawnTriangle) -> Option<ExactTriangle> {
     ExactTriangle::new(drawn.vertices.map(snapped))
 }

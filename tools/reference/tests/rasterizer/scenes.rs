@@ -1,4 +1,4 @@
-//! Scenes that are encoded as meshes, and random cases.
+//! Scenes of triangles, which are encoded as meshes, and random test cases.
 
 use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex, encode};
 use glint_reference::camera::{Camera, Size, Vector};
@@ -23,7 +23,7 @@ pub const LARGE: Size = Size {
     height: 720,
 };
 
-/// A list of triangles whose coordinates are in Q2.14.
+/// A list of triangles, whose vertices have coordinates in Q2.14.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     pub positions: Vec<[i16; 3]>,
@@ -35,30 +35,30 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Adds a vertex at the nearest position in Q2.14 and returns its number.
+    /// Adds a vertex at the position in Q2.14 that is nearest to `point`, and returns the vertex's number.
     pub fn vertex(&mut self, point: Vector) -> u32 {
         self.positions.push(point.map(|x| (x * ONE).round() as i16));
         self.positions.len() as u32 - 1
     }
 
-    /// Adds a triangle with three vertices of its own.
+    /// Adds a triangle and its three vertices, which no other triangle uses.
     pub fn triangle(&mut self, points: [Vector; 3]) {
         let indices = points.map(|point| self.vertex(point));
         self.triangles.push(indices);
     }
 
-    /// The corners of a triangle, converted to f64 exactly.
+    /// Returns the corners of a triangle. The conversion to f64 is exact.
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle]
             .map(|index| self.positions[index as usize].map(|x| f64::from(x) / ONE))
     }
 
-    /// The corners of all triangles.
+    /// Returns the corners of all triangles.
     pub fn all_corners(&self) -> Vec<[Vector; 3]> {
         (0..self.triangles.len()).map(|i| self.corners(i)).collect()
     }
 
-    /// A scene with only this one of the triangles.
+    /// Returns a scene that contains only the triangle with this index.
     pub fn only(&self, triangle: usize) -> Self {
         Self {
             positions: self.triangles[triangle]
@@ -70,7 +70,7 @@ impl Scene {
         }
     }
 
-    /// The bytes of the scene's mesh.
+    /// Encodes the scene as a mesh and returns its bytes.
     pub fn encode(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self
             .positions
@@ -94,7 +94,7 @@ impl Scene {
     }
 }
 
-/// A scene with its camera and options.
+/// A test case: a scene with a camera and the options with which it is drawn.
 pub struct Case {
     pub name: String,
     pub scene: Scene,
@@ -106,7 +106,7 @@ pub struct Case {
 /// A function that makes a random scene and a camera for it.
 type Kind = fn(&mut Pcg64) -> (Scene, Camera);
 
-/// Name and function of each kind of random case. Each kind has its own difficulty.
+/// Name and function of each kind of random case. Each kind is difficult for a rasterizer in another way.
 const KINDS: [(&str, Kind); 8] = [
     ("a cloud of small triangles", cloud),
     ("triangles larger than the picture", large),
@@ -118,7 +118,7 @@ const KINDS: [(&str, Kind); 8] = [
     ("closed bodies cut by a far near plane", bodies),
 ];
 
-/// The random case that belongs to a seed.
+/// Makes the random case that belongs to a seed.
 pub fn random_case(seed: u64) -> Case {
     let mut random = Pcg64::seed_from_u64(seed);
     let kinds = KINDS.len() as u64;
@@ -149,7 +149,8 @@ fn near(random: &mut Pcg64, middle: Vector, reach: f64) -> Vector {
     [0, 1, 2].map(|i| middle[i] + offset[i])
 }
 
-/// `count` random triangles within a range of sizes, spread in a box of half width `reach`.
+/// Makes `count` random triangles whose middles are in a box of half width `reach` about the origin. Each triangle's size is
+/// random between the two `sizes`.
 fn spread(random: &mut Pcg64, count: usize, reach: f64, sizes: [f64; 2]) -> Scene {
     let mut scene = Scene::default();
     for _ in 0..count {
@@ -221,7 +222,7 @@ fn tiny(random: &mut Pcg64) -> (Scene, Camera) {
     )
 }
 
-/// A scene of random tetrahedra, whose triangles share edges.
+/// Makes a scene of random tetrahedra, whose triangles share edges.
 fn bodies(random: &mut Pcg64) -> (Scene, Camera) {
     let mut scene = Scene::default();
     for _ in 0..10 {

@@ -1,4 +1,4 @@
-//! Compares flat shading with the product of colour and light in f64.
+//! Compares the model's flat shading with the product of colour and light in f64.
 
 use glint_core::camera::View;
 use glint_core::mesh::Rgb565;
@@ -10,12 +10,13 @@ use crate::cameras::{direction, looking_at, view};
 use crate::renderer::Renderer;
 use crate::scenes::{ONE, SMALL, Scene};
 
-/// The red, green and blue channel of a colour, with 5, 6 and 5 bits.
+/// Returns the red, green and blue channel of an RGB565 colour, which have 5, 6 and 5 bits.
 fn channels(colour: u16) -> [f64; 3] {
     [colour >> 11, colour >> 5 & 63, colour & 31].map(f64::from)
 }
 
-/// The light clamp(−N·n, 0, 1), from the stored normal N and the forward direction n of the view.
+/// Computes the light on a triangle from its stored normal N and the forward direction n of the view: clamp(−N·n, 0, 1) for a
+/// front face, clamp(N·n, 0, 1) for a back face.
 fn intensity(normal: [i16; 3], facing: Facing, view: &View) -> f64 {
     let along: f64 = std::iter::zip(normal, view.n())
         .map(|(a, b)| f64::from(a) / ONE * b.to_num::<f64>())
@@ -38,7 +39,7 @@ fn shades_are_within_one_step_of_the_exact_product() {
         let mut scene = Scene::default();
         for _ in 0..60 {
             scene.triangle([(); 3].map(|()| direction(&mut random)));
-            // Some normals are longer or shorter than 1, because a mesh may contain any normals.
+            // The normals have lengths from 0 to 1.5, because a mesh may contain normals of any length.
             let length = random.random_range(0.0..1.5) * ONE;
             scene
                 .normals

@@ -1,4 +1,4 @@
-//! Compares smooth shading with the exact quotient in f64.
+//! Compares the model's smooth shading with exact perspective interpolation in f64.
 
 use glint_reference::triangle::smooth::scenes;
 

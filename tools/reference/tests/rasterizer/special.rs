@@ -1,4 +1,4 @@
-//! Hard cases with names, each of which passes through all checks of coverage.
+//! Hard cases for the rasterizer, made by hand. Each case passes through all checks of `coverage`.
 
 use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};
@@ -26,7 +26,7 @@ fn case(name: &str, camera: Camera, triangles: &[[Vector; 3]]) -> Case {
     }
 }
 
-/// The camera at a distance of 2 from the origin that looks along +y; x is to the right and z is up.
+/// Returns the camera at (0, −2, 0) that looks along +y. On its screen, x is to the right and z is up.
 fn ahead() -> Camera {
     looking_at([0.0, -2.0, 0.0], [0.0; 3], 0.0, 0.5, 0.1)
 }
@@ -47,7 +47,7 @@ fn check_all(case: Case) -> usize {
     covered(&mut renderer, &case)
 }
 
-/// Number of pixels that a case covers when it is drawn as a whole.
+/// Counts the pixels that a case covers when all its triangles are drawn together.
 fn covered(renderer: &mut Renderer, case: &Case) -> usize {
     renderer.draw(&case.scene, &view(&case.camera), case.size, case.cull);
     renderer.depth.iter().filter(|&&code| code != 0).count()
@@ -57,7 +57,7 @@ fn covered(renderer: &mut Renderer, case: &Case) -> usize {
 fn triangles_without_area_draw_nothing() {
     let point = [0.1, 0.2, 0.3];
     let triangles = [
-        // Triangles without area on the screen: a point, a line there and back, three points of a line, a triangle seen edge-on.
+        // A single point, a line there and back, three points of a line, and a triangle that is seen edge-on.
         [point; 3],
         [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.25], [-0.5, 0.0, 0.0]],
         [[-0.5, 0.0, 0.0], [0.0, 0.0, 0.0], [0.5, 0.0, 0.0]],
@@ -72,7 +72,7 @@ fn slivers_a_thousand_times_longer_than_wide() {
     for i in (1..40).step_by(3) {
         let along = [0.9, 0.0, 0.02 * f64::from(i) - 0.4];
         let back = along.map(|x: f64| -x);
-        // The third corner is one to forty steps of Q2.14 away from the long edge, at its middle or at one of its ends.
+        // In x and z, the third corner is 1 to 40 steps of Q2.14 away from the long edge, at its middle or one of its ends.
         for (place, depth) in [(0.0, 0.0), (0.9, 1.0), (-0.9, -1.0)] {
             let off = [place, depth, place * along[2] / 0.9 + f64::from(i) * STEP];
             triangles.push([along, back, off]);
@@ -85,7 +85,8 @@ fn slivers_a_thousand_times_longer_than_wide() {
 #[test]
 fn off_the_screen_on_every_side() {
     let mut triangles = Vec::new();
-    // Triangles beside the picture, beyond the guard band and behind the eye.
+    // Triangles beside the picture, some of them beyond the guard band. The last triangle, below, is between the
+    // eye and the near plane.
     for far in [1.2, 1.9] {
         for [x, z] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0]] {
             let middle = [x * far, -0.5, z * far];
@@ -123,7 +124,7 @@ fn an_apex_at_the_eye() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.55).sin_cos();
         triangles.push([eye, [cos, 1.0, sin], [0.7 * sin, 1.5, 0.7 * cos]]);
-        // A triangle with a corner one step of Q2.14 beside the eye, in front of or behind the near plane.
+        // A triangle with a corner close to the eye: one step of Q2.14 away from it in x, and 0 to 352 steps in y.
         let beside = [eye[0] + STEP, eye[1] + f64::from(i) * STEP * 32.0, eye[2]];
         triangles.push([beside, [sin, 0.5, cos], [-cos, 1.5, sin]]);
     }
@@ -178,7 +179,8 @@ fn inside_a_cube_everything_is_covered() {
 
 #[test]
 fn half_pixel_grid_where_many_centres_lie_on_edges() {
-    // At distance 1 and half_width 0.625, a pixel of 320x180 is 1/256 wide, so vertices fall on pixel centres and borders.
+    // At distance 1 and with half_width 0.625, a pixel of a picture of 320x180 is 1/256 wide. So vertices at multiples of 1/512
+    // fall on the centres and borders of pixels.
     let camera = Camera {
         eye: [0.0, 0.0, 0.0],
         u: [1.0, 0.0, 0.0],

@@ -1,4 +1,4 @@
-//! Compares snapped vertices and their depths with the projection in f64.
+//! Compares the vertices that the model snaps to the subpixel grid, and their depths, with the projection in f64.
 
 use std::fmt;
 
@@ -13,13 +13,14 @@ use crate::cameras::{around, log_range, view};
 use crate::renderer::Renderer;
 use crate::scenes::{LARGE, ONE, SMALL, Scene};
 
-/// Largest distances from the projection in f64, in steps of the grid, and largest errors of depth, in steps of 1/64 code.
+/// Largest distances of snapped vertices from their projection in f64, in steps of 1/256 pixel, and the largest error of their
+/// depth, in steps of 1/64 depth code.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     vertices: u64,
     across: f64,
     distance: f64,
-    /// Largest distance from the projection through the camera before its numbers were rounded to a view.
+    /// Largest distance from the projection through the camera as it was before its numbers were rounded to a view.
     unrounded_distance: f64,
     depth: f64,
 }
@@ -34,7 +35,8 @@ impl fmt::Display for Worst {
     }
 }
 
-/// Distance along x and y from a point of the screen to a snapped vertex, in steps of the grid.
+/// Returns the distance along x and y from a point of the screen, in
+/// pixels, to a snapped vertex. The result is in steps of 1/256 pixel.
 fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     [
         f64::from(snapped.x) - exact[0] * 256.0,
@@ -44,7 +46,7 @@ fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
 
 /// Projects random vertices through random cameras and compares those that are in the guard band.
 ///
-/// `limit` is the largest allowed distance from the projection through the unrounded camera, in steps of the grid.
+/// `limit` is the largest allowed distance from the projection through the unrounded camera, in steps of 1/256 pixel.
 fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     let mut worst = Worst::default();
     for seed in seeds {
@@ -55,7 +57,7 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
         let asked = around(&mut random, distance, half_width, near);
         let view = view(&asked);
         let camera = Camera::from(&view);
-        // The mesh has vertices in the picture or close to it.
+        // The constants are those of a mesh with the largest radius, so the scale of depth is valid for every vertex.
         let setup = MeshSetup::new(&view, size.width, size.height, MAX_RADIUS).expect("a size");
         let depth_scale = camera.depth_scale(f64::from(MAX_RADIUS) / ONE);
         for _ in 0..400 {
@@ -81,8 +83,8 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
                 ux.hypot(uy),
                 asked.screen(asked.coordinates(point), size),
             );
-            // The roundings before the last one change w by less than the
-            // half step of the last one, so half a code is a generous bound.
+            // The last rounding of w has an error of up to half a step, and the roundings before it contribute
+            // less than that. So half a depth code (32 steps) is a generous bound.
             assert!(
                 depth.abs() <= 32.0,
                 "seed {seed}: depth of {position:?} is {depth:.2}/64 codes off\n{asked:?}"
@@ -92,7 +94,8 @@ fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
     worst
 }
 
-/// A random vertex in Q2.14 that is in the picture or close to it; `None` if the random direction has none.
+/// Returns a random vertex in Q2.14 that is in the picture or close to it. Returns `None` if the random point in view is outside
+/// the range of Q2.14.
 fn somewhere_in_view(random: &mut Pcg64, camera: &Camera, size: Size) -> Option<[i16; 3]> {
     let z = log_range(random, camera.near, 10.0);
     let scale = camera.pixels_per_unit(size);
@@ -118,7 +121,7 @@ fn snapped_vertices_are_within_two_steps_of_the_projection_at_1280x720() {
     assert!(worst.vertices > 20_000, "{worst}");
 }
 
-/// The model's trace of an unclipped triangle must have the vertices that the vertex stage computes, in any order.
+/// The model's trace of an unclipped triangle must have the triangle's snapped vertices, in any order.
 #[test]
 fn drawn_triangles_have_the_snapped_vertices() {
     let mut renderer = Renderer::default();

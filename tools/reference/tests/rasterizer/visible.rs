@@ -1,4 +1,5 @@
-//! Checks the visible surface and its depth in pictures of whole scenes, in all pixels that snapping cannot change.
+//! Checks the visible surface and its depth in pictures of whole scenes, in all pixels where snapping the vertices cannot change
+//! the surface.
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
@@ -8,17 +9,17 @@ use crate::coverage::snap_limit;
 use crate::renderer::Renderer;
 use crate::scenes::{Case, ONE, random_case};
 
-/// Counts of a comparison, and its largest error.
+/// Numbers of compared pixels, and the largest error of a depth.
 #[derive(Debug, Default)]
 struct Tally {
     stable: u64,
     surface: u64,
     unstable: u64,
-    /// Largest error of the depth in codes, after subtracting the effect of snapping on a slope.
+    /// Largest error of the depth in depth codes, after the effect of displaced vertices on a slope is subtracted.
     depth_error: f64,
 }
 
-/// Largest allowed error of the depth in codes, without the effect of a displaced vertex.
+/// Largest allowed error of the depth in depth codes, after the effect of displaced vertices on a slope is subtracted.
 const DEPTH_LIMIT: f64 = 2.0;
 
 /// Gives every triangle a colour of its own and a normal towards the camera, so that shading does not change the colour.

@@ -1,4 +1,4 @@
-//! Errors of smooth shading, and the resources that it takes in the gateware.
+//! Experiment: errors of smooth shading, and the FPGA resources of the triangle engine with and without it.
 
 use std::process::Command;
 
@@ -9,7 +9,7 @@ use crate::report::provenance::Provenance;
 use crate::report::workspace;
 use crate::triangle::smooth::{Measured, scenes};
 
-/// Errors of a scene: a line of `gouraud.csv`. Errors are in steps of a channel.
+/// Errors of a scene: a line of `gouraud.csv`. Errors are in steps of a colour channel of RGB565.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Description of the scene.
@@ -24,19 +24,19 @@ pub struct Row {
     pub pixels: u64,
     /// Smallest depth code of a covered pixel.
     pub smallest_depth_code: u32,
-    /// Upper bound of the model's error (docs/formats.md).
+    /// Upper bound of the model's error (docs/formats.md, "Smooth shading", plus half a step for the last rounding).
     pub bound: f64,
-    /// Largest error of the model.
+    /// Largest error of the model's colours.
     pub max_err: f64,
-    /// RMS of the model's errors.
+    /// RMS of the errors of the model's colours.
     pub rms: f64,
-    /// Largest error of the exact channels rounded to a step.
+    /// Largest error of the exact colours after rounding to whole steps.
     pub rounded_max_err: f64,
-    /// RMS of the errors of the exact channels rounded to a step.
+    /// RMS of the errors of the exact colours after rounding to whole steps.
     pub rounded_rms: f64,
-    /// Largest error of interpolation that is linear on the screen.
+    /// Largest error of colours that are interpolated linearly on the screen, without the division by depth.
     pub affine_max_err: f64,
-    /// RMS of the errors of interpolation that is linear on the screen.
+    /// RMS of the errors of colours that are interpolated linearly on the screen.
     pub affine_rms: f64,
     /// Commit with which the scene was measured.
     pub commit: String,
@@ -66,7 +66,7 @@ impl Row {
     }
 }
 
-/// Measures all scenes.
+/// Measures the errors of all scenes.
 pub fn measure() -> Vec<Row> {
     let provenance = Provenance::find();
     scenes()
@@ -75,7 +75,8 @@ pub fn measure() -> Vec<Row> {
         .collect()
 }
 
-/// The triangle engine without and with smooth shading: a description, and the module's name in `gateware/tests/run.py`.
+/// The triangle engines with flat shading alone and with both kinds of shading: each with a description of its shading and
+/// with the module's name in `gateware/tests/run.py`.
 const ENGINES: [(&str, &str); 2] = [
     ("flat", "triangle_engine"),
     ("flat and smooth", "triangle_engine_smooth"),
@@ -84,25 +85,25 @@ const ENGINES: [(&str, &str); 2] = [
 /// Resources of a triangle engine: a line of `gouraud-cost.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Cost {
-    /// Kinds of shading that the engine has.
+    /// The kinds of shading that the engine supports.
     pub engine: String,
-    /// LUTs, those used as memory included.
+    /// Number of LUTs, including the LUTs used as memory.
     #[serde(rename = "LUT")]
     pub lut: u32,
-    /// Flip-flops.
+    /// Number of flip-flops.
     #[serde(rename = "FF")]
     pub ff: u32,
-    /// DSP48 slices.
+    /// Number of DSP48 slices.
     #[serde(rename = "DSP48")]
     pub dsp: u32,
-    /// Block RAMs of 36 Kbit.
+    /// Number of block RAMs, in units of 36 Kbit.
     #[serde(rename = "RAMB36")]
     pub bram: f64,
     /// Longest path between registers, in LUT levels (docs/resources.md).
     pub path: u32,
 }
 
-/// Numbers of cells of a module, as Yosys counts them.
+/// Numbers of cells of a module by their kind, and the length of the longest path, as found by Yosys.
 #[derive(Deserialize)]
 struct Cells {
     logic: u32,
@@ -115,7 +116,7 @@ struct Cells {
     path: u32,
 }
 
-/// Synthesises both engines and returns their resources.
+/// Synthesises each of the `ENGINES` and returns its resources.
 ///
 /// # Errors
 /// When the synthesis fails.

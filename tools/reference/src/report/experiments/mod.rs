@@ -1,4 +1,4 @@
-//! Measurements for the report. Each returns typed rows, and each row becomes a line of a CSV file.
+//! The measurements of the report. Each measurement returns typed rows, and each row becomes a line of a CSV file.
 
 pub mod gouraud;
 pub mod imu;

@@ -1,4 +1,4 @@
-//! Errors over all inputs, and cycles, of kernels of sine and cosine.
+//! Experiment: the kernels of sine and cosine, their errors over all inputs and their cycles on the soft core.
 
 use anyhow::Result;
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,8 @@ use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
-/// Approximate number of steps of each kernel that a quick run measures.
-/// Its strides are odd, so that they reach every value of the low bits.
+/// Approximate number of steps of each kernel that a quick run measures. The stride
+/// between these steps is odd, so that the inputs have all values of the low bits.
 const SAMPLE: u64 = 1 << 15;
 
 /// Errors and cycles of a kernel in one configuration: a line of `sine.csv`. Errors are absolute.
@@ -20,13 +20,13 @@ const SAMPLE: u64 = 1 << 15;
 pub struct Row {
     /// Name of the kernel in the console's `bench sine`.
     pub kernel: String,
-    /// Name of the kernel's line in the diagram.
+    /// Name of the line in the diagram that joins the kernel and its variants.
     pub family: String,
-    /// Name of the kernel's variant, for instance the order of its series.
+    /// Name of the variant of the kernel, for example the order of its series.
     pub config: String,
     /// Number format of the outputs.
     pub word_length: String,
-    /// Whether Glint uses the kernel.
+    /// Whether Glint itself uses the kernel.
     pub shipped: bool,
     /// Description of the measured inputs.
     pub inputs: String,
@@ -34,25 +34,25 @@ pub struct Row {
     pub samples: u64,
     /// Largest error of the sine and the cosine.
     pub max_err: f64,
-    /// Largest error in units of the last place of the outputs.
+    /// Largest error, in units of the outputs' last place.
     pub max_ulp: f64,
     /// Root mean square of the errors.
     pub rms: f64,
     /// 99th percentile of the errors.
     pub p99: f64,
-    /// Mean error of the outputs' magnitude; positive if they are too far from zero.
+    /// Mean error of the outputs' magnitudes, which is positive if outputs tend to be too far from zero.
     pub bias: f64,
-    /// Function (sine or cosine) and input with the largest error.
+    /// Function (sine or cosine) and input that have the largest error, as text.
     pub argmax: String,
-    /// Largest |sin² + cos² − 1| of an input.
+    /// Largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of phases at which a symmetry of the circle does not hold bit for bit; `None` if the inputs are not phases.
+    /// Number of phases at which a symmetry of the circle does not hold bit for bit. `None` if the inputs are not phases.
     pub asymmetric: Option<u64>,
-    /// Fastest call, in cycles of the soft core; `None` if the kernel was not measured there.
+    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
-    /// Median over the calls, in cycles of the soft core.
+    /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Slowest call, in cycles of the soft core.
+    /// Cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit with which the kernel was measured.
     pub commit: String,
@@ -99,20 +99,21 @@ impl Row {
         }
     }
 
-    /// Number of accurate fraction bits: −log2 of the largest error.
+    /// Returns the number of accurate fraction bits: −log2 of the largest error.
     pub fn bits(&self) -> f64 {
         -self.max_err.log2()
     }
 }
 
-/// The error of the f64 reference itself: the line of `sine-reference.csv`.
+/// The error of the f64 reference that kernels are compared with: the line of `sine-reference.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Reference {
-    /// Largest absolute error, in comparison with a Taylor series in 62-bit integers.
+    /// Largest absolute error, in comparison with a Taylor series in integers of 62 fraction bits.
     pub max_err: f64,
 }
 
-/// Measures all kernels, with `quick` only on a sample of the inputs. `cycles` are those of the console's `bench sine`.
+/// Measures all kernels and the error of the reference. With `quick`, only a sample of the inputs is measured. `cycles` is the
+/// result of the console command `bench sine`.
 ///
 /// # Errors
 /// When the terminal refuses a progress bar.

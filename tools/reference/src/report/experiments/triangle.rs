@@ -1,4 +1,5 @@
-//! The triangle engine on the whole SoC, while LiteDRAM and scan-out are running.
+//! Experiment: the speed of the triangle engine on the whole SoC,
+//! where the engine shares LiteDRAM with the scan-out to the monitor.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -17,16 +18,16 @@ use serde::{Deserialize, Serialize};
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack, CLOCKS};
 
-/// The requirement on a scene, and for most kinds a goal beyond it.
+/// The requirement on the speed at which a scene is drawn. Most kinds of requirement also have a goal beyond it.
 #[derive(Clone, Copy)]
 enum Target {
-    /// Lower bound of pixels per clock, over the clocks in which the rasterizer walks.
+    /// Lower bound of the pixels per clock, over the clocks in which the rasterizer walks (counter `cycles_walking`).
     Fill(f64),
-    /// Lower bound and goal of pixels per clock, for frames back to back.
+    /// Lower bound and goal of the pixels per clock, for frames that are drawn back to back.
     Sustained(f64, f64),
-    /// Upper bound and goal of clocks per triangle.
+    /// Upper bound and goal of the clocks per triangle.
     Triangle(f64, f64),
-    /// Lower bound and goal of frames per second at 81.25 MHz.
+    /// Lower bound and goal of the frames per second at 81.25 MHz.
     Frames(f64, Option<f64>),
 }
 
@@ -38,7 +39,8 @@ struct Case {
     target: Target,
 }
 
-/// Half width of the view at which a sphere of diameter 1 at distance 2 fills 96 % of the picture's height.
+/// Half width of the picture, in world units in the plane at distance 1, with which a sphere of diameter 1 at distance 2 fills
+/// 96 % of the picture's height.
 const FILLING: f64 = 0.4781;
 
 const CASES: [Case; 7] = [
@@ -100,7 +102,7 @@ fn named(name: &str) -> Result<Vec<u8>> {
         .0)
 }
 
-/// A mesh of one triangle that covers the whole screen at distance 1 and stays inside the guard band.
+/// Makes a mesh of one triangle that covers the whole screen and stays inside the guard band, seen from distance 1.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
     let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
@@ -118,7 +120,7 @@ fn screen() -> Result<Vec<u8>> {
         .map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// The view from the point (0, −2, 0) along +y.
+/// Returns the view from the point (0, −2, 0) along +y.
 fn ahead(half_width: f64) -> Result<View> {
     let json = format!(
         r#"{{"eye":[0,-2,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":{half_width},"near":0.5}}"#
@@ -126,7 +128,7 @@ fn ahead(half_width: f64) -> Result<View> {
     view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// Figures of a scene: a line of `triangle.csv`. Cycles are those of one frame, in clocks of the SoC.
+/// Speed of the engine in a scene: a line of `triangle.csv`. Cycles are clocks of the SoC for one frame.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Name of the scene.
@@ -151,31 +153,33 @@ pub struct Row {
     pub cycles_raster: u64,
     /// Mean cycles of a frame among many that are drawn back to back.
     pub cycles_frame: f64,
-    /// Cycles of the geometry pass of a frame back to back. It shares memory with the raster pass of another frame.
+    /// Mean cycles of the geometry pass of a frame drawn back to back. At the same time, the raster pass of another frame uses
+    /// the memory.
     pub cycles_geometry_together: f64,
-    /// Cycles of the raster pass of a frame back to back. It shares memory with the geometry pass of another frame.
+    /// Mean cycles of the raster pass of a frame drawn back to back. At the same time, the geometry pass of another frame uses
+    /// the memory.
     pub cycles_raster_together: f64,
     /// Cycles of the same frame when the soft core draws it; `None` if this was not measured.
     pub cycles_cpu: Option<u64>,
-    /// Share of the raster pass of a frame alone that is spent on groups with covered pixels.
+    /// Fraction of `cycles_raster` that is spent on groups of 8 pixels with covered pixels.
     pub covered: f64,
-    /// Share of the raster pass of a frame alone that is spent on groups without covered pixels.
+    /// Fraction of `cycles_raster` that is spent on groups of 8 pixels without covered pixels.
     pub empty: f64,
-    /// Share of the raster pass of a frame alone that is spent waiting for the flush.
+    /// Fraction of `cycles_raster` in which a drawn band waits for the flush, which writes the band before it to memory.
     pub flush: f64,
-    /// Remaining share of the raster pass of a frame alone.
+    /// Remaining fraction of `cycles_raster`.
     pub other: f64,
-    /// Share of the geometry pass of a frame alone that is spent waiting for writes to memory.
+    /// Fraction of `cycles_geometry` that is spent waiting for writes to memory.
     pub geometry_writes: f64,
-    /// Measured value of the figure that has a requirement.
+    /// Measured value of the quantity that has a requirement.
     pub measured: f64,
-    /// Unit of this figure.
+    /// Unit of `measured`.
     pub unit: String,
-    /// Required bound of this figure: an upper bound for clocks per triangle, otherwise a lower bound.
+    /// Required bound of `measured`: an upper bound for clocks per triangle, a lower bound for every other unit.
     pub at_least: f64,
-    /// Goal of this figure beyond the bound.
+    /// The goal for `measured`, beyond the bound.
     pub aim: Option<f64>,
-    /// Whether the measured value meets the required bound.
+    /// Whether `measured` meets the required bound.
     pub met: bool,
     /// Commit with which the scene was measured.
     pub commit: String,
@@ -183,7 +187,8 @@ pub struct Row {
     pub tools: String,
 }
 
-/// Measures the scenes whose name contains `only`. With `quick` the soft core draws no frames.
+/// Measures the scenes whose name contains `only`, or all scenes.
+/// With `quick`, no frames are drawn by the soft core for comparison.
 ///
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
@@ -200,7 +205,7 @@ pub fn measure(only: Option<&str>, quick: bool) -> Result<Vec<Row>> {
     })
 }
 
-/// Measures a scene on a virtual board of its own.
+/// Starts a virtual board and measures a scene on it.
 fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenance) -> Result<Row> {
     let mut board = SimulatedBoard::fast(firmware)?;
     let mut console = Console::new(&mut board);
@@ -218,8 +223,8 @@ fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenan
         "{}: the engine's frame is not the model's",
         case.name
     );
-    // Only words that differ from the previous frame are written. So
-    // both frame buffers receive the frame once before it is measured.
+    // The engine writes only words that may differ from the previous frame in the same frame buffer. So
+    // each of the two frame buffers receives the frame once before the frame is measured.
     renderer.look(&frame.view)?;
     let alone = renderer.look(&frame.view)?;
     let together = BackToBack::measure(&mut renderer, "triangle")?;

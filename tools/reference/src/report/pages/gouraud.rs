@@ -1,4 +1,4 @@
-//! Builds the page `gouraud.md` of the report.
+//! Builds the page `gouraud.md` of the report, on smooth shading.
 
 use std::path::Path;
 
@@ -29,7 +29,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("gouraud.md"))
 }
 
-/// The table of errors of the scenes.
+/// Formats the table of the scenes' errors as Markdown.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "scene",

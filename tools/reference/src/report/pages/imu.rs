@@ -1,4 +1,4 @@
-//! Builds the page `imu.md` of the report.
+//! Builds the page `imu.md` of the report, on the attitude from gyroscope and accelerometer.
 
 use std::path::Path;
 
@@ -55,7 +55,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("imu.md"))
 }
 
-/// The table of errors with their requirements and goals.
+/// Formats the table of errors with their requirements and goals as Markdown.
 pub fn table(targets: &[Target]) -> String {
     let mut table = Table::new(["error", "required:", "goal:", "measured:", "reached"]);
     for target in targets {
@@ -76,7 +76,7 @@ pub fn table(targets: &[Target]) -> String {
     table.finish()
 }
 
-/// A required limit as text, in scientific notation below 1/1000.
+/// Formats a required limit, in scientific notation if it is below 1/1000.
 fn limit(limit: f64) -> String {
     if limit < 1e-3 {
         format!("{limit:e}")
@@ -85,7 +85,7 @@ fn limit(limit: f64) -> String {
     }
 }
 
-/// An error as text, with two digits.
+/// Formats an error: in scientific notation if it is below 0.01, otherwise with two decimals.
 fn error(error: f64) -> String {
     if error < 0.01 {
         format!("{error:.1e}")

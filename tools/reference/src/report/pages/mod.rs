@@ -1,4 +1,5 @@
-//! The pages of docs/report. Their prose comes from a Markdown template beside each module, their figures from the CSV files.
+//! The pages of docs/report. The prose of a page comes from a Markdown template next to its module, and the figures come from
+//! the CSV files.
 
 pub mod gouraud;
 pub mod imu;
@@ -11,7 +12,7 @@ use std::path::Path;
 
 use anyhow::Result;
 
-/// Rebuilds a page and its diagrams in a folder, from the CSV files in the same folder.
+/// Function that rebuilds a page and its diagrams in a folder, from the CSV files in the same folder.
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.

@@ -1,4 +1,4 @@
-//! Builds the page `raymarch.md` of the report.
+//! Builds the page `raymarch.md` of the report, on the raymarcher.
 
 mod rates;
 mod studies;
@@ -72,7 +72,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("raymarch.md"))
 }
 
-/// The table of errors and evaluations of the pictures.
+/// Formats the table of the pictures' errors and numbers of evaluations as Markdown.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "field",

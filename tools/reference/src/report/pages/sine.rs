@@ -1,4 +1,4 @@
-//! Builds the page `sine.md` of the report.
+//! Builds the page `sine.md` of the report, on kernels of sine and cosine.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page(&rows, &reference)?, &folder.join("sine.md"))
 }
 
-/// The table of errors and cycles of the kernels.
+/// Formats the table of the kernels' errors and cycles as Markdown.
 pub fn table(rows: &[Row]) -> String {
     let mut table = Table::new([
         "kernel",
@@ -113,7 +113,7 @@ fn page(rows: &[Row], reference: &[Reference]) -> Result<String> {
     )
 }
 
-/// The points of the diagram, one for each kernel. If a kernel has several rows, the last one counts.
+/// Returns the points of the diagram, one for each kernel. If a kernel has several rows, its point is made from the last row.
 fn points(rows: &[Row]) -> Vec<Point> {
     let mut last: Vec<&Row> = Vec::new();
     for row in rows {

@@ -1,10 +1,10 @@
-//! Markdown templates with placeholders.
+//! Markdown templates of pages, in which placeholders are replaced by figures and tables.
 
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 
-/// Replaces each placeholder `{{name}}` of a template by the value of this name.
+/// Replaces each placeholder `{{name}}` of a template by the value with this name.
 ///
 /// # Errors
 /// When a value has no placeholder, or a placeholder has no value.
@@ -33,7 +33,7 @@ pub fn write(text: &str, path: &Path) -> Result<()> {
     std::fs::write(path, text).with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The last line of a page, which says how its figures were made.
+/// Returns the last line of a page, which names the commit and the tools with which its figures were measured.
 pub fn made(commit: &str, tools: &str) -> String {
     format!("Made at commit {commit} with {tools}.")
 }

@@ -1,4 +1,4 @@
-//! Builds the page `triangle.md` of the report.
+//! Builds the page `triangle.md` of the report, on the triangle engine.
 
 use std::path::Path;
 
@@ -30,7 +30,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("triangle.md"))
 }
 
-/// The tables of the page: requirements, cycles, and the parts of the passes.
+/// Formats the three tables of the page as Markdown: requirements, cycles, and how the time of the passes is spent.
 pub fn table(rows: &[Row]) -> String {
     [requirements(rows), cycles(rows), parts(rows)].join("\n")
 }

@@ -1,4 +1,4 @@
-//! Errors of the inclination by different filters of the accelerometer.
+//! Experiment: errors of the inclination with different filters, which correct the attitude by the accelerometer.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,12 +8,12 @@ use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
 use crate::report::provenance::Provenance;
 
-/// Errors of a filter: a line of `imu-filters.csv`. Each error is the RMS of the inclination's error in degrees.
+/// Errors of a filter: a line of `imu-filters.csv`. Each figure is the RMS of the errors of the inclination, in degrees.
 #[derive(Serialize, Deserialize)]
 pub struct FilterErrors {
     /// Name and parameters of the filter.
     pub filter: String,
-    /// Whether Glint uses the filter.
+    /// Whether Glint itself uses the filter.
     pub shipped: bool,
     /// Error for a sensor at rest.
     pub rest: f64,
@@ -21,13 +21,13 @@ pub struct FilterErrors {
     pub hand: f64,
     /// Error during a hand motion that is mostly up and down.
     pub nod: f64,
-    /// Error during a walk.
+    /// Error during the motion of a walking person.
     pub walk: f64,
     /// Commit with which the filter was measured.
     pub commit: String,
 }
 
-/// Measures all filters. `part` scales the duration of the motions, which is at least 30 s.
+/// Measures all filters. `part` is the fraction of the full duration of the motions; a motion lasts at least 30 s.
 pub fn measure(part: f64) -> Vec<FilterErrors> {
     let commit = Provenance::find().commit;
     let seconds = (120.0 * part).max(30.0);

@@ -1,4 +1,4 @@
-//! Errors of the integration methods against the true attitude, at several sample rates.
+//! Experiment: errors of the integration methods against the true attitude, at several sample rates.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,21 +18,22 @@ pub struct Trial {
     pub motion: String,
     /// Name of the method.
     pub method: String,
-    /// Whether Glint uses the method.
+    /// Whether Glint itself uses the method.
     pub shipped: bool,
     /// Samples per second.
     pub rate: f64,
     /// Error of the attitude after 20 s, in degrees.
     pub error: f64,
-    /// Observed order of the method: the error fell by this power of the step since the previous sample rate.
+    /// Observed order of the method, from this sample rate and the next lower one: the exponent p, if the error is proportional
+    /// to step^p.
     pub order: Option<f64>,
-    /// Median cycles per sample on the soft core, for methods that the firmware contains.
+    /// Median of the cycles per sample on the soft core; `None` for methods that the firmware does not contain.
     pub cycles: Option<u64>,
     /// Commit with which the error was measured.
     pub commit: String,
 }
 
-/// Name of a method in the console's `bench attitude`, for methods that the firmware contains.
+/// Returns the name of a method in the console command `bench attitude`; `None` if the firmware does not contain the method.
 fn kernel(method: Method) -> Option<&'static str> {
     match method {
         Method::Angles => Some("angles"),
@@ -45,7 +46,7 @@ fn kernel(method: Method) -> Option<&'static str> {
     }
 }
 
-/// Measures all methods at all sample rates. `cycles` are those of the console's `bench attitude`.
+/// Measures all methods at all sample rates. `cycles` is the result of the console command `bench attitude`.
 pub fn measure(cycles: &Cycles) -> Vec<Trial> {
     let commit = Provenance::find().commit;
     let mut trials = Vec::new();

@@ -1,5 +1,10 @@
-//! Errors of the attitude: against the same method in f64, against
-//! the truth, by method and filter, over time, and in stiff cases.
+//! Experiments on the errors of the attitude that is computed from gyroscope and accelerometer.
+//!
+//! - `targets`: errors that have a requirement.
+//! - `methods`, `filters`: errors of integration methods and of filters, compared with the true attitude.
+//! - `time`: growth of the errors over time.
+//! - `stiff`: stiff and extreme inputs.
+//! - `soft_core`: cycles on the soft core.
 
 pub mod filters;
 pub mod methods;

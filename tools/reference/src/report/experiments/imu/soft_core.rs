@@ -1,4 +1,5 @@
-//! The attitude on the soft core: cycles per sample, and a comparison of its attitudes with those of the host, bit for bit.
+//! Experiment: the attitude on the soft core. It measures the cycles per sample and compares each attitude, bit for bit, with
+//! the one that the host computes by the same code.
 
 use anyhow::{Context, Result};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -14,8 +15,8 @@ use crate::imu::motion::Motion;
 use crate::imu::sensor::Sensor;
 use crate::report::cycles::{Cycles, Source};
 
-/// The kernels of the firmware's integration: name in `bench attitude`,
-/// description, required limit and goal in cycles per sample.
+/// The kernels of the firmware's integration. Each has its name in the console command `bench attitude`,
+/// a description, and a required upper bound and a goal in cycles per sample.
 const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic", "integration, even steps", 800, 500),
     ("cubic_jitter", "integration, uneven steps", 800, 500),
@@ -26,11 +27,11 @@ const KERNELS: [(&str, &str, u64, u64); 4] = [
 /// Cycles of a kernel of the firmware: a line of `imu-cycles.csv`. All figures are cycles per sample.
 #[derive(Serialize, Deserialize)]
 pub struct Kernel {
-    /// Description of the kernel and of the samples that it integrates.
+    /// Description of the kernel and of the samples that it takes.
     pub what: String,
-    /// Required upper bound.
+    /// Required upper bound of the cycles per sample.
     pub at_least: u64,
-    /// The goal beyond the required bound.
+    /// The goal beyond that bound.
     pub aim: u64,
     /// Median of the measured runs.
     pub median: u64,
@@ -38,18 +39,18 @@ pub struct Kernel {
     pub max: u64,
 }
 
-/// Result of a long motion on the soft core: the line of `imu-replay.csv`.
+/// Result of the replay of a long motion on the soft core: the line of `imu-replay.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Replay {
     /// Number of replayed samples.
     pub samples: u64,
-    /// Number of attitudes that differ from those of the host in any bit.
+    /// Number of samples after which the attitudes of soft core and host differ in any bit.
     pub differing: usize,
     /// Mean cycles per sample.
     pub cycles: u64,
 }
 
-/// The rows of the firmware's kernels, from the cycles of the console's `bench attitude`.
+/// Makes the rows of the firmware's kernels from `cycles`, the result of the console command `bench attitude`.
 ///
 /// # Errors
 /// When a kernel is missing in `cycles`.
@@ -69,7 +70,7 @@ pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
     KERNELS.into_iter().map(kernel).collect()
 }
 
-/// Replays a hand motion at 1 kHz on the virtual board, with correction of the tilt and with a tracked bias.
+/// Replays a hand motion at 1 kHz on the virtual board and on the host. The tilt is corrected and the bias is tracked.
 ///
 /// # Errors
 /// When the board is not built or the replay fails.

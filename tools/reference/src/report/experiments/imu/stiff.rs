@@ -1,4 +1,4 @@
-//! Stiff and extreme inputs of the attitude computation, on which simple methods fail.
+//! Experiment: stiff and extreme inputs of the attitude computation, on which simple filters and integrators diverge or drift.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
@@ -15,7 +15,7 @@ use crate::imu::sensor::Sensor;
 pub struct StiffCase {
     /// Description of the input and of the measured quantity.
     pub case: String,
-    /// Result of other methods; empty if none is compared.
+    /// Result of other methods. Empty if no other method is compared.
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
@@ -23,7 +23,7 @@ pub struct StiffCase {
     pub outcome: String,
 }
 
-/// Measures all cases. `part` scales the duration of long ones, and `day` adds the cases of 24 hours.
+/// Measures all cases. `part` is the fraction of the full duration of long cases, and `day` adds the cases of 24 hours.
 pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
@@ -48,14 +48,15 @@ pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
     rows
 }
 
-/// The error that one step of a first-order filter leaves, with the explicit and with the exact gain.
+/// Measures the fraction of an error that one step of a first-order filter with the time constant τ leaves. The explicit gain
+/// dt/τ is compared with the exact gain 1 − exp(−dt/τ), which Glint uses.
 fn gains() -> Vec<StiffCase> {
     [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0]
         .map(|ratio: f64| {
             let step = 10_000;
             let time_constant = (f64::from(step) / ratio).round() as u32;
             let gain = f64::from(Gain::new(time_constant).of(step)) / 2f64.powi(32);
-            // The ratio of the time constant that was really used, because this is rounded to whole microseconds.
+            // The time constant was rounded to whole microseconds, which changes the ratio slightly.
             let ratio = f64::from(step) / f64::from(time_constant);
             let explicit = 1.0 - ratio;
             let outcome = match ratio {
@@ -77,7 +78,7 @@ fn gains() -> Vec<StiffCase> {
         .into()
 }
 
-/// A bias of 1 LSB, learnt by running means whose accumulators have different word lengths.
+/// Learns a bias of 1 LSB by running means whose accumulators have different numbers of fraction bits.
 fn words(part: f64) -> Vec<StiffCase> {
     [10, 100, 1000]
         .map(|time_constant: u32| {
@@ -108,7 +109,7 @@ fn words(part: f64) -> Vec<StiffCase> {
         .into()
 }
 
-/// The attitude at rest without noise. A limit cycle would show as motion of the attitude.
+/// Measures by how much the attitude moves at rest without noise. A limit cycle of the filter's roundings would show as motion.
 fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
@@ -133,7 +134,7 @@ fn rest_cycle() -> StiffCase {
     }
 }
 
-/// Uneven and lost samples, integrated once by their time stamps and once as if they were even.
+/// Integrates uneven and incomplete samples, once by their time stamps and once as if they were evenly spaced.
 fn uneven() -> Vec<StiffCase> {
     let even = Sensor::ideal(200.0);
     let error = |sensor: Sensor, stamped: bool| {
@@ -177,7 +178,7 @@ fn uneven() -> Vec<StiffCase> {
     .into()
 }
 
-/// A hand motion during which the gyroscope is saturated for 30 ms.
+/// Measures the errors of the inclination after the gyroscope was saturated for 30 ms of a hand motion.
 fn saturation() -> StiffCase {
     let sensor = Sensor::real(1000.0);
     let mut tracker = tracker(&sensor, true);
@@ -206,7 +207,7 @@ fn saturation() -> StiffCase {
     }
 }
 
-/// Square waves of the rate with zero mean, which the firmware must not learn as a bias.
+/// Measures the bias that the firmware learns from rates that are square waves. It should be zero, as the waves have zero mean.
 fn squares() -> Vec<StiffCase> {
     [(1500.0, 1.0), (1500.0, 0.1), (5.0, 0.1)]
         .map(|(rate, frequency)| {

@@ -1,4 +1,4 @@
-//! Errors of the attitude that have a requirement and a goal.
+//! Experiment: the errors of the attitude that have a requirement and a goal.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,11 +18,11 @@ pub struct Target {
     pub unit: String,
     /// Required upper bound of the error.
     pub at_least: f64,
-    /// The goal beyond the required bound.
+    /// The goal beyond that bound.
     pub aim: f64,
     /// Measured value of the error.
     pub measured: f64,
-    /// Best bound that was met: `aim` for the goal, `at least` for the requirement, or `missed`.
+    /// The best bound that was met: `aim` (the goal), `at least` (only the requirement), or `missed` (neither of them).
     pub reached: String,
     /// Commit with which the error was measured.
     pub commit: String,
@@ -30,7 +30,7 @@ pub struct Target {
     pub tools: String,
 }
 
-/// Measures all errors that have a requirement. `part` scales the duration of long motions.
+/// Measures all errors that have a requirement. `part` is the fraction of the full duration of long motions.
 pub fn measure(part: f64) -> Vec<Target> {
     let Provenance { commit, tools } = Provenance::find();
     let mut rows = Vec::new();

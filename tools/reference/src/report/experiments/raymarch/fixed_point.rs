@@ -1,6 +1,6 @@
-//! Marches to the sponge in integers with any number of fraction bits, for the study of word lengths.
+//! Raymarching of the Menger sponge in integers with any number of fraction bits, for the study of word lengths.
 //!
-//! The gateware and its model have 12 fraction bits. Ray directions have the model's 17 bits for all of these numbers.
+//! The gateware and its model have 12 fraction bits. Ray directions always have 17 fraction bits, as in the model.
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
@@ -8,17 +8,17 @@ use crate::raymarch::metrics::Outcome;
 use crate::raymarch::raymarched::{RenderedRay, Subject};
 use crate::raymarch::{Face, Field};
 
-/// Number of fraction bits of field units in the model.
+/// Number of fraction bits of a length in the model. Lengths are in field units (docs/formats.md).
 pub const MODEL_FRACTION: u32 = 12;
 
-/// Field units per world unit, times 2. The sponge's half side is 40.5 field units.
+/// Twice the number of field units per world unit. The sponge's half side is 1 world unit or 40.5 field units.
 const TWICE_SCALE: i64 = 81;
 
-/// The constants of a picture of the sponge, with any number of fraction bits.
+/// The constants of a picture of the sponge, for a chosen number of fraction bits.
 pub struct FixedPoint {
-    /// The model's constants, from which ray directions are taken.
+    /// The model's constants of the picture, from which ray directions are taken.
     setup: FieldSetup,
-    /// Number of fraction bits of field units, 8 to 16.
+    /// Number of fraction bits of a length in field units, from 8 to 16.
     fraction: u32,
     /// Sides S of the cells of each level, in field units with `fraction` bits: see `menger` in docs/formats.md.
     levels: Vec<i32>,
@@ -26,18 +26,18 @@ pub struct FixedPoint {
     bound: u32,
     /// Position of the eye, in field units with `fraction` bits.
     origin: [i32; 3],
-    /// Smallest depth in field units with `fraction` bits, times 2^e; e is the exponent of the model's constants.
+    /// Smallest depth of a hit, in field units with `fraction` bits, times 2^`setup.exponent`.
     near: u32,
-    /// Tuning of the march, whose threshold and far limit have `fraction` bits.
+    /// Parameters of the march. Its threshold and far limit have `fraction` bits.
     tuning: Tuning,
 }
 
 impl FixedPoint {
-    /// The constants of a subject's picture. `threshold` has the model's
-    /// fraction bits, and is rounded to the nearest step of `fraction` bits.
+    /// Computes the constants of a subject's picture for `fraction` fraction bits. `threshold` has
+    /// the model's fraction bits, and is rounded to the nearest number with `fraction` bits.
     ///
     /// # Panics
-    /// When the subject is not a sponge of at most four levels.
+    /// When the subject is not a sponge with one to four levels.
     pub fn new(subject: &Subject, fraction: u32, threshold: u32) -> Self {
         let Field::Menger { depth } = subject.field else {
             panic!("{}: expected a sponge", subject.scene);
@@ -126,7 +126,7 @@ impl FixedPoint {
         }
     }
 
-    /// The parameter t at which a ray starts: at the near plane, or at the cube around the sponge if that is farther.
+    /// Returns the parameter t at which a ray starts: at the near plane, or at the cube around the sponge if the cube is farther.
     fn start(&self, ray: &Ray) -> u32 {
         let near = ((u64::from(self.near) * u64::from(ray.length + 1)) >> 10) as u32;
         let farthest = farthest(self.fraction);
@@ -136,7 +136,8 @@ impl FixedPoint {
                 let outside = u64::from(self.origin[i].unsigned_abs().saturating_sub(self.bound));
                 let part = magnitude(ray.direction[i]);
                 let inverse = u64::from(self.reciprocal(part >> 7));
-                // The reciprocal is slightly too small. So what the first product leaves over is multiplied by it again.
+                // The reciprocal is slightly too small, so the first product is too. A second product with the remaining length
+                // corrects it.
                 let first = ((outside * inverse) >> 9).min(farthest.into());
                 let gone = (first * (u64::from(part) + 1)) >> 17;
                 first + ((outside.saturating_sub(gone + 1) * inverse) >> 9)
@@ -146,7 +147,7 @@ impl FixedPoint {
         near.max(entry.min(farthest.into()) as u32).min(farthest)
     }
 
-    /// The point of a ray at its parameter t.
+    /// Returns the point of a ray at its parameter t.
     fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
@@ -154,7 +155,8 @@ impl FixedPoint {
         })
     }
 
-    /// The distance of a point to the sponge in the maximum norm, and the axis and side of the nearest face.
+    /// Returns the signed distance of a point from the sponge in the maximum norm, the axis perpendicular to the nearest face,
+    /// and whether the face's outward normal points along that axis.
     fn sample(&self, point: [i32; 3]) -> (i32, usize, bool) {
         let mut p = [0, 1, 2].map(|axis| (point[axis], axis, true));
         for &s in &self.levels {
@@ -175,7 +177,8 @@ impl FixedPoint {
         (value - half, axis, positive)
     }
 
-    /// The part of t that remains to the plane of a face, for a ray that approaches the face.
+    /// Returns by how much t grows from a point at this distance from a face to the plane of the face, for a ray that
+    /// approaches the face.
     fn rest(&self, ray: &Ray, distance: i32, axis: usize, positive: bool) -> u32 {
         let part = ray.direction[axis];
         let slope = if (part < 0) == positive {
@@ -187,16 +190,16 @@ impl FixedPoint {
         ((u64::from(gap) * u64::from(self.reciprocal(slope))) >> 9) as u32
     }
 
-    /// The depth along n of a ray at its parameter t, in world units.
+    /// Returns the depth of a ray at its parameter t, in world units along the camera's n.
     fn depth(&self, ray: &Ray, t: u32) -> f64 {
         let scaled = u64::from(t) * u64::from(self.reciprocal(ray.length));
-        // The result has 21 fraction bits, as in the model; 9 of them come from the reciprocal.
+        // The depth has 21 fraction bits, as in the model. The reciprocal contributes 9 of them.
         let scaled = scaled << MODEL_FRACTION >> self.fraction;
         let bits = 21.0 + f64::from(self.setup.exponent);
         scaled as f64 * (-bits).exp2() / (TWICE_SCALE as f64 / 2.0)
     }
 
-    /// The model's reciprocal, in the format u8.9, of a number that begins with these ten bits.
+    /// Returns the model's reciprocal, in the format u8.9, of a number whose first ten bits are `first_bits`.
     fn reciprocal(&self, first_bits: u32) -> u32 {
         let ray = Ray {
             eye: 0,
@@ -208,12 +211,12 @@ impl FixedPoint {
     }
 }
 
-/// Upper limit of t, which has 11 integer bits.
+/// Returns the largest t with 11 integer bits and `fraction` fraction bits.
 const fn farthest(fraction: u32) -> u32 {
     (1 << (11 + fraction)) - 1
 }
 
-/// |x| if x is at least 0, |x| − 1 if x is negative.
+/// Returns |x| if x is at least 0, and |x| − 1 if x is negative.
 const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }
@@ -222,7 +225,7 @@ fn mirrored((value, axis, positive): (i32, usize, bool)) -> (i32, usize, bool) {
     (!value, axis, !positive)
 }
 
-/// The index of the largest of three numbers; of equal ones 1 comes before 0, and 0 before 2.
+/// Returns the index of the largest of three numbers. If several are equal, index 1 has priority over 0, and 0 over 2.
 fn largest([x, y, z]: [i32; 3]) -> usize {
     if z > x && z > y {
         2

@@ -1,4 +1,4 @@
-//! The raymarcher: errors of its pictures, its speed on the whole SoC, and studies of its parameters.
+//! Experiments on the raymarcher: errors of its pictures, its speed on the whole SoC, and studies of its parameters.
 
 pub mod fixed_point;
 pub mod pictures;

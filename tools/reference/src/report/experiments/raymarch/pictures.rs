@@ -1,4 +1,4 @@
-//! Errors of the model's pictures against exact hits, and the evaluations that the pictures take.
+//! Experiment: errors of the model's pictures against exact hits, and the number of distance evaluations that pictures take.
 
 use glint_model::raymarch::{FieldOptions, FieldSetup};
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,8 @@ use crate::raymarch::Field;
 use crate::raymarch::raymarched::{self, Measured, Subject};
 use crate::report::provenance::Provenance;
 
-/// Errors and evaluations of a picture: a line of `raymarch.csv`. Depths are in world units along n.
+/// Errors of a picture and its number of evaluations of the field's distance: a line of `raymarch.csv`. Depths are in world
+/// units along the camera's n.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Text form of the field.
@@ -19,7 +20,7 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Side in pixels of the blocks that have a cone each; 0 without a prepass.
+    /// Side in pixels of the blocks for each of which the prepass marches a cone; 0 without a prepass.
     pub prepass: u32,
     /// Intersection over union of the sets of hit pixels of picture and reference.
     pub iou: f64,
@@ -29,7 +30,7 @@ pub struct Row {
     pub false_misses: usize,
     /// Number of rays that reach the step limit.
     pub undecided: usize,
-    /// Median error of depths that are computed from t.
+    /// Median error of depths that are computed from the rays' parameters t.
     pub depth_median: Option<f64>,
     /// 99th percentile of the errors of depths that are computed from t.
     pub depth_p99: Option<f64>,
@@ -41,17 +42,17 @@ pub struct Row {
     pub code_p99: Option<f64>,
     /// Largest error of depths that are computed from depth codes.
     pub code_max: Option<f64>,
-    /// Fraction of the pixels with the wrong face, among those where picture and reference both hit.
+    /// Fraction of pixels with the wrong face, among the pixels with a hit in both picture and reference.
     pub wrong_faces: f64,
     /// 99th percentile of the angle between the normals of picture and reference on round surfaces, in degrees.
     pub normal_p99: Option<f64>,
-    /// Fraction of pixels close to an edge, whose result depends on tiny differences of the ray.
+    /// Fraction of unstable pixels, which are close to an edge: a tiny change of the ray changes their result.
     pub unstable: f64,
-    /// Mean number of evaluations per ray, those by cones included.
+    /// Mean number of evaluations per ray, including the evaluations by cones.
     pub evaluations: f64,
-    /// Fraction of the evaluations that are made by cones.
+    /// Number of evaluations by cones, divided by the number of rays.
     pub evaluations_cones: f64,
-    /// Number of evaluations of the ray that takes most.
+    /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,
     /// Names of the requirements that the picture misses.
     pub missed: String,
@@ -79,7 +80,8 @@ impl Row {
         } else {
             LARGE_COST
         };
-        // Requirements exist for the sponge and for round fields, goals for the sponge only.
+        // Returns the names of the requirements (`level` 0) or goals (`level` 1) that the picture misses. Round fields have
+        // requirements but no goals, and flat fields other than the sponge have neither.
         let list = |level: usize| {
             let sponge = matches!(subject.field, Field::Menger { .. });
             let mut missed = if sponge || subject.parsed.is_round() && level == 0 {
@@ -122,7 +124,7 @@ impl Row {
     }
 }
 
-/// Measures all pictures. With `quick`, those of 1280 × 720 are left out.
+/// Measures all pictures. With `quick`, pictures of 1280 × 720 are left out.
 pub fn measure(quick: bool) -> Vec<Row> {
     let provenance = Provenance::find();
     let small: Vec<Subject> = [

@@ -1,4 +1,4 @@
-//! Frames per second of fields on the whole SoC, while LiteDRAM and scan-out are running.
+//! Experiment: frames per second of the raymarcher on the whole SoC, where it shares LiteDRAM with the scan-out to the monitor.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{SimulatedBoard, built_firmware};
@@ -19,10 +19,10 @@ use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 use crate::report::workspace;
 
-/// A build of the SoC, in a folder of `target/gateware`.
+/// A verilated build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
     folder: &'static str,
-    /// Number of lanes of its raymarcher.
+    /// Number of parallel lanes of the build's raymarcher.
     pub lanes: u32,
 }
 
@@ -35,7 +35,7 @@ const SPONGE: Build = Build {
     lanes: 4,
 };
 
-/// A measured field with its required frames per second.
+/// A field that is measured, with the required frames per second.
 pub struct Case {
     /// Text form of the field, as typed in the console.
     pub field: &'static str,
@@ -47,7 +47,7 @@ pub struct Case {
     /// The build of the SoC that draws the field.
     pub build: Build,
     cameras: fn() -> Vec<(&'static str, Camera)>,
-    /// Rotations of each camera, in degrees; each gives a pose.
+    /// Returns the rotations that are applied to each camera, in degrees. Each rotation gives a pose to measure.
     path: fn() -> Vec<Vector>,
     /// Index in [`soc::CLOCKS`] of the clock at which the requirement holds.
     pub clock: usize,
@@ -58,7 +58,7 @@ pub struct Case {
 }
 
 impl Case {
-    /// Number of eyes of a picture.
+    /// Returns the number of eyes of a picture: 2 for stereo, otherwise 1.
     pub const fn eyes(&self) -> u32 {
         if self.stereo.is_some() { 2 } else { 1 }
     }
@@ -157,12 +157,12 @@ fn still() -> Vec<Vector> {
     vec![[0.0; 3]]
 }
 
-/// Cycles of a pose of a camera: a line of `raymarch-rates.csv`.
+/// Cycles of a frame in one pose of a camera: a line of `raymarch-rates.csv`. Cycles are clocks of the SoC.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Text form of the field, as typed in the console.
     pub field: String,
-    /// Stereo parameters as typed in the console; `None` for one eye.
+    /// Stereo parameters, as typed in the console; `None` for a picture of one eye.
     pub stereo: Option<String>,
     /// Whether cones are marched before the rays (prepass).
     pub prepass: bool,
@@ -170,23 +170,23 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Number of lanes of the raymarcher.
+    /// Number of parallel lanes of the raymarcher.
     pub lanes: u32,
     /// Name of the view.
     pub view: String,
-    /// Yaw in degrees.
+    /// Yaw of the pose to the right, in degrees.
     pub yaw: f64,
-    /// Pitch in degrees.
+    /// Pitch of the pose downwards, in degrees.
     pub pitch: f64,
-    /// Roll in degrees.
+    /// Roll of the pose, in degrees.
     pub roll: f64,
     /// Number of rays of a frame.
     pub rays: u32,
-    /// Number of evaluations of the field in a frame.
+    /// Number of evaluations of the field's distance in a frame.
     pub evaluations: u64,
     /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
-    /// Mean cycles of a frame among many that are drawn back to back. Only the slowest pose of a view has them.
+    /// Mean cycles of a frame among many that are drawn back to back. They are measured for the slowest pose of a view only.
     pub cycles_frame: Option<f64>,
     /// Commit with which the pose was measured.
     pub commit: String,
@@ -220,7 +220,7 @@ pub fn measure() -> Result<Vec<Row>> {
     Ok(rows.into_iter().flatten().collect())
 }
 
-/// Draws all poses of a camera on a virtual board of its own.
+/// Starts a virtual board and draws all poses of a camera on it.
 fn draw(
     firmware: &[u8],
     case: &Case,

@@ -1,4 +1,4 @@
-//! Requirements on pictures of fields, and goals beyond them. In each pair of numbers the requirement comes first, then the goal.
+//! Requirements on raymarched pictures, and goals beyond them. Each pair of numbers is the requirement, then the goal.
 
 use crate::raymarch::metrics::Accuracy;
 
@@ -13,17 +13,18 @@ pub const IOU: [f64; 2] = [0.999, 0.9999];
 pub const MEDIAN: [f64; 2] = [3e-4, 2e-4];
 /// Upper bounds of the 99th percentile of the errors of the depth, in world units.
 pub const P99: [f64; 2] = [3e-3, 5e-4];
-/// Upper bounds of the fraction of wrong faces, among the pixels where picture and reference both hit.
+/// Upper bounds of the fraction of wrong faces, among the pixels with a hit in both picture and reference.
 pub const FACES: [f64; 2] = [0.01, 0.003];
 /// Upper bound of the 99th percentile of the angle between normals on round surfaces, in degrees; there is no goal.
 pub const NORMALS: f64 = 0.3;
-/// Upper bounds of the evaluations per ray at 320 × 180. The requirement
-/// allows 60 frames per second for two eyes, with two lanes at 81.25 MHz.
+/// Upper bounds of the distance evaluations per ray at 320 × 180. The requirement
+/// makes 60 frames per second possible for two eyes, with two lanes at 81.25 MHz.
 pub const SMALL_COST: [f64; 2] = [23.5, 11.7];
-/// Upper bounds of the evaluations per ray at 1280 × 720.
+/// Upper bounds of the distance evaluations per ray at 1280 × 720.
 pub const LARGE_COST: [f64; 2] = [14.4, 11.5];
 
-/// Names of the requirements (`level` 0) or goals (`level` 1) that a picture misses. The number of evaluations is not checked.
+/// Returns the names of the requirements (`level` 0) or goals (`level` 1) that a picture misses. The number of evaluations is
+/// not checked here.
 pub fn missed(accuracy: &Accuracy, level: usize) -> Vec<&'static str> {
     let depth = accuracy.depth;
     let checks = [

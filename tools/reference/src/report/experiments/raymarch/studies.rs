@@ -1,4 +1,4 @@
-//! Studies of the march: the effect of each of its parameters on errors and cycles.
+//! Experiments: studies of raymarching, each of which shows the effect of a parameter on errors, evaluations and clocks.
 
 use anyhow::Result;
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
@@ -12,10 +12,10 @@ use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
 
-/// Draws all configurations of a study and returns their trials.
+/// Function that draws all configurations of a study and returns their trials.
 type Study = fn(&Views) -> Vec<Trial>;
 
-/// Name and function of each study, in the order of the page. The file of a study is `raymarch-NAME.csv`.
+/// Name and function of each study, in the order on the report's page. The file of a study is `raymarch-NAME.csv`.
 const STUDIES: [(&str, Study); 7] = [
     ("fraction", fractions),
     ("cap", caps),
@@ -26,7 +26,7 @@ const STUDIES: [(&str, Study); 7] = [
     ("normal", normals),
 ];
 
-/// Runs all studies. As soon as a study is complete, `finished` receives its name and trials.
+/// Runs all studies. As soon as a study is complete, `finished` is called with its name and trials.
 ///
 /// # Errors
 /// When `finished` fails.
@@ -50,10 +50,10 @@ fn tuned(tuning: Tuning) -> FieldOptions {
     }
 }
 
-/// Field units of the sponge in one world unit.
+/// Number of field units in one world unit, for the sponge.
 const UNITS: f64 = 40.5;
 
-/// Glint's method of marching in f64. `threshold` replaces its threshold, and is in field units with 12 fraction bits.
+/// Returns Glint's method of marching for f64, with another threshold. `threshold` is in field units with 12 fraction bits.
 fn in_f64(threshold: u32) -> Method {
     Method {
         distance: Norm::Maximum,
@@ -117,7 +117,8 @@ fn thresholds(views: &Views) -> Vec<Trial> {
     trials.collect()
 }
 
-/// Trials with five thresholds that form a family. `change` turns Glint's method in f64 into the method of the family.
+/// Runs a family of five trials, which differ in the threshold. `change` turns Glint's method in f64 into the method of the
+/// family, and `exact_entry` is as in `Views::variant`.
 fn by_threshold(
     views: &Views,
     family: &str,
@@ -184,7 +185,7 @@ fn prepasses(views: &Views) -> Vec<Trial> {
             ..DEFAULT_TUNING
         })
     };
-    // The gateware has blocks of 4 × 4 pixels for pictures of this size.
+    // For pictures of this size, the prepass of the gateware has blocks of 4 × 4 pixels. Larger blocks exist only in the model.
     let built = [("no prepass", false), ("blocks of 4", true)];
     let built = built.into_iter().flat_map(|(family, prepass)| {
         THRESHOLDS.map(|threshold| {

@@ -1,4 +1,4 @@
-//! Trials of configurations of the march. Each draws the sponge's four views at 320 × 180.
+//! Trials of raymarching with varied parameters. Each trial draws the four views of the sponge at 320 × 180.
 
 use std::cell::RefCell;
 
@@ -14,14 +14,14 @@ use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::raymarch::variant::{Method, entry};
 use crate::raymarch::verilated::Raymarcher;
 
-/// Errors and cost of a configuration: a line of a study's CSV file.
+/// Errors and cost of a configuration of the parameters: a line of a study's CSV file.
 #[derive(Serialize, Deserialize)]
 pub struct Trial {
-    /// Name of the configuration's line in the diagram.
+    /// Name of the line in the diagram that joins the configuration and related ones.
     pub family: String,
     /// Value of the varied parameter.
     pub config: String,
-    /// Whether Glint uses the configuration.
+    /// Whether Glint itself uses the configuration.
     pub shipped: bool,
     /// Intersection over union of the sets of hit pixels of picture and reference.
     pub iou: f64,
@@ -33,11 +33,11 @@ pub struct Trial {
     pub depth_p99: Option<f64>,
     /// Largest error of the depth, in world units.
     pub depth_max: Option<f64>,
-    /// Fraction of the pixels with the wrong face, among those where picture and reference both hit.
+    /// Fraction of pixels with the wrong face, among the pixels with a hit in both picture and reference.
     pub wrong_faces: f64,
-    /// Mean number of evaluations per ray.
+    /// Mean number of evaluations of the field's distance per ray.
     pub evaluations: f64,
-    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that only software has.
+    /// Mean clocks of the verilated raymarcher per picture; `None` for configurations that the gateware does not have.
     pub cycles: Option<f64>,
     /// Names of the requirements that the configuration misses.
     pub failed: String,
@@ -46,7 +46,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Evaluations per clock in each lane of the verilated raymarcher.
+    /// Returns the evaluations per clock and lane of the verilated raymarcher, if it drew the trial.
     pub fn rate(&self) -> Option<f64> {
         let rays = f64::from(SMALL.0 * SMALL.1);
         self.cycles
@@ -54,7 +54,7 @@ impl Trial {
     }
 }
 
-/// The views that every trial draws, and what draws them.
+/// The views that every trial draws, with their reference pictures, and the raymarcher that draws them.
 pub struct Views<'a> {
     subjects: &'a [Subject],
     expected: Vec<Expected>,
@@ -64,7 +64,7 @@ pub struct Views<'a> {
 }
 
 impl<'a> Views<'a> {
-    /// Takes the views, a progress bar that shows the running trial, and the commit for the trials' rows.
+    /// Collects what trials need. `subjects` are the views, `bar` shows the running trial, and `commit` goes to the trials' rows.
     pub fn new(subjects: &'a [Subject], bar: ProgressBar, commit: &'a str) -> Self {
         let expected = subjects.iter().flat_map(|subject| &subject.expected);
         Self {
@@ -76,8 +76,8 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws all views with `draw` and compares them with the reference. For each
-    /// hit, `added` evaluations are counted that the pictures do not contain.
+    /// Draws all views with `draw` and compares them with the reference. For each hit, `added` evaluations are
+    /// added to the number that `draw` reports.
     pub fn trial(
         &self,
         family: &str,
@@ -108,7 +108,7 @@ impl<'a> Views<'a> {
         }
     }
 
-    /// Draws the views with the model, for the errors, and with the verilated raymarcher, for the clocks.
+    /// Draws the views with the model, to measure the errors, and with the verilated raymarcher, to measure the clocks.
     pub fn model(&self, family: &str, config: String, options: &FieldOptions) -> Trial {
         let mut trial = self.trial(family, config, 0, |subject| subject.picture(options));
         trial.shipped = *options == FieldOptions::default();
@@ -121,8 +121,8 @@ impl<'a> Views<'a> {
         trial
     }
 
-    /// Draws the views with a method in f64. Rays start where the model's rays
-    /// start, or with `exact_entry` exactly at the cube around the sponge.
+    /// Draws the views with a method in f64. A ray starts where the model's ray of the same pixel
+    /// starts or, with `exact_entry`, exactly at the cube around the sponge.
     pub fn variant(
         &self,
         family: &str,
@@ -150,7 +150,7 @@ impl<'a> Views<'a> {
     }
 }
 
-/// Column, row and ray of each pixel of a subject, row by row.
+/// Returns column, row and ray of each pixel of a subject, row by row.
 pub fn pixels(subject: &Subject) -> impl Iterator<Item = (u32, u32, Ray)> {
     let (width, height) = subject.size;
     let size = Size { width, height };

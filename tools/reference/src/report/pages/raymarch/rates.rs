@@ -1,14 +1,14 @@
-//! Tables of frames per second and cycles on the whole SoC.
+//! Tables of the raymarcher's frames per second and cycles on the whole SoC, for the page `raymarch.md`.
 
 use crate::report::experiments::raymarch::rates::{CASES, Case, Row};
 use crate::report::soc::CLOCKS;
 use crate::report::table::{Table, bold, optional};
 
-/// The measured poses of a view of a case.
+/// The measured poses of one view of a case.
 struct View<'a> {
     name: &'a str,
     poses: Vec<&'a Row>,
-    /// The slowest pose, the one that was drawn back to back.
+    /// The slowest pose, which is the only pose that was drawn back to back.
     slowest: &'a Row,
     /// Mean cycles per frame of the slowest pose, drawn back to back.
     cycles: f64,
@@ -40,7 +40,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// A row of a table: field, number of eyes, size and prepass of a case, followed by `cells`.
+/// Makes a row of a table: field, number of eyes, size and prepass of a case, followed by `cells`.
 fn row<const CELLS: usize, const COLUMNS: usize>(
     case: &Case,
     cells: [String; CELLS],
@@ -56,7 +56,7 @@ fn row<const CELLS: usize, const COLUMNS: usize>(
     std::array::from_fn(|_| all.next().expect("as many cells as columns"))
 }
 
-/// The table of required and measured frames per second of each case.
+/// Formats the table of required and measured frames per second of each case as Markdown.
 pub fn requirements(rows: &[Row]) -> String {
     if rows.is_empty() {
         return "Not measured.".to_owned();
@@ -87,7 +87,7 @@ pub fn requirements(rows: &[Row]) -> String {
     table.finish()
 }
 
-/// The table of cycles of each view.
+/// Formats the table of cycles of each view as Markdown.
 pub fn views(rows: &[Row]) -> String {
     let mut table = Table::new([
         "field",

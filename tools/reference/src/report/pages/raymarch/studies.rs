@@ -1,4 +1,4 @@
-//! Diagrams of the studies, and their sections of the page.
+//! Diagrams of the studies of raymarching, and the sections on them in the page `raymarch.md`.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::report::table::{Table, optional, read_optional_csv};
 
 /// The diagram and the text that present a study.
 pub struct Study {
-    /// Name of the study in the names of its files.
+    /// Name of the study, as it occurs in the names of the study's files.
     name: &'static str,
     diagram: Diagram,
     /// Description of the varied parameter and of its effect.
@@ -130,7 +130,7 @@ fn p99(trial: &Trial) -> f64 {
     trial.depth_p99.unwrap_or(0.0)
 }
 
-/// An error as text with two digits, or `none`.
+/// Formats an error with two digits, or as `none`.
 pub fn error(error: Option<f64>) -> String {
     error.map_or("none".to_owned(), |error| format!("{error:.1e}"))
 }
@@ -140,7 +140,7 @@ impl Study {
         folder.join(format!("raymarch-{}.{extension}", self.name))
     }
 
-    /// Reads the study's trials from its CSV file. If the file is missing, there are none.
+    /// Reads the study's trials from its CSV file. Returns no trials if the file is missing.
     ///
     /// # Errors
     /// When a line does not have the columns of a trial.
@@ -148,7 +148,7 @@ impl Study {
         read_optional_csv(&self.file(folder, "csv"))
     }
 
-    /// Writes the study's diagram of its trials.
+    /// Writes the diagram of the study's trials.
     ///
     /// # Errors
     /// When the file cannot be written.
@@ -166,7 +166,7 @@ impl Study {
         plot::write(&self.diagram, &points, &self.file(folder, "svg"))
     }
 
-    /// The study's section of the page, as Markdown.
+    /// Formats the section on the study as Markdown.
     pub fn section(&self, trials: &[Trial]) -> String {
         let (name, title) = (self.name, self.diagram.title);
         format!(
@@ -177,7 +177,8 @@ impl Study {
     }
 }
 
-/// The trials that miss a requirement, each with the names of the requirements that it misses.
+/// Formats the list of the trials that miss a requirement as Markdown.
+/// Each trial has the names of the requirements that it misses.
 fn misses(trials: &[Trial]) -> String {
     let failed = trials.iter().filter(|trial| !trial.failed.is_empty());
     let failed: Vec<&Trial> = failed.collect();
