@@ -168,7 +168,7 @@ fn measure_one(name: &str) -> Result<Size> {
     Size::parse(&line_of_size).with_context(|| format!("reading the size of {name}"))
 }
 
-/// Adds the block `flat_build`, the sum of [`FLAT_PARTS`], if all of these are in `sizes`.
+/// Adds the block `flat_build`, the sum of `FLAT_PARTS`, if all of these are in `sizes`.
 fn add_flat_build(sizes: &mut Vec<Size>) {
     let parts: Vec<&Size> = sizes
         .iter()
