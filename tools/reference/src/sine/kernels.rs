@@ -41,6 +41,30 @@ pub struct Kernel {
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
+    /// Makes a kernel that Glint does not use and whose inputs are not phases. The labels are name, family, config and format.
+    fn new(
+        [name, family, config, format]: [&'static str; 4],
+        ulp: f64,
+        inputs: &'static str,
+        steps: u64,
+        run: impl Fn(Range<u64>, u64, &mut Statistics) + Sync + 'static,
+        show: impl Fn(u64) -> String + Sync + 'static,
+    ) -> Self {
+        Self {
+            name,
+            family,
+            config,
+            format,
+            ulp,
+            inputs,
+            by_phase: false,
+            shipped: false,
+            steps,
+            run: Box::new(run),
+            show: Box::new(show),
+        }
+    }
+
     /// Number of steps that cover all inputs.
     pub fn steps(&self) -> u64 {
         self.steps
@@ -176,7 +200,7 @@ fn scaled((sin, cos): (i32, i32), ulp: f64) -> SinCos {
 /// also have the same error. So this error is computed once and counted for each of these images, while an image with
 /// different bits is measured separately.
 fn phases(
-    [name, family, config, format]: [&'static str; 4],
+    labels: [&'static str; 4],
     fraction_bits: u32,
     (spacing, inputs): Inputs,
     evaluate: impl Fn(u32) -> (i32, i32) + Sync + 'static,
@@ -184,44 +208,38 @@ fn phases(
     let ulp = last_place(fraction_bits);
     let real = move |fixed_point| scaled(fixed_point, ulp);
     let spacing = u64::from(spacing);
-    Kernel {
-        name,
-        family,
-        config,
-        format,
-        ulp,
-        inputs,
-        by_phase: true,
-        shipped: false,
-        steps: u64::from(OCTANT) / spacing + 1,
-        run: Box::new(move |range, stride, statistics| {
-            for step in range {
-                let phase = (step * stride * spacing) as u32;
-                let truth = SinCos::of_octant(phase);
-                let (first_sin, first_cos) = evaluate(phase);
-                let mut equal = 0;
-                for image in Image::all(phase) {
-                    let angle = image.angle(phase);
-                    let got = evaluate(angle);
-                    if got == image.carry(first_sin, first_cos) {
-                        equal += 1;
-                    } else {
-                        let (sin, cos) = image.carry(truth.sin, truth.cos);
-                        statistics.asymmetric += 1;
-                        statistics.add(angle.into(), SinCos { sin, cos }, real(got), 1.0);
-                    }
+    let steps = u64::from(OCTANT) / spacing + 1;
+    let run = move |range: Range<u64>, stride: u64, statistics: &mut Statistics| {
+        for step in range {
+            let phase = (step * stride * spacing) as u32;
+            let truth = SinCos::of_octant(phase);
+            let (first_sin, first_cos) = evaluate(phase);
+            let mut equal = 0;
+            for image in Image::all(phase) {
+                let angle = image.angle(phase);
+                let got = evaluate(angle);
+                if got == image.carry(first_sin, first_cos) {
+                    equal += 1;
+                } else {
+                    let (sin, cos) = image.carry(truth.sin, truth.cos);
+                    statistics.asymmetric += 1;
+                    statistics.add(angle.into(), SinCos { sin, cos }, real(got), 1.0);
                 }
-                statistics.add_images(phase.into(), truth, real((first_sin, first_cos)), equal);
             }
-        }),
-        show: Box::new(move |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0)),
+            statistics.add_images(phase.into(), truth, real((first_sin, first_cos)), equal);
+        }
+    };
+    let show = |angle| format!("0x{angle:08x} ({:.6}°)", angle as f64 / TURN * 360.0);
+    Kernel {
+        by_phase: true,
+        ..Kernel::new(labels, ulp, inputs, steps, run, show)
     }
 }
 
 /// Makes a kernel whose inputs are radians in fixed point, with as many fraction bits as its outputs. Every `spacing`-th
 /// input in [−π, π] is measured.
 fn radians(
-    [name, family, config, format]: [&'static str; 4],
+    labels: [&'static str; 4],
     fraction_bits: u32,
     (spacing, inputs): Inputs,
     evaluate: impl Fn(i32) -> (i32, i32) + Sync + 'static,
@@ -229,61 +247,43 @@ fn radians(
     let ulp = last_place(fraction_bits);
     let last = (PI / ulp) as i64;
     let spacing = u64::from(spacing);
-    Kernel {
-        name,
-        family,
-        config,
-        format,
-        ulp,
-        inputs,
-        by_phase: false,
-        shipped: false,
-        steps: 2 * last as u64 / spacing + 1,
-        run: Box::new(move |range, stride, statistics| {
-            for step in range {
-                let bits = (step * stride * spacing) as i64 - last;
-                let got = scaled(evaluate(bits as i32), ulp);
-                let truth = SinCos::of_radians(bits as f64 * ulp);
-                statistics.add(bits as u64, truth, got, 1.0);
-            }
-        }),
-        show: Box::new(move |bits| format!("{:.9} rad", bits as i64 as f64 * ulp)),
-    }
+    let steps = 2 * last as u64 / spacing + 1;
+    let run = move |range: Range<u64>, stride: u64, statistics: &mut Statistics| {
+        for step in range {
+            let bits = (step * stride * spacing) as i64 - last;
+            let got = scaled(evaluate(bits as i32), ulp);
+            let truth = SinCos::of_radians(bits as f64 * ulp);
+            statistics.add(bits as u64, truth, got, 1.0);
+        }
+    };
+    let show = move |bits| format!("{:.9} rad", bits as i64 as f64 * ulp);
+    Kernel::new(labels, ulp, inputs, steps, run, show)
 }
 
 /// Makes a kernel whose inputs are radians in f32. All floats from 2^-24 to 2π are measured; at smaller angles, the sine
 /// rounds to the angle itself.
 fn floats(
-    [name, family, config, format]: [&'static str; 4],
+    labels: [&'static str; 4],
     evaluate: impl Fn(f32) -> (f32, f32) + Sync + 'static,
 ) -> Kernel {
     let first = u64::from(2f32.powi(-24).to_bits());
     let last = u64::from(std::f32::consts::TAU.to_bits());
-    Kernel {
-        name,
-        family,
-        config,
-        format,
-        ulp: last_place(24),
-        inputs: "all floats in [2^-24, 2π] rad",
-        by_phase: false,
-        shipped: false,
-        steps: last - first + 1,
-        run: Box::new(move |range, stride, statistics| {
-            for step in range {
-                let bits = (first + step * stride) as u32;
-                let angle = f32::from_bits(bits);
-                let to_next = f64::from(f32::from_bits(bits + 1)) - f64::from(angle);
-                let (sin, cos) = evaluate(angle);
-                let got = SinCos {
-                    sin: sin.into(),
-                    cos: cos.into(),
-                };
-                statistics.add(bits.into(), SinCos::of_radians(angle.into()), got, to_next);
-            }
-        }),
-        show: Box::new(move |bits| format!("{:?} rad", f32::from_bits(bits as u32))),
-    }
+    let run = move |range: Range<u64>, stride: u64, statistics: &mut Statistics| {
+        for step in range {
+            let bits = (first + step * stride) as u32;
+            let angle = f32::from_bits(bits);
+            let to_next = f64::from(f32::from_bits(bits + 1)) - f64::from(angle);
+            let (sin, cos) = evaluate(angle);
+            let got = SinCos {
+                sin: sin.into(),
+                cos: cos.into(),
+            };
+            statistics.add(bits.into(), SinCos::of_radians(angle.into()), got, to_next);
+        }
+    };
+    let show = |bits| format!("{:?} rad", f32::from_bits(bits as u32));
+    let inputs = "all floats in [2^-24, 2π] rad";
+    Kernel::new(labels, last_place(24), inputs, last - first + 1, run, show)
 }
 
 /// Makes a kernel that looks the sine up in a table with one entry per degree, measured at all Q16.16 angles in [0°, 360°).
@@ -295,30 +295,22 @@ fn degrees() -> Kernel {
         low @ 0..=180 => table[low as usize],
         high => -table[high as usize - 180],
     };
-    Kernel {
-        name: "degree_table",
-        family: "table of degrees",
-        config: "181 entries",
-        format: "Q16.16",
-        ulp: last_place(16),
-        inputs: "all of 16.16 in [0°, 360°)",
-        by_phase: false,
-        shipped: false,
-        steps: 360 << 16,
-        run: Box::new(move |range, stride, statistics| {
-            for step in range {
-                let angle = step * stride;
-                let degree = angle >> 16;
-                let got = SinCos {
-                    sin: sine(degree),
-                    cos: sine(450 - degree),
-                };
-                let truth = SinCos::of_radians((angle as f64 / 65536.0).to_radians());
-                statistics.add(angle, truth, got, 1.0);
-            }
-        }),
-        show: Box::new(move |angle| format!("{:.5}°", angle as f64 / 65536.0)),
-    }
+    let run = move |range: Range<u64>, stride: u64, statistics: &mut Statistics| {
+        for step in range {
+            let angle = step * stride;
+            let degree = angle >> 16;
+            let got = SinCos {
+                sin: sine(degree),
+                cos: sine(450 - degree),
+            };
+            let truth = SinCos::of_radians((angle as f64 / 65536.0).to_radians());
+            statistics.add(angle, truth, got, 1.0);
+        }
+    };
+    let labels = ["degree_table", "table of degrees", "181 entries", "Q16.16"];
+    let inputs = "all of 16.16 in [0°, 360°)";
+    let show = |angle| format!("{:.5}°", angle as f64 / 65536.0);
+    Kernel::new(labels, last_place(16), inputs, 360 << 16, run, show)
 }
 
 #[cfg(test)]
