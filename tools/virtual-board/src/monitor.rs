@@ -68,7 +68,7 @@ impl fmt::Display for Pins {
 /// A timing error: a tick whose control pins violate CEA-861.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TimingError {
-    /// Whole frames before the error.
+    /// Number of whole frames before the error.
     pub frame: u64,
     /// Line, 0 being the first of vsync.
     pub line: usize,
@@ -277,7 +277,8 @@ mod tests {
         monitor.watch(&samples);
         assert!(monitor.error_count() > 0);
         let first = monitor.errors()[0];
-        // The start of the next hsync: the first tick after the doubled one that differs from its neighbour.
+        // The error shows at the start of the next hsync, the first tick after the doubled one whose control pins differ from
+        // those of the tick before.
         assert_eq!((first.line, first.tick), (4, 0));
         assert!(
             first

@@ -26,7 +26,7 @@ pub enum PictureError {
         x: usize,
         /// Line of the pixel.
         y: usize,
-        /// Side of a block.
+        /// Width and height of a block in pixels.
         scale: usize,
         /// Red, green and blue of the first pixel of the block.
         expected: [u8; 3],

@@ -105,8 +105,8 @@ impl Drop for Pty {
     }
 }
 
-/// Opens a raw pseudo-terminal: returns the board's side, which does not block, the side for programs, and the path of
-/// the latter.
+/// Opens a raw pseudo-terminal. Returns the board's side, which does not block, the side for programs, and the path of the
+/// device that programs open.
 fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
     use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
     let side = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;

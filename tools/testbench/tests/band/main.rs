@@ -97,7 +97,8 @@ fn random_groups_in_many_bands_with_stalls() {
     }
 }
 
-/// Bands with pixels for single eyes, in any order, alternate with bands of groups for both eyes.
+/// Draws a random sequence of two kinds of bands: some have groups for one eye each, in any order, the other bands have
+/// groups for both eyes.
 #[test]
 fn luminances_of_two_eyes_are_composed() {
     for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
@@ -267,7 +268,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
         let clocks = bench.module.cycles() - start;
         assert!(clocks <= words + 16, "{clocks} clocks for {words} words");
     }
-    // Six bands, each with as many groups as words to flush.
+    // Draws six bands, each with as many groups as words to flush, so that drawing a band and flushing the one before overlap.
     let start = bench.module.cycles();
     for _ in 0..6 {
         let band = Band {

@@ -72,7 +72,7 @@ struct Bench {
     module: Module,
     source: Source,
     sink: Sink,
-    /// Number of clocks with an evaluation of the field; `waited` is that of clocks in which a ray waited for a free slot.
+    /// Number of clocks in which the lane evaluated the field; `waited` counts those in which a ray waited for a free slot.
     evaluated: u64,
     waited: u64,
 }

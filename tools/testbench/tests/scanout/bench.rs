@@ -9,7 +9,7 @@ use crate::monitor::Monitor;
 use crate::raster::{Clocks, Raster};
 use crate::settings::{Settings, error};
 
-/// Expected values of the free-running counters.
+/// Expected values of the module's free-running counters.
 #[derive(Clone, Copy, Debug, Default)]
 struct Counted {
     vblanks: u32,
@@ -84,7 +84,7 @@ pub struct Bench {
     counted: Counted,
     expected_error: u64,
     late_before: u64,
-    /// Time of the last pixel of the picture; `None` from the report of the vertical blanking on.
+    /// Time of the last pixel of the picture; `None` after the module has reported the vertical blanking that follows.
     active_end: Option<u64>,
 }
 
@@ -202,7 +202,7 @@ impl Bench {
         self.module.is_high(self.ports.sys_rst)
     }
 
-    /// Advances to the next rising edge of a clock, which may be one of both clocks at once.
+    /// Advances to the next rising edge of either clock, or of both clocks if they rise at the same time.
     fn edge(&mut self) {
         self.now = self.next_sys.min(self.next_pix);
         let (sys, pix) = (self.now == self.next_sys, self.now == self.next_pix);

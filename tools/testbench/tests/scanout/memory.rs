@@ -142,7 +142,7 @@ impl Memory {
         module.is_high(self.rdata[0])
     }
 
-    /// Drives the port: `ready`, and a due word, or noise in place of a word.
+    /// Drives the port: decides whether to be ready for a command, and delivers a due word, or noise that is not valid.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
         let manners = self.manners;
         if cycle >= self.paused_until && chance(random, manners.pause) {

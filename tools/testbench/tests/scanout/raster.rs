@@ -1,6 +1,6 @@
 //! Video timings, clocks, and the picture in memory.
 
-/// A video timing: active pixels, front porch, sync and back porch of a line, and the same of a frame in lines.
+/// A video timing: active part, front porch, sync and back porch of a line in pixels, and of a frame in lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
     pub h_active: u64,
@@ -26,7 +26,7 @@ impl Raster {
         v_back: 20,
     };
 
-    /// The timing of the module `scanout_small`: a frame is about 200 times smaller, with the same time per memory word.
+    /// The timing of the module `scanout_small`: a frame takes about a 200th of the time, with the same time per memory word.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,

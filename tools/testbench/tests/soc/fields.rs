@@ -1,4 +1,4 @@
-//! Compares the whole SoC with its raymarcher with glint-model: colours, depths and statistics of every field, from three
+//! Compares the whole SoC, including its raymarcher, with glint-model: colours, depths and statistics of every field, from three
 //! cameras, for one eye and for two eyes.
 
 use glint::board::{Board, SimulatedBoard, built_firmware};

@@ -1,5 +1,5 @@
-//! Compares the whole SoC with its triangle engine with glint-model: the pictures on the monitor, the depths in memory, and
-//! the counts of triangles.
+//! Compares the whole SoC, including its triangle engine, with glint-model: the pictures on the monitor, the depths in
+//! memory, and the counts of triangles.
 //!
 //! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` builds it too.
 //!

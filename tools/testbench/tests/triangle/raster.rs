@@ -50,8 +50,8 @@ fn random_triangles_smooth() {
     }
 }
 
-/// Draws triangles with light from 0 to the largest value over each range of depths, and with constant light, each
-/// triangle alone.
+/// Draws triangles whose light goes from 0 to the largest value, and triangles with constant light, over several ranges of
+/// depths. Each triangle is drawn alone.
 #[test]
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);

@@ -15,7 +15,7 @@ const GUARD: i32 = 2047 << 8;
 /// Largest depth w, u18.6.
 const NEAREST: u32 = ((1 << 18) - 1) << 6;
 
-/// Constants of a frame.
+/// Frame constants: the picture's size, culling of back faces, the camera's direction n, and the shading.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     size: (u32, u32),
@@ -213,7 +213,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     ];
     for place in &mut places {
         *place = match kind {
-            // Anywhere in the guard band, or at the ends and in the middle of its range.
+            // Vertices anywhere in the guard band, or at the ends and in the middle of its range.
             0 | 1 => [0; 2].map(|_| random.random_range(-GUARD..=GUARD)),
             2 => [0; 2].map(|_| [-GUARD, GUARD, 0, 128][random.random_range(0..4)]),
             // Triangles about as large as the picture.

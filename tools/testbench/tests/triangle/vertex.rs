@@ -123,7 +123,7 @@ fn random_cameras_and_vertices() {
         .zip(shares)
         .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
         .collect();
-    // Numbers of vertices behind the near plane, beyond the guard band, and visible.
+    // Numbers of the tested vertices that are behind the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];

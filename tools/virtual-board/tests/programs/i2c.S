@@ -1,4 +1,5 @@
-# Loop: reads WHO_AM_I of an MPU-6050 and shows the whole register `answer`, status included, on the LEDs.
+# In a loop, reads the register WHO_AM_I of an MPU-6050, and shows the I2C engine's whole register `answer`, with its status
+# bits, on the LEDs.
     .option norelax
     li   s0, COMMAND
     li   s1, ANSWER
@@ -6,15 +7,15 @@
 again:
     li   t0, 0x000              # start
     sw   t0, 0(s0)
-    li   t0, 0x1d0              # write to 0x68:
+    li   t0, 0x1d0              # write address 0x68 for writing
     sw   t0, 0(s0)
-    li   t0, 0x175              # the register
+    li   t0, 0x175              # write the number of the register
     sw   t0, 0(s0)
     li   t0, 0x000              # start
     sw   t0, 0(s0)
-    li   t0, 0x1d1              # read from 0x68:
+    li   t0, 0x1d1              # write address 0x68 for reading
     sw   t0, 0(s0)
-    li   t0, 0x200              # a byte
+    li   t0, 0x200              # read a byte
     sw   t0, 0(s0)
     li   t0, 0x300              # stop
     sw   t0, 0(s0)

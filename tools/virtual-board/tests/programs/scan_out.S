@@ -1,5 +1,6 @@
-# Shows the frame at FRAME with the scale at PARAMETERS, and one frame later the frame whose address is in the next word.
-# Meanwhile it reads and writes memory at full speed. The LEDs show the underflow count.
+# Shows the frame at the address FRAME, with the scale in the word at the address PARAMETERS. One video frame later, shows the
+# frame whose address is in the word after the scale. Meanwhile the program reads and writes memory at full speed, and shows
+# scan-out's count of underflows on the LEDs.
     .option norelax
     li   s0, SCANOUT
     li   s1, PARAMETERS

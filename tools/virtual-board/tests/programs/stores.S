@@ -1,4 +1,4 @@
-# Stores a count to a word of DDR3, then to the LEDs.
+# Stores a count to the word of DDR3 at the address WORD, then shows the count on the LEDs.
     .option norelax
     li   s0, WORD
     li   s1, LEDS_OUT

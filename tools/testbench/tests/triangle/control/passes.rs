@@ -14,7 +14,7 @@ pub const FULL: u64 = 5;
 pub const LIST: u64 = 6;
 pub const CANCELLED: u64 = 7;
 
-/// Indices of the two passes.
+/// Index of the geometry pass in arrays of both passes; `RASTER` is the index of the raster pass.
 pub const GEOMETRY: usize = 0;
 pub const RASTER: usize = 1;
 pub const NAMES: [&str; 2] = ["geometry", "raster"];

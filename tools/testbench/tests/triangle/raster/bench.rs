@@ -17,9 +17,9 @@ pub struct Pixel {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub clocks: u64,
-    /// Clocks in which the rasterizer looked at a group (`cycles_walking`).
+    /// Number of clocks in which the rasterizer visited a group (`cycles_walking`).
     pub walked: u64,
-    /// Clocks among `walked` in which no group went on to be drawn (`cycles_empty`).
+    /// Number of those clocks among `walked` in which no group went on to be drawn (`cycles_empty`).
     pub empty: u64,
     /// Number of groups at the output.
     pub groups: u64,

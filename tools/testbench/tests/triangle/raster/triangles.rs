@@ -1,4 +1,4 @@
-//! Triangles on the screen, numbered by colour.
+//! Triangles on the screen, for tests; each flat triangle has its number as its colour.
 
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
