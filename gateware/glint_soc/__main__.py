@@ -15,7 +15,7 @@ from .register_map import OPTIONAL_BLOCKS
 
 
 def make_soc(board, build_id, blocks, smooth=False, fields=None):
-    """The SoC of `board`, not yet finalized."""
+    """Returns the SoC of `board`, not yet finalized."""
     if board == "virtual":
         from .virtual import VirtualSoC
         return VirtualSoC(build_id, blocks, smooth, fields)
@@ -24,7 +24,7 @@ def make_soc(board, build_id, blocks, smooth=False, fields=None):
 
 
 def main():
-    """Parses the command line and builds."""
+    """Parses the command line and builds the gateware."""
     parser = argparse.ArgumentParser(prog="python -m glint_soc", description=__doc__)
     parser.add_argument("--board", choices=["virtual", "urbana"], required=True)
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")

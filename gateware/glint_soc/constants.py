@@ -1,7 +1,7 @@
 """Numbers that gateware, firmware and host share.
 
 `gateware/tests/run.py --packages` writes them as the SystemVerilog packages `picture_pkg`, `band_pkg` and `list_pkg`, and
-`cargo xtask pac` as `firmware/core/src/machine.rs`. The numbers of single blocks stand in the descriptions of the blocks.
+`cargo xtask pac` as `firmware/core/src/machine.rs`. Numbers of a single block are in the description of that block.
 """
 
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Size:
-    """A picture size. A band is at most `BAND_PIXELS` pixels: whole lines, and whole bands fill the picture."""
+    """A picture size. A band is a number of whole lines with at most `BAND_PIXELS` pixels, and whole bands fill the picture."""
 
     width: int
     height: int
@@ -17,45 +17,45 @@ class Size:
 
     @property
     def name(self):
-        """The name of its code in registers."""
+        """Name of the size's code in registers."""
         return f"w{self.width}"
 
     @property
     def text(self):
-        """Width and height."""
+        """Width and height, as text."""
         return f"{self.width}x{self.height}"
 
     @property
     def bands(self):
-        """Bands of a picture."""
+        """Number of bands of a picture."""
         return self.height // self.band_lines
 
     @property
     def band_groups(self):
-        """Groups of a band: rows of the band buffer."""
+        """Number of groups of a band, which is the number of its rows in the band buffer."""
         return self.width // GROUP * self.band_lines
 
 
 SIZES = (Size(320, 180, 45), Size(640, 360, 24), Size(1280, 720, 12))
-"""Sizes by code. Each doubles the width and height of the previous one; the last one is the screen."""
+"""Picture sizes by code. Each has twice the width and height of the previous one; the last one is the size of the screen."""
 
 GROUP = 8
-"""Neighbouring pixels of a line in one 128-bit word: a row of the band buffer."""
+"""Number of neighbouring pixels of a line in a group, which is one 128-bit word of a frame and one row of the band buffer."""
 
 BAND_PIXELS = 15360
-"""Pixels of a bank of the band buffer."""
+"""Largest number of pixels in a band: those of a bank of the band buffer."""
 
 LIST_TABLE_WORDS = 16
-"""128-bit words before the first band list of a set: the lengths of 64 lists."""
+"""Number of 128-bit words before the first band list of a set, which hold the lengths of 64 lists."""
 
 LIST_GAP_WORDS = 128
-"""128-bit words between two band lists: a row of a memory bank, so that neighbouring lists lie in different banks."""
+"""Number of 128-bit words between two band lists: a row of a DDR3 bank, so that neighbouring lists lie in different banks."""
 
 DESCRIPTOR_BYTES = {"flat": 48, "smooth": 96}
-"""Bytes of a descriptor, without and with smooth shading."""
+"""Size of a triangle's descriptor in bytes, without and with smooth shading."""
 
 CONES = (160, 90)
-"""Cones across and down for one eye at a size above the first; half of each otherwise."""
+"""Number of cones of the raymarcher across and down, for one eye at a size above the first. Otherwise half of each number."""
 
 for _size, _code in zip(SIZES, range(3)):
     if _size.width * _size.band_lines > BAND_PIXELS or _size.height % _size.band_lines or \
@@ -64,7 +64,7 @@ for _size, _code in zip(SIZES, range(3)):
 
 
 def describe():
-    """The numbers as plain data."""
+    """Returns the numbers as plain data."""
     return {
         "sizes": [
             {"width": size.width, "height": size.height, "band_lines": size.band_lines}
@@ -79,7 +79,7 @@ def describe():
 
 
 def packages():
-    """The text of the SystemVerilog packages by folder and name."""
+    """Returns the texts of the SystemVerilog packages, by folder and name."""
     return {
         ("common", "picture_pkg"): _package("picture_pkg", "Sizes of pictures. Code s is the first size times 2^s.", [
             f"    localparam int unsigned WIDTH  = {SIZES[0].width};",

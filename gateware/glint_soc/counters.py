@@ -1,7 +1,8 @@
-"""Free-running counters of a block: one line of the description each.
+"""Free-running counters of a block, each declared by one line of the block's description.
 
-The RTL reports events, in one packed struct `events_t` with a member of each counter's name: how much the counter grows in
-this clock. A module sets the members it counts and leaves the others 0; its parent ORs the structs of its parts.
+The RTL reports events in one packed struct `events_t`. It has a member for each counter, with the counter's name: the growth of
+the counter in this clock. A module sets the members that it counts and leaves all other members 0; its parent ORs the structs of
+its parts.
 """
 
 from litex.soc.interconnect.csr import CSRStatus
@@ -11,10 +12,11 @@ from .packed import Struct
 
 
 class Counters:
-    """The counters of `block`, as registers at the place where this is built, and the accumulators behind them.
+    """The counters of `block`: their registers, which follow the registers that the block has so far, and their accumulators.
 
-    `counters` gives each name its text, or a tuple of text and bits of the largest step where that is not 1. `events` is
-    what the RTL is to drive. A counter follows its event by two clocks; its difference between two readings is modulo 2^32.
+    `counters` maps each name to its text, or to a tuple of the text and the number of bits of the largest growth in a clock, if
+    that is more than 1. The RTL must drive `events`. A counter follows its event by two clocks. Differences of two readings are
+    modulo 2^32.
     """
 
     def __init__(self, block, counters):
@@ -26,8 +28,8 @@ class Counters:
             setattr(block, f"_{name}", self.registers[name])
             members[name] = Signal(bits, name=f"event_{name}")
         self.events = Struct("events_t", "Growth of each counter in this clock.", members)
-        # `step` registers each event before its counter: the carry chain of 32 bits is long enough alone, and events come from
-        # all parts of the block.
+        # `step` registers each event before its counter, because the 32-bit carry chain is a long path by itself, and events come
+        # from all parts of the block.
         for name, event in members.items():
             step, count = Signal(len(event), name=f"step_{name}"), self.registers[name].status
             block.sync += [step.eq(event), count.eq(count + step)]

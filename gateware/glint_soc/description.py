@@ -14,7 +14,7 @@ from . import constants
 
 
 def describe(soc):
-    """The description of a finalized SoC as plain data: its blocks, and the numbers that all of Glint shares."""
+    """Returns the description of a finalized SoC as plain data: its blocks, and the numbers that all parts of Glint share."""
     return {
         "blocks": {name: _block(getattr(soc, name, None), region.obj) for name, region in soc.csr.regions.items()},
         "machine": constants.describe(),
@@ -63,6 +63,6 @@ def _register(register):
 
 
 def _values(field):
-    """The named values of `field`. LiteX also allows values without a name, which are documentation only."""
+    """Returns the named values of `field`. LiteX also allows values without a name, which are documentation only."""
     named = [entry for entry in field.values or [] if len(entry) == 3]
     return [{"value": int(value, 0), "name": name, "text": text} for value, name, text in named]

@@ -1,9 +1,9 @@
 """The flat fields of the raymarcher, with one description for each.
 
 `gateware/tests/run.py --packages` generates `rtl/raymarch/fields_pkg.sv` (numbers, latency, kind of faces) and
-`rtl/raymarch/flat_fields.sv` (instances, delays, choice) from the descriptions. They also determine the values of `solid.kind` and the
-bits of `caps.flat`, with the PAC and the driver's checks; the builds; and the variants of tests and sizes. docs/adding-a-field.md has
-the steps.
+`rtl/raymarch/flat_fields.sv` (instances, delays, choice) from the descriptions. The descriptions also determine the values of
+`solid.kind` and the bits of `caps.flat`, with the PAC and the driver's checks; the builds; and the variants that are tested
+and whose size is measured. docs/adding-a-field.md lists the steps to add a field.
 """
 
 from dataclasses import dataclass, field
@@ -15,10 +15,11 @@ from .rtl import RTL
 class FlatField:
     """A flat field. Its module has the name `field_NAME`.
 
-    `text` is the plural of the fields that use the module, for errors. `clocks` is the latency as a SystemVerilog expression of LEVELS.
-    `ports` connects ports beside `clk`, `point`, `distance` and `surface` to members of `solid_t`; `parameters` sets parameters. With
-    `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and `surface` is {z, y, x}, 1 where the normal is positive.
-    Otherwise faces are perpendicular to the axes, and `surface` is {axis, positive}.
+    `text` is the plural of the fields that use the module, for error messages. `clocks` is the latency as a SystemVerilog
+    expression of LEVELS. `ports` connects the ports other than `clk`, `point`, `distance` and `surface` to members of `solid_t`;
+    `parameters` are the parameters of the instance. With `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and
+    `surface` is {z, y, x}, 1 where the normal is positive. Otherwise faces are perpendicular to the axes, and `surface` is
+    {axis, positive}.
     """
 
     name: str
@@ -47,17 +48,17 @@ _HEADER = "// Generated from gateware/glint_soc/fields.py by `gateware/tests/run
 
 
 def mask(names):
-    """The parameter FIELDS of a build: bit k is set if field k is built."""
+    """Returns the parameter FIELDS of a build with the fields `names`: bit k is set if field k is built."""
     return sum(1 << NAMES.index(name) for name in names)
 
 
 def has_octants(names):
-    """Whether a build has fields whose faces are perpendicular to the diagonals."""
+    """Returns whether a build with the fields `names` has fields whose faces are perpendicular to the diagonals."""
     return any(flat.octants for flat in FLAT_FIELDS if flat.name in names)
 
 
 def files():
-    """Text of each generated file, by path."""
+    """Returns the text of each generated file, by path."""
     return {RTL / "raymarch" / "fields_pkg.sv": _package(), RTL / "raymarch" / "flat_fields.sv": _module()}
 
 

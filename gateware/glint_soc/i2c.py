@@ -10,7 +10,7 @@ from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
 BIT_RATE = 400_000
-"""Most bits a second: fast mode."""
+"""Largest number of bits a second on the bus, that of the I2C fast mode."""
 
 OPERATIONS = Enumeration("operation", "Operations of a command.", {
     "start": "start condition, or repeated start within a transaction",
@@ -30,7 +30,7 @@ ERRORS = Enumeration("error", "Errors.", {
 
 COMMANDS = 32
 ANSWERS = 128
-"""Places in the queues, without the output register."""
+"""Number of places in the FIFO of commands and in that of received bytes, without their output registers."""
 
 
 class I2CMaster(LiteXModule):
@@ -62,7 +62,7 @@ class I2CMaster(LiteXModule):
             CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
             CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
-        # A queue holds one entry more than its FIFO has places: the one in the output register.
+        # A queue holds one entry more than its FIFO has places, because one entry is in the output register.
         self.constants = {
             "command_places": (COMMANDS + 1, "Places in the queue of commands."),
             "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),

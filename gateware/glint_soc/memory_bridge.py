@@ -1,4 +1,4 @@
-"""From the CPU's bus to DDR3, a cache line at a time."""
+"""Bridge from the CPU's bus to the DDR3 memory, which reads a whole cache line at a time."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import stream
@@ -14,15 +14,15 @@ class MemoryBridge(LiteXModule):
     """Wishbone slave of 32 bits over a native LiteDRAM port of 128 bits.
 
     Reads: an incrementing burst that begins in the first half of 32 aligned bytes (the CPU's line fill) asks for both
-    16-byte words at once, and is then served a word of 32 bits a cycle. Anything else asks for one 16-byte word. What
-    was read is dropped with the end of the burst, so that nothing older than the burst is ever served: what DMA writes
-    is seen by the next fill.
+    16-byte words at once, and is then served a word of 32 bits a cycle. Any other read asks for one 16-byte word. Words
+    that were read are dropped at the end of the burst, so that no data older than the burst are ever served: the next
+    line fill sees what DMA has written.
 
-    Writes: acknowledged the cycle after the controller has taken the command, which fixes its place among all
-    accesses to the same bank; the data follow when the controller asks for them. Two cycles a word where the memory
-    keeps up.
+    Writes: a write is acknowledged in the cycle after the controller has taken its command, which fixes its order among
+    all accesses to the same bank; the data follow when the controller asks for them. A word takes two cycles if the
+    memory keeps up.
 
-    A command is withdrawn only if the bus gives an access up before memory has taken it, which the CPU never does.
+    A command is withdrawn only if the bus gives up its access before memory has taken the command, which the CPU never does.
     LiteX's own converter makes one access to memory for each 32-bit word, one after the other.
     """
 
@@ -38,7 +38,7 @@ class MemoryBridge(LiteXModule):
 
         # Data of writes wait here from the acceptance of their command until the controller requests them.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
-        # Room for both words of a line, which the controller sends without back-pressure.
+        # FIFO with room for both 16-byte words of a line, which the controller sends without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
         self.comb += [
             writes.sink.data.eq(bus.dat_w),

@@ -6,16 +6,16 @@ from .rtl import RTL
 from .virtual import VirtualSoC
 
 WRITER = ".venv/bin/python gateware/tests/run.py --packages"
-"""Command that writes the packages."""
+"""Shell command that writes the packages."""
 
 
 def full_soc():
-    """The SoC with all blocks, not finalized."""
+    """Returns the SoC with all blocks, not finalized."""
     return VirtualSoC(0, OPTIONAL_BLOCKS)
 
 
 def stale(soc):
-    """Returns the texts of the files that differ from the descriptions of a full build, by path."""
+    """Returns the new texts of the generated files that are not up to date with the full SoC `soc`, by path."""
     blocks = [getattr(soc, name) for name in PINNED if hasattr(soc, name)]
     packages = [block.package for block in blocks if hasattr(block, "package")]
     texts = {
@@ -27,7 +27,7 @@ def stale(soc):
 
 
 def write(soc):
-    """Writes these files and returns their paths."""
+    """Writes the generated files that are not up to date with the full SoC `soc`, and returns their paths."""
     texts = stale(soc)
     for path, text in texts.items():
         path.write_text(text)

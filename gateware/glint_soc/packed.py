@@ -1,8 +1,8 @@
 """Packed structs that a block's description and its RTL share, connected by the names of their members.
 
 A description builds each `Struct` from the signals of its registers. `Package` writes the SystemVerilog type of each struct
-to a package in the block's RTL folder, so that place and width of a member are never typed. `gateware/tests/run.py --packages`
-writes the packages of all blocks.
+to a package in the block's RTL folder, so that positions and widths of members are never written by hand.
+`gateware/tests/run.py --packages` writes the packages of all blocks.
 """
 
 from migen import Cat, Signal
@@ -35,7 +35,7 @@ class Struct:
         return Cat(*(_flat(value) for value in reversed(self._members.values())))
 
     def typedef(self):
-        """The type in SystemVerilog."""
+        """Returns the definition of the type in SystemVerilog."""
         lines = [f"        {_type(value)} {member};" for member, value in self._members.items()]
         return "\n".join([*_comment(self.text), "    typedef struct packed {", *lines, f"    }} {self.name};"])
 
@@ -78,11 +78,11 @@ class Enumeration:
         return [(str(number), name, text) for number, (name, text) in enumerate(self._values.items())]
 
     def __getitem__(self, name):
-        """The number of a value."""
+        """Returns the number of the value `name`."""
         return list(self._values).index(name)
 
     def constants(self):
-        """The values as constants in SystemVerilog."""
+        """Returns the values as constants in SystemVerilog."""
         return "\n".join([*_comment(self.text), *(
             f"    localparam logic [{self.bits - 1}:0] {self.name.upper()}_{name.upper()} = {self.bits}'d{number};"
             for number, name in enumerate(self._values))])
@@ -91,7 +91,7 @@ class Enumeration:
 class Package:
     """The SystemVerilog package that holds the types and constants of one block's description.
 
-    `numbers` are constants by name, `enumerations` and `structs` follow in their order.
+    `numbers` are constants by name; `enumerations` and `structs` follow them in the order of their lists.
     """
 
     def __init__(self, block, numbers=None, enumerations=(), structs=()):
@@ -102,7 +102,7 @@ class Package:
         self._structs = structs
 
     def text(self):
-        """The file."""
+        """Returns the text of the package's file."""
         parts = [
             *(["\n".join(f"    localparam int unsigned {name} = {number};" for name, number in self._numbers.items())]
               if self._numbers else []),

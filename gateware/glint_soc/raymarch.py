@@ -26,8 +26,8 @@ _ERRORS = [
 
 @dataclass(frozen=True)
 class Fields:
-    """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (with levels
-    also the sponge), spheres, fillets, two eyes, prepass."""
+    """Build options of a raymarcher: number of lanes (1, 2, 4), levels of the sponge (0 to 6), names of the flat fields (which
+    include the sponge if it has levels), spheres, fillets, two eyes, prepass."""
 
     lanes: int = 2
     levels: int = 6
@@ -49,7 +49,7 @@ BUILDS = {
     "faces": Fields(levels=4, flat=("menger", "box"), round=False, blend=False, prepass=False),
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
 }
-"""The builds: all features; two builds with fewer features; and the sponge alone, with twice as many lanes."""
+"""Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
 
 
 class Raymarcher(LiteXModule):
@@ -176,7 +176,7 @@ class Raymarcher(LiteXModule):
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
-        # Without levels the sponge is an empty field. A frame with spheres alone requests the empty field.
+        # A sponge without levels is an empty field, which a frame of spheres alone selects. So kind 0 is always accepted.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |
@@ -194,8 +194,9 @@ class Raymarcher(LiteXModule):
         colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
             "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
-        # The engine's clock runs during a pass. Writes to tables and spheres start it between passes. The last events come some
-        # clocks after the end of a pass, and all events are 0 when the clock stops.
+        # Control of the gated clock. It runs while the block is enabled and the engine's clock runs, and after writes to tables and
+        # spheres. Then it runs for 31 clocks more, because the last events come some clocks after the end of a pass, and all events
+        # must be 0 when it stops.
         lingers, working = Signal(5), Signal()
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
@@ -257,8 +258,8 @@ class Raymarcher(LiteXModule):
         add_sources(platform, "raymarcher")
 
     def _spheres(self, fields, last_light):
-        """Decodes writes to `sphere`. Returns whether a sphere is written, its number, the sphere, the lights, and width and inverse of
-        the fillet."""
+        """Decodes writes to the register `sphere`. Returns whether a sphere is written, its number, the sphere, the lights, and
+        the fillet's width and its inverse."""
         value, entry = self._sphere.fields.value, self._sphere.fields.entry
         centre, radius, inverse = [Signal(22) for _ in range(3)], Signal(21), Signal(22)
         directions, colours = [[Signal(18) for _ in range(3)] for _ in range(4)], [Signal(24) for _ in range(4)]
@@ -279,7 +280,7 @@ class Raymarcher(LiteXModule):
         return write, entry[:3], sphere, lights, blend
 
     def _octants(self, fields):
-        """The colours of faces 6 and 7, set by writes to `sphere`; constants in builds whose fields have no such faces."""
+        """Returns the colours of faces 6 and 7, set by writes to `sphere`, or constants in builds without such faces."""
         if not has_octants(fields.flat):
             return [Constant(0, 24)] * 2
         colours = [Signal(24), Signal(24)]

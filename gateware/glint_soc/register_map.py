@@ -13,7 +13,7 @@ from litex.soc.interconnect.csr import CSRStatus
 
 @dataclass(frozen=True)
 class Location:
-    """Location of a peripheral: its window of `CSR_PAGING` bytes and its optional interrupt."""
+    """Location of a peripheral: number of its window of `CSR_PAGING` bytes, and number of its interrupt if it has one."""
 
     window: int
     irq: int | None = None
@@ -48,7 +48,7 @@ CSR_MAP = {name: location.window for name, location in PINNED.items()}
 
 
 def registers(soc):
-    """The register map of a finalized SoC without its board specific parts, as plain data in address order."""
+    """Returns the register map of a finalized SoC without its board-specific parts, as plain data in address order."""
     regions = {}
     for name, region in soc.csr.regions.items():
         if name in BOARD_SPECIFIC:
@@ -68,13 +68,13 @@ def registers(soc):
 
 
 def build_id(soc):
-    """CRC-32 of the register map of `soc`, which has to be the full build."""
+    """Returns the CRC-32 of the register map of `soc`, which must be the build with all blocks."""
     canonical = json.dumps(registers(soc), sort_keys=True, separators=(",", ":"))
     return zlib.crc32(canonical.encode())
 
 
 def check_subset(soc, full):
-    """Fails if a register of `soc` is not at the same place in the full build."""
+    """Fails if a register of `soc` does not have the same address in the full build."""
     expected = registers(full)
     for name, region in registers(soc).items():
         if region != expected.get(name):

@@ -19,7 +19,7 @@ _INSTANCE = re.compile(r"(?<!: )\b(\w+)\s+(?:#\s*\(|\w+\s*\()")
 
 @cache
 def _library():
-    """The file of each module and package."""
+    """Returns the path of the file of each module and package, by name."""
     paths = {}
     for path in sorted(RTL.glob("*/*.sv")):
         if _definitions(path) != [path.stem]:
@@ -42,7 +42,7 @@ def _definitions(path):
 def sources(*tops, others=()):
     """Returns the files that the modules `tops` need, each after those that it depends on.
 
-    `others` are files outside `gateware/rtl`: further modules, and modules that replace those of their names.
+    `others` are files outside `gateware/rtl`: further modules, and modules that replace the modules of the same names.
     """
     library = _library() | {name: path for path in others for name in _definitions(path)}
     found = {}

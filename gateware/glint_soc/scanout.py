@@ -12,15 +12,15 @@ IDENT = int.from_bytes(b"SCAN", "big")
 
 VIDEO_LAYOUT = [("hsync", 1), ("vsync", 1), ("de", 1), ("r", 8), ("g", 8), ("b", 8)]
 
-# Bits of the address of a 16-byte word in the CPU's 32-bit address space. The memory port uses only the lowest of them.
+# Number of address bits of a 16-byte word in the CPU's 32-bit address space. The memory port uses only the lowest of them.
 _WORD_ADDRESS_BITS = 28
 
 
 class Scanout(LiteXModule):
     """Reads the front RGB565 frame through `port`, a native 128-bit LiteDRAM read port in the domain `sys`.
 
-    `video` (`VIDEO_LAYOUT`) is one pixel a clock of the domain `pix`, CEA-861 1280x720, both syncs active high. It runs
-    from the moment the domain leaves reset, and is black until it is enabled.
+    `video` (`VIDEO_LAYOUT`) is the output, one pixel a clock of the domain `pix`, CEA-861 1280x720, both syncs active high. It
+    runs as soon as that domain leaves reset, and is black until the scan-out is enabled.
     """
 
     def __init__(self, platform, port):

@@ -1,7 +1,7 @@
 """The SoC that both boards share: CPU, memory controller, peripherals and accelerators.
 
-A board brings its platform, its clocks (domains `sys` and `pix`), its DDR3 PHY and its video output; everything that
-firmware can see is here.
+A board adds its platform, its clocks (domains `sys` and `pix`), its DDR3 PHY and its video output. All other parts, which
+firmware can see, are here.
 """
 
 from litedram.core.controller import ControllerSettings
@@ -20,21 +20,21 @@ from .scanout import Scanout
 from .triangle import TriangleEngine
 
 SYS_CLK_FREQ = 81.25e6
-"""Keeps DDR3-650 and the fabric within the specification of the -1 speed grade."""
+"""System clock in Hz. With it DDR3-650 and the fabric meet the specification of the -1 speed grade."""
 
 PIXEL_CLK_FREQ = 74.25e6
-"""CEA-861 1280x720 at 60 Hz."""
+"""Pixel clock in Hz, of CEA-861 1280x720 at 60 Hz."""
 
 MAIN_RAM_SIZE = 128 * 1024 * 1024
-"""One MT41K64M16: 16 bits wide, 8 banks of 8192 rows of 1024 columns."""
+"""Size of the DDR3 memory in bytes: one MT41K64M16, 16 bits wide, with 8 banks of 8192 rows of 1024 columns."""
 
 
 class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, 128 MB of DDR3 without a second cache level, and Glint's peripherals.
 
-    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`; `build_id` is what the
-    full build's register map gives (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine,
-    `fields` says what the raymarcher is built with.
+    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. `build_id` is the checksum of the
+    register map of the full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine.
+    `fields` are the build options of the raymarcher.
     """
 
     csr_map = CSR_MAP
@@ -78,9 +78,9 @@ class GlintSoC(SoCCore):
     def add_dram(self, phy):
         """Adds the DDR3 controller over the board's PHY, then the blocks that access memory."""
         module = MT41K64M16(self.sys_clk_freq, "1:4")
-        # Longer runs than LiteDRAM's 32 reads and 16 writes mean fewer turns between reads and writes, which take a
-        # dozen clocks each. A port changes to another bank only when its commands are done, so fewer queued
-        # commands shorten that wait.
+        # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory turns less often between reads and writes, which
+        # takes a dozen clocks each time. A port changes to another bank only when its commands are done, so a shorter queue of
+        # commands shortens that wait.
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
                        controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=4))
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")

@@ -39,7 +39,7 @@ class TriangleEngine(LiteXModule):
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
     `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `smooth` builds smooth
-    shading, `fields` the input for a raymarcher, `field`.
+    shading, `fields` builds the input `field` for a raymarcher.
     """
 
     def __init__(self, platform, readers, writers, main_ram, smooth=False, fields=False):
@@ -186,7 +186,7 @@ class TriangleEngine(LiteXModule):
                        | self._status.fields.geometry_busy | self._status.fields.raster_busy),
             self.clock_enable.eq(working | (linger != 0)),
         ]
-        # The last events reach the counters some clocks after the end of a pass.
+        # The clock runs on after a pass, because the last events reach the counters some clocks later.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
         # Signals between the engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
@@ -301,7 +301,7 @@ class TriangleEngine(LiteXModule):
 
 
 def _read_port(port):
-    """Both directions of a native read port of the memory."""
+    """Returns the connections of a native read port of the memory, in both directions."""
     return {
         "request": Struct("read_request_t", "A read port of the memory: to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr}),
@@ -311,7 +311,7 @@ def _read_port(port):
 
 
 def _write_port(port):
-    """Both directions of a native write port of the memory."""
+    """Returns the connections of a native write port of the memory, in both directions."""
     return {
         "request": Struct("write_request_t", "A write port of the memory: to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr,

@@ -18,7 +18,7 @@ _IDELAY_CLK_FREQ = 200e6
 class _PixelMMCM(S7MMCM):
     """An MMCM at 742.5 MHz, ten times the pixel clock, from 100 MHz: /5 and x37.125.
 
-    LiteX's search has whole multipliers only and would settle for 74.2857 MHz, 481 ppm too fast.
+    LiteX's search tries whole multipliers only, and would choose a pixel clock of 74.2857 MHz, 481 ppm too fast.
     """
 
     def compute_config(self):
@@ -77,7 +77,7 @@ class CRG(LiteXModule):
 
 
 class UrbanaSoC(GlintSoC):
-    """The SoC on the board."""
+    """The SoC of the Urbana board."""
 
     def __init__(self, build_id, blocks, smooth=False, fields=None):
         platform = Platform()

@@ -82,7 +82,7 @@ class Platform(Xilinx7SeriesPlatform):
         self.add_platform_command("set_property INTERNAL_VREF 0.675 [get_iobanks 34]")
 
     def create_programmer(self):
-        """The loader has no entry for this board; the Arty S7 has the same FPGA and the same USB bridge."""
+        """Returns openFPGALoader for the Arty S7, which has the same FPGA and USB bridge. The loader has no entry for this board."""
         return OpenFPGALoader("arty_s7_50")
 
     def do_finalize(self, fragment):

@@ -36,7 +36,7 @@ _io = [
 
 
 class Platform(GenericPlatform):
-    """Writes Verilog and the ROM image; Verilator takes it from there."""
+    """Writes Verilog and the ROM image, from which Verilator builds the simulation."""
 
     def __init__(self):
         GenericPlatform.__init__(self, device="virtual", io=list(_io), name="glint_virtual")
@@ -91,7 +91,7 @@ class VirtualSoC(GlintSoC):
         self.ddrphy = SDRAMPHYModel(
             module=MT41K64M16(SYS_CLK_FREQ, "1:4"), data_width=16, clk_freq=SYS_CLK_FREQ)
         self._name_banks()
-        # The memories have no initial contents, since the harness loads the ROM: `$readmemh` would tie the build to a path.
+        # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
         self.rom.mem.init = None
         self.sram.mem.init = None
         self.add_dram(self.ddrphy)

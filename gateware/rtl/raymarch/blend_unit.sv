@@ -1,9 +1,11 @@
-// Union of a flat and a round solid, sharp or with a fillet (docs/formats.md, "Unions").
+// Computes the distance to the union of a flat solid and a sphere, sharp or with a fillet (docs/formats.md, "Unions"
+// and "Smooth unions").
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
-// Latency 8 clocks, throughput one point a clock, no handshake; `solid` must hold. `takes_round` selects the sphere where it
-// is the nearer or the only surface. `nearest` passes through.
+// a is the distance of the flat solid, b that of the sphere, k the parameter `solid.blend_width`, and w the weight of the
+// farther surface. Latency 8 clocks, throughput one point a clock, no handshake; `solid` must hold. `takes_round` must be high
+// where the sphere is the nearer or the only surface. `nearest` is `known`, delayed.
 
 `default_nettype none
 
@@ -38,7 +40,7 @@ module blend_unit (
 
     assign width  = solid.flat_too ? solid.blend_width : '0;
     assign blends = width != '0;
-    // |a - b|, or |a - b| - 1 for a negative difference. `left_1`, which is k - |a - b|, corrects the latter.
+    // `away_1` is |a - b|, or |a - b| - 1 for a negative difference. `left_1` is k - |a - b| in both cases.
     assign away_1 = apart_1[21:0] ^ {22{apart_1[22]}};
     assign left_1 = {1'b0, width} + {1'b1, ~away_1[16:0]} + 18'(!apart_1[22]);
 
@@ -64,12 +66,12 @@ module blend_unit (
     );
     assign distance = sum_8[38:17];
 
-    // The share of the sphere, in units of 2^-16. The nearer surface has more than half.
+    // The share of the sphere in the colour, in units of 2^-16. The nearer surface has more than half.
     assign share_5 = round_5 ? 17'h1_0000 - weight_5 : weight_5;
     always_ff @(posedge clk) share_6 <= share_5[15:8] | {8{share_5[16]}} | {8{!blends}};
     delay #(.WIDTH(8), .CLOCKS(2)) share_waits (.clk, .enable(1'b1), .in(share_6), .out(share));
 
-    // On a fillet the surface counts as round; otherwise the selected surface decides.
+    // In a union with a fillet every surface counts as round; otherwise the selected surface decides.
     logic [2:0]          flat_7;
     logic                round_7;
     raymarch_pkg::nearest_t known_7;

@@ -1,11 +1,11 @@
-// Table of the cones of a picture. For each block of pixels it holds the depth up to which all rays of the block are free of
-// the field's surface (docs/formats.md, "Cones").
+// Table with the results of the cones of a picture: for each block of pixels the depth up to which all rays of the block are
+// free of the field's surface (docs/formats.md, "Cones").
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //
 // A write takes 6 clocks; throughput one write a clock. A read takes 2 clocks in which `enable` is high; throughput one read a
-// clock. A read does not return a write that is under way. With ROUND, and while `round` is high, the inverses are those of
-// Euclidean lengths.
+// clock. A read does not return a write that is still under way. With ROUND, and while `round` is high, the length of a cone is
+// Euclidean, and its inverse comes from a second table.
 
 `default_nettype none
 
@@ -24,7 +24,7 @@ module cone_table #(
     input  wire  [13:0] number,
     output logic [22:0] cleared
 );
-    // u11.7.
+    // Depth that each cone has cleared, u11.7.
     (* ram_style = "block", no_rw_check *) logic [17:0] depths [0:16383];
 
     logic [16:0]        largest_inverse_2, inverse_2;

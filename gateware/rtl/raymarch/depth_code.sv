@@ -1,4 +1,5 @@
-// Computes the depth code of a depth: K/depth, rounded to nearest, 1 to 2^18 - 1 (docs/formats.md, "Ends").
+// Computes the code that the depth buffer stores for a depth: K/depth, rounded to nearest and clamped to the range from 1 to
+// 2^18 - 1 (docs/formats.md, "Ends").
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
@@ -64,7 +65,8 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // Clock 20: K·y, to be divided by 2^(22 + shift). A divisor below 2^22 would give a code above the largest one.
+    // In clock 20 the product K·y is there, to be divided by 2^(22 + shift). A divisor below 2^22 would give a code above the
+    // largest one, so a negative shift saturates the code.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

@@ -3,8 +3,8 @@
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface
 //
-// Latency 3 clocks, throughput one point a clock, no handshake. `has` says along which axes the box is bounded; along the
-// other axes it is unbounded. With `room` the solid is the space outside of the box. The parameters must hold.
+// Latency 3 clocks, throughput one point a clock, no handshake. `half` has the half sides of the box. Bit i of `has` is 1 if
+// the box is bounded along axis i. With `room` the solid is the space outside of the box. The parameters must hold.
 
 `default_nettype none
 

@@ -24,7 +24,7 @@ module field_menger #(
     assign grows[0]  = {3'd5, 3'd3, 3'd1};
 
     for (genvar i = 0; i < LEVELS; i++) begin : folds
-        // Size of the cubes by level: 27, 9, 3, 1, 1/3, 1/9, to the nearest even multiple of 2^-12.
+        // Side of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, to the nearest even multiple of 2^-12.
         localparam int S = i == 0 ? 27 << 12 : i == 1 ? 9 << 12 : i == 2 ? 3 << 12 : i == 3 ? 1 << 12 : i == 4 ? 1366 : 456;
         menger_level #(.BITS(22), .S(S)) level (
             .clk, .enable(levels[i]), .in(points[i]), .in_grows(grows[i]), .out(points[i+1]), .out_grows(grows[i+1])

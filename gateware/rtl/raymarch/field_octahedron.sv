@@ -2,9 +2,9 @@
 //
 //   point ─▶ |x|, |y|, |z| ─▶ |x| + |y|, |z| - size ─▶ sum ─▶ * 5 ─▶ * 17 ─▶ / 256 ─▶ distance
 //
-// Moving a point by r along every axis changes the sum by 3r at most, so the distance is at least a third of the sum. The
-// module computes 85/256 of the sum, rounded down: a lower bound of a third, without a multiplier. `surface` is {z, y, x},
-// with 1 where the normal of the face is positive.
+// Moving a point by r along every axis changes |x| + |y| + |z| by 3r at most, so the distance is at least a third of the sum
+// |x| + |y| + |z| - size. The module computes 85/256 of this sum, rounded down: a lower bound of a third, without a multiplier.
+// `surface` is {z, y, x}, with 1 where the normal of the face is positive.
 //
 // Latency 5 clocks, throughput one point a clock, no handshake. `size` must hold.
 

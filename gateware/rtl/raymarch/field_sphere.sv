@@ -4,7 +4,7 @@
 //                                        │                                            ▲
 //                                        └──────────── shift ─────────────────────────┘
 //
-// The shift makes the largest component fill 17 bits. The root is a linear interpolation between two entries of a table. The
+// The shift makes the largest coordinate fill 17 bits. The root is a linear interpolation between two entries of a table. The
 // computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a part of 2^-15. Distances of
 // 2^21 units of 2^-12 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is then 0.
 //
@@ -97,7 +97,7 @@ module field_sphere (
         places_4 <= {eights_3, twos, 1'b0};
     end
 
-    // Clock 9 has the sum of the squares, from 2^32 to 3·2^34.
+    // In clock 9 the sum of the squares is there, from 2^32 to 3·2^34.
     logic [2:0][16:0]   part_4;
     logic [16:0]        part_y_5, part_z_6;
     logic signed [36:0] x_7, x_y_8, square_9;

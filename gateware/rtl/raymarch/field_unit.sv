@@ -1,17 +1,18 @@
-// The distance field of a lane: all built fields side by side, and a multiplexer that selects one by `solid`.
+// The distance field of a lane: all fields of the build in parallel, and a multiplexer that selects one of them by `solid`.
 //
-// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point a clock, no handshake. `solid` does not
-// change during a frame. An unbuilt field costs nothing; a single field needs no multiplexer.
+// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point a clock, no handshake. `solid` must
+// hold during a frame. A field that is not in the build costs nothing; a single field needs no multiplexer.
 //
-// Spheres are evaluated one after the other, one a pass. `pass` is the number of the sphere, one clock before the point; `so_far` is
-// the nearest sphere of the earlier passes; `nearest` is the nearest sphere including this pass. The distance, to the nearest sphere
-// or to the flat field, is valid in the last pass. BLEND needs spheres and a flat field and adds the fillet between both: `round` is
-// then set, `face` is the surface of the flat field, and `share` the weight of the sphere's colour. Otherwise `share` is all ones.
+// Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and comes one
+// clock before the point. `so_far` is the nearest sphere of the point's earlier passes; `nearest` is the nearest sphere
+// including this pass. The distance, to the nearest sphere or to the flat field, is valid in the last pass. BLEND requires
+// spheres and a flat field, and adds the fillet between the two: `round` is then set, `face` is the surface of the flat field,
+// and `share` the weight of the sphere's colour. Without a fillet `share` is all ones.
 
 `default_nettype none
 
 module field_unit #(
-    // Levels of the sponge; 0: none.
+    // Number of levels of the Menger sponge, 0 for a build without it.
     parameter int unsigned LEVELS = 4,
     parameter int unsigned FIELDS = 1,
     parameter bit          ROUND  = 1'b0,
@@ -46,7 +47,8 @@ module field_unit #(
     end
 
     if (ROUND) begin : spheres
-        // When it is known which is the nearest, and when the flat ones are.
+        // KNOWN: clock in which the nearest sphere is known. BOTH: clock in which the nearest sphere and the distance of the
+        // flat field are both known.
         localparam int unsigned KNOWN = 19;
         localparam int unsigned BOTH  = FLAT_CLOCKS > KNOWN ? FLAT_CLOCKS : KNOWN;
 

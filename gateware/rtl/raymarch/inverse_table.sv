@@ -1,5 +1,5 @@
-// Table of lower bounds of 1/m by the first ten bits i of m: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays"). It
-// has two read ports.
+// Table of lower bounds of 1/length, indexed by the first ten bits i of a length: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays").
+// It has two read ports.
 //
 // Latency 2 clocks in which `enable` is high, throughput one result a clock at each port.
 

@@ -1,4 +1,5 @@
-// One level of the Menger sponge: mirrors space until a single cube of the 3x3x3 remains (docs/formats.md, "Fields").
+// One level of the Menger sponge: folds space by mirrors, so that one cube of the level's 3x3x3 cubes stands for all of them
+// (docs/formats.md, "Fields"). S is the side of this cube.
 //
 //         ┌───┬───┬───┐
 //         │   │   │   │     1  S - |x| of each coordinate: above S/2 in the middle third
@@ -8,15 +9,15 @@
 //         │   │   │   │
 //         └───┴───┴───┘ 3S wide
 //
-// A coordinate k represents k + 1/2, so that -x is ~k. Each coordinate carries the direction in which it grows in the world,
-// {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low, points pass
-// unchanged; `enable` must hold.
+// An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` carries for each coordinate the direction in which it
+// grows in the world, {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low,
+// points pass unchanged; `enable` must hold.
 
 `default_nettype none
 
 module menger_level #(
     parameter int unsigned BITS = 22,
-    // Side of the cube that remains, an even number.
+    // Side S of the cube that remains after the folds, an even number.
     parameter int          S    = 27 << 12
 ) (
     input  wire                         clk,

@@ -1,7 +1,8 @@
-// Tables of the shares of fog and light, 256 entries of 8 bits each, in one block RAM.
+// Two tables in one block RAM, with 256 entries of 8 bits each: the share of fog in a pixel's colour, by depth, and the share
+// of light, by the number of evaluations (docs/formats.md, "Ends").
 //
-// Latency 2 clocks in which `enable` is high, throughput one pair of entries a clock. In the clock of a write, no entry
-// of the fog is read.
+// Latency 2 clocks in which `enable` is high, throughput one pair of entries a clock, one of each table. In the clock of a
+// write no entry of the fog is read.
 
 `default_nettype none
 

@@ -1,23 +1,24 @@
-// The rays of a frame, one a clock, without division or square root (docs/formats.md, "Rays").
+// Computes the rays of a frame, one a clock, without division or square root (docs/formats.md, "Rays").
 //
-//   columns, lines ─▶ D = first + x·across + y·down ─▶ largest part ─▶ its inverse ─▶ direction = D·inverse
-//                                                          │                             │
-//                                 near·largest part ◀──────┘     inverses of its parts ◀─┘
-//                                        └─▶ start: the largest of the near plane and of outside·inverses, the entries into the box;
-//                                            the remaining distance is multiplied by the inverses a second time
+//   columns, lines ─▶ D = first + x·across + y·down ─▶ largest component ─▶ its inverse ─▶ direction = D·inverse
+//                                                          │                                  │
+//                            near·largest component ◀──────┘  inverses of the components ◀────┘
+//                                        └─▶ start: the largest of the near plane and of the entries into the box;
+//                                            an entry is outside·inverse, with a second product for the remaining distance
 //
-// D (docs/formats.md, "Rays") is made by 32-bit additions, which give exactly its formula. Rays come by band, in a band
-// by line from the top, in a line by column from the left; with `stereo` each line comes first for the left eye and then
-// for the right eye.
+// D is the direction of a ray before it is scaled to length 1. 32-bit additions compute the formula of D exactly. `outside`
+// is the distance of the eye from the box about the field, along each axis. The order of the rays is: band by band, in a
+// band line by line from the top, in a line from the left; with `stereo` each line comes first for the left eye and then for
+// the right eye.
 //
 // With ROUND, and while `round` is high, rays are scaled by their Euclidean length: the sum of three squares replaces the
 // largest component of D, and a second table replaces the first one.
 //
 // While `cones` is high, the module generates cones instead of rays: through the middle of blocks of 2^`block` by 2^`block`
-// pixels, in the same order, each with its number. Columns and lines are then those of blocks; `offset` and `spread` are a
-// block's middle and radius in units of D; and cones start at the near plane. With `prepass` and without `cones`, the rays of
-// a block have the depth at the end of its cone as their near plane: requested by `number`, returned 2 clocks later. `fine`
-// means 160 blocks in a line instead of 80.
+// pixels, in the same order, each with its number. Columns and lines then count blocks; `offset` and `spread` are the middle
+// and the radius of a block in units of D; and cones start at the near plane. With `prepass` and without `cones`, the rays of a
+// block use the depth that its cone has cleared as their near plane, if it is farther: this depth is requested by `number`, and
+// returned in `cleared` 2 clocks later. `fine` means 160 blocks in a line instead of 80.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 25
 // clocks, 28 with ROUND; throughput one ray a clock. The output is a valid/ready stream; a ray stays until its transfer.
@@ -44,7 +45,7 @@ module ray_generator #(
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
     input  wire  [22:0]               near_limit,
-    // For both eyes: positions, and distances outside of the box about the field along each axis.
+    // For both eyes: the position, and the distance outside of the box about the field along each axis.
     input  wire  [1:0][2:0][24:0]     origins,
     input  wire  [1:0][2:0][23:0]     outside,
     // Cones.
@@ -62,7 +63,8 @@ module ray_generator #(
     input  wire                       out_ready,
     output raymarch_pkg::ray_t           out_ray
 );
-    // SUM: clocks by which the sum of the squares is later than the largest component. LAST: clocks until a ray leaves.
+    // SUM: number of clocks by which the sum of the squares is later than the largest component of D. LAST: number of clocks
+    // until a ray leaves the pipeline.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
@@ -72,7 +74,7 @@ module ray_generator #(
     logic [5:0]    band;
     logic [2:0][31:0] d, row, next_row, step_across, step_down;
 
-    // The steps of D from one column and one line to the next; stable from the clock after `start`.
+    // Increments of D from one column and from one line to the next, constant from the clock after `start`.
     if (PREPASS) begin : steps_of_blocks
         always_ff @(posedge clk)
             for (int i = 0; i < 3; i++) begin
@@ -129,8 +131,8 @@ module ray_generator #(
         end
     end
 
-    // By clock (the suffix of a name): 0 the high bits of D, 1 the first bits of each component, 2 the largest component,
-    // rounded up for a cone, 4 its inverse.
+    // By clock (the suffix of a name): 0 the high bits of D; 1 the first ten bits of the magnitude of each component; 2 the
+    // largest of them, made larger for a cone; 4 its inverse.
     raymarch_pkg::place_t place_now;
     logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
     logic [16:0] largest_inverse_4, inverse_4;
@@ -171,8 +173,8 @@ module ray_generator #(
 
     delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
 
-    // The factor of the near plane: the largest component, or with `round` the length, computed from the index of the table of
-    // inverses and its entry.
+    // `part` is the factor by which the near plane's depth is multiplied: the largest component of D, or with `round` the
+    // length of D, computed from the index in the table of inverses and the entry there.
     logic [10:0] part_10, part_18;
 
     if (ROUND) begin : by_squares
@@ -246,7 +248,7 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
-    // Clocks 10 to 21 compute where the ray enters the box, along each axis.
+    // Clocks 10 to 21 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
         logic               backwards_9, negative_9;
@@ -260,8 +262,9 @@ module ray_generator #(
         delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
         assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
 
-        // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated: t; 16 t·(|d| + 1); 17 the remaining
-        // distance; 20 remaining·inverse; 21 the entry into the box.
+        // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated, which is a first t; 16 t·(|d| + 1), the
+        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse; 21 the sum of
+        // both t, the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [23:0]        outside_9, outside_16, left_17;
         logic signed [41:0] product_12, gone_16, product_20;
@@ -288,7 +291,7 @@ module ray_generator #(
         multiply_add #(.BITS(42)) rest (
             .clk, .enable, .a({1'b0, left_17}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
-        // The sum is below 2^32: the remaining distance is at most the whole one, and its inverse is below 2^17.
+        // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
         assign sum = 34'(t_20) + 34'(product_20[41:9]);
 
         always_ff @(posedge clk) begin
@@ -302,13 +305,13 @@ module ray_generator #(
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[16:0], product_20[8:0]};
     end
 
-    // Clock 21 has the near plane, in the same clock as the entries into the box.
+    // In clock 21 the t of the near plane is there, in the same clock as those of the entries into the box.
     multiply_add #(.BITS(34)) at_near (
         .clk, .enable, .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
     assign near_21 = near_product[32:10];
 
-    // Clocks 22 and 23 select the largest of these four values, the start of the ray.
+    // Clocks 22 and 23 select the largest of these four values of t, the start of the ray.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
@@ -319,14 +322,15 @@ module ray_generator #(
         end
     end
 
-    // `near_18` is the near plane of a ray, from its cone with the prepass; `spread_23` is the spread of a cone.
+    // `near_18` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_23` is the
+    // spread of a cone.
     logic [22:0] near_18;
     logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
 
-        // The line within a row of blocks, and the number of the first block of that row.
+        // Number of a line within its row of blocks, and number of the first block of that row.
         logic [3:0]         line;
         logic [13:0]        row_number, number_1, counted;
         logic signed [42:0] spread_7;
@@ -354,7 +358,7 @@ module ray_generator #(
             place_now = place;
             if (cones) {place_now.odd, place_now.line, place_now.column} = {1'b0, 3'b0, counted};
         end
-        // With `round` the margin is that of a square: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s
+        // With `round` the margin applies to the square of the length: (|D| + s)^2 - |D|^2 is at most 2 s + s^2, with s
         // (`spread`) at most 2^-4.
         always_ff @(posedge clk) begin
             if (!cones)     margin <= '0;

@@ -1,16 +1,17 @@
-// Makes pixels from the ends of rays: colour by surface, darkened and faded, and depth (docs/formats.md, "Ends").
+// Computes pixels from the ends of rays: the colour of the surface, darkened by the occlusion and faded by the fog, and the
+// depth code (docs/formats.md, "Ends").
 //
 //             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
 //   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel
 //             ├─▶ steps ─▶ light ─────┐        ▼                                    │
 //             └─▶ surface ─▶ colour ─▶ × ─▶ mixed with the horizon ─▶ RGB565, L8 ───┘
 //
-// Before the other steps, a hit moves from its last t to the plane of its face: t grows by `gap` divided by the component of
-// the direction along the normal.
+// First, a hit moves from its last t to the plane of its face: t grows by `gap` divided by the component of the direction along
+// the normal (`slope`).
 //
-// A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask of one pixel, one code,
-// and one colour for all pixels of the group. With `stereo` the colour holds the luminance twice, and `out_eye`
-// selects the valid half.
+// A pixel leaves as a group for the band buffer: row, line, column of eight pixels, a mask of one pixel, one depth code, and
+// one colour for all pixels of the group. With `stereo` the colour holds the pixel's luminance twice, and `out_eye` selects
+// the valid half.
 //
 // With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays are
 // scaled by their Euclidean length. Streams are valid/ready. Latency 36 clocks, throughput one pixel a clock. The parameters
@@ -68,8 +69,8 @@ module ray_paint #(
         if (rst) valid <= '0;
     end
 
-    // The step to the plane of the face takes FIRST clocks: 2 for the inverse of the slope, 3 for the product, 1 for t. The
-    // clock numbers below count from `ending_0`, after this step.
+    // The step of t to the plane of the face takes FIRST clocks: 2 for the inverse of the slope, 3 for the product, 1 for the
+    // sum. The clock numbers below count from `ending_0`, the end after this step.
     raymarch_pkg::end_t    ending_0, waited;
     logic [16:0]        slope_inverse;
     logic [11:0]        gap_waits;
@@ -115,7 +116,7 @@ module ray_paint #(
         .clk, .enable, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
     );
 
-    // By clock (the suffix of a name): 7 entries to look up in the tables of fog and light, 9 their values.
+    // By clock (the suffix of a name): 7 the indices into the tables of fog and light, 9 the entries that were read.
     logic [18:0] deep_6;
     logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
 
@@ -212,7 +213,7 @@ module ray_paint #(
         wire _unused = &{1'b0, lit_13[25:16], lit_13[7:0], faded[25:16], faded[7:0]};
     end
 
-    // Clock 18 has the colour in the format of the frame buffer.
+    // In clock 18 the colour is in the format of the frame buffer: RGB565, or with `stereo` two luminances.
     logic [15:0] colour_18, colour_29;
 
     // Rounds a channel to nearest, and saturates it.
@@ -229,7 +230,7 @@ module ray_paint #(
 
     delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable, .in(colour_18), .out(colour_29));
 
-    // Clock 29 has the group. The code is 0 for a ray without a hit.
+    // In clock 29 the group is complete. The depth code is 0 for a ray without a hit.
     raymarch_pkg::place_t place_26, place_29;
     logic              hit_28;
     logic [17:0]       code_29;

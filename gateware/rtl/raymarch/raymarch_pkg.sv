@@ -3,10 +3,10 @@
 `default_nettype none
 
 package raymarch_pkg;
-    // UNUSEDPARAM is off, because each module uses only some of the constants.
+    // The warning UNUSEDPARAM is off, because each module uses only some of the constants.
     /* verilator lint_off UNUSEDPARAM */
-    // Widths of t, u11.12; of a point's coordinate as input of a field, s10.12, and before that, s13.12; of a component of
-    // the direction, s1.17.
+    // Widths of the ray parameter t, u11.12; of a point's coordinate at the input of a field, s10.12; of a point's coordinate
+    // before that, s13.12; and of a component of a ray's direction, s1.17.
     localparam int unsigned T_BITS         = 23;
     localparam int unsigned POINT_BITS     = 22;
     localparam int unsigned WIDE_BITS      = 25;
@@ -16,7 +16,7 @@ package raymarch_pkg;
     // Largest number of evaluations of the field for one cone.
     localparam int unsigned CONE_STEPS     = 192;
 
-    // Place of a pixel: parity of its band, eye (0 is the left or the only one), line in the band, and column.
+    // Position of a pixel: parity of its band's number, eye (0 is the left or the only one), line in the band, and column.
     typedef struct packed {
         logic        odd;
         logic        eye;
@@ -26,7 +26,9 @@ package raymarch_pkg;
 
     localparam int unsigned PLACE_BITS = 19;
 
-    // A ray before its first step, or a cone. In a cone the low bits of `place` are its number, and `spread` is not 0.
+    // A ray before its first step, or a cone of the prepass. `length` is the index of the length of D in the table of inverses
+    // (docs/formats.md, "Rays"), `start` the first t. In a cone the low bits of `place` are the number of the cone, and
+    // `spread` is not 0; in a ray `spread` is 0.
     typedef struct packed {
         logic [SPREAD_BITS-1:0]    spread;
         place_t                    place;
@@ -37,10 +39,11 @@ package raymarch_pkg;
 
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
-    // The end of a ray. `surface` is {axis, positive}, or the number of a sphere; `gap` is the distance from the point at `t`
-    // to the face, and `slope` is the component of the direction along the inward normal of the face. Only the light on
-    // spheres uses `direction`. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8.
-    // For a miss, `t` is the sine of the elevation in 8 bits, 0 below the horizon.
+    // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `surface` is {axis, positive} of a
+    // face, or the number of a sphere; `gap` is the distance from the point at `t` to the face, and `slope` is the component of
+    // the direction along the inward normal of the face. Only the light on spheres uses `direction`. `round` marks an end on a
+    // sphere or a fillet. On a fillet, `face` is the face's {axis, positive} and `share` is the sphere's weight, u0.8. For a
+    // miss, `t` is the sine of the ray's elevation in 8 bits, 0 below the horizon.
     typedef struct packed {
         logic [2:0]        face;
         logic [7:0]        share;
@@ -59,7 +62,7 @@ package raymarch_pkg;
     localparam int unsigned ROUND_END_BITS = FLAT_END_BITS + 1 + 3 * DIRECTION_BITS;
     localparam int unsigned END_BITS       = ROUND_END_BITS + 8 + 3;
 
-    // The nearest sphere among those evaluated so far for a point: its distance and number.
+    // The nearest sphere among the spheres evaluated so far for a point: its distance and its number.
     typedef struct packed {
         logic signed [POINT_BITS-1:0] distance;
         logic [2:0]                   number;
@@ -67,13 +70,14 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
-    // Bits of the end of a ray in a lane, by whether the build has spheres and fillets.
+    // Returns the number of low bits of an end_t that a lane stores, which depends on whether the build has spheres (`round`)
+    // and fillets (`blend`).
     function automatic int unsigned end_bits(input bit round, input bit blend);
         end_bits = blend ? END_BITS : round ? ROUND_END_BITS : FLAT_END_BITS;
     endfunction
 
-    // Clocks from a point to its distance, by the levels of the sponge, the flat fields as a bit mask, and whether there are
-    // spheres and fillets.
+    // Returns the number of clocks from a point to its distance. Arguments: levels of the sponge, bit mask of the flat fields,
+    // and whether there are spheres (`round`) and fillets (`blend`).
     function automatic int unsigned field_clocks(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
         field_clocks = fields_pkg::flat_clocks(levels, fields);
         if (round && field_clocks < 19) field_clocks = 19;

@@ -1,25 +1,29 @@
-// The raymarcher: pixels of a distance field, band by band, for the band buffer.
+// The raymarcher: computes the pixels of a distance field (docs/formats.md, "Distance fields"), band by band, for the band
+// buffer. A band is a horizontal strip of the picture.
 //
 //                    ┌─▶ ring_lane ─┐            ┌──────────────────┐
 //   ray_generator ───┼─▶ ring_lane ─┼─▶ ends ─┬──┴▶ ray_paint ─▶ groups of one pixel
 //                    └─▶ ...       ─┘         └▶ waiting ─┘
 //                                          of the next band
 //
-// `start` (one clock, not while `busy`) begins a frame; parameters hold until it has ended. Pixels of a band
-// are given out while `band_open`, in any order, every pixel once, with `stereo` once for each eye. `band_done` is high when all of
-// them have been taken, until `band_next` (one clock, only then) says that the next band may come: the last band is closed by it too.
+// `start` (one clock, not while `busy`) begins a frame; its parameters must hold until the frame has ended. The pixels of a
+// band are sent while `band_open` is high, in any order, each pixel once, or with `stereo` once for each eye. `band_done` is
+// high when all pixels of the band have been taken. `band_next` (one clock, only while `band_done` is high) then ends the band
+// and begins the next one; after the last band it ends the frame.
 //
-// While the last rays of a band are still on their way, rays of the next one go in already: up to EARLY, whose ends wait in block
-// RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of very different lengths.
+// While the last rays of a band are still under way, rays of the next band already enter, at most EARLY of them. Their
+// ends wait in a FIFO in block RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of
+// very different lengths.
 //
-// With ROUND there may be spheres, with BLEND fillets between them and what has faces: then round_light stands before ray_paint, where a
-// round pixel takes a clock for each light.
+// With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Then round_light stands
+// before ray_paint, and a pixel on a sphere or fillet takes a clock for each light there.
 //
-// With `prepass` the cones of the whole picture go first, and cone_table keeps what they have cleared for the rays: 160×90 of them where
-// one eye looks and the picture is wider than 320, or else 80×45 for each eye.
+// With `prepass` the cones of the whole picture are marched before the rays, and cone_table keeps the depth up to which
+// each cone is free of surfaces. There are 160×90 cones for one eye and a picture wider than 320, and 80×45 cones for
+// each eye otherwise.
 //
-// Each lane takes one evaluation of the field a clock. `restart`, and reset, give the frame up. Groups: a stream, valid/ready, payload
-// stays. `events` has the growth of each counter in this clock.
+// Each lane makes one evaluation of the field a clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
+// whose payload holds until the transfer. `events` has the growth of each counter in this clock.
 
 `default_nettype none
 
@@ -38,10 +42,10 @@ module raymarcher #(
     input  wire                       restart,
     input  wire                       start,
     output logic                      busy,
-    // Frame. 320x180, 640x360, 1280x720: 0, 1, 2.
+    // Parameters of the frame. `size` is 0 for 320x180, 1 for 640x360 and 2 for 1280x720.
     input  wire  [1:0]                size,
     input  wire                       stereo,
-    // Where the eyes are and where they look, the left one first, and the box about the field.
+    // Rays and positions of both eyes, the left one first, and the box about the field (docs/formats.md, "Rays").
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
@@ -51,16 +55,17 @@ module raymarcher #(
     input  wire  [2:0][23:0]          bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
-    // Spheres, with ROUND: written between frames.
+    // Spheres of the field, used with ROUND and written between frames.
     input  wire                       sphere_write,
     input  wire  [2:0]                sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire raymarch_registers_pkg::lights_t lights,
-    // Cones: whether there are any, and what their blocks are in D.
+    // Whether the frame has a prepass with cones, and the offset and the spread of their blocks in units of the ray direction
+    // D (docs/formats.md, "Cones").
     input  wire                       prepass,
     input  wire  [2:0][31:0]          cone_offset,
     input  wire  [13:0]               cone_spread,
-    // What surfaces look like: see ray_paint.
+    // Scale of the depth codes, fog and colours of the pixels: inputs of ray_paint.
     input  wire  [16:0]               depth_mantissa,
     input  wire  signed [5:0]         depth_exponent,
     input  wire  [2:0]                fog_shift,
@@ -83,13 +88,14 @@ module raymarcher #(
     output logic [7:0]                group_mask,
     output logic [17:0]               group_code,
     output logic [15:0]               group_colour,
-    // Growth of each counter; 0 when no frame is drawn.
+    // Growth of each counter in this clock, 0 when no frame is drawn.
     output raymarch_registers_pkg::events_t events
 );
     localparam int unsigned EARLY_BITS = $clog2(EARLY + 1);
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Bands, less one; lines of a band, columns of eight, rows of eight pixels, rays.
+    // Numbers that follow from `size`: the last band, lines of a band, columns (of eight pixels) of a line, rows (of eight
+    // pixels) of a band, and rays of a band.
     logic [5:0]  last_band, lines;
     logic [7:0]  stride;
     logic [10:0] rows;
@@ -101,7 +107,8 @@ module raymarcher #(
     logic reset;
     assign reset = rst || restart;
 
-    // The band that is drawn, pixels of it that have not been taken, and rays of the next one that are under way.
+    // The number of the band that is drawn (`band`) and its parity (`odd`), its pixels that have not been taken (`left`), and
+    // the rays of the next band that have entered (`early`).
     logic                  odd, is_early, may_enter;
     logic [5:0]            band;
     logic [14:0]           left;
@@ -111,13 +118,15 @@ module raymarcher #(
     logic                  generating, ray_valid, ray_ready;
     raymarch_pkg::ray_t       ray;
 
-    // The cones go first, and when all of them have ended the rays.
+    // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone stands for a block of 2^`block`
+    // by 2^`block` pixels, and `fine` means 160 blocks in a line instead of 80. `cleared` is the depth from which the rays of
+    // block `number` start.
     logic        cones, fine, generate_rays, looks;
     logic [2:0]  block;
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
 
-    // Columns, lines and bands of blocks, or of pixels.
+    // Last column, last line of a band and last band, counted in blocks for cones and in pixels for rays.
     logic [10:0] column_ends;
     logic [5:0]  line_ends, band_ends;
 
@@ -163,7 +172,7 @@ module raymarcher #(
         end
     end
 
-    // A ray goes to the first lane that has room.
+    // Sends a ray to the first lane that has room.
     logic [LANES-1:0]   lane_ready, lane_valid, lane_takes, end_valid, end_taken, evaluates, waits;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
 
@@ -185,7 +194,8 @@ module raymarcher #(
         );
     end
 
-    // The lanes give out their ends by turns: there is not more than one ray a clock for all of them.
+    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This is enough, since all lanes together
+    // receive at most one ray a clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
@@ -197,7 +207,8 @@ module raymarcher #(
     assign next_end   = end_of[turn];
     assign next_valid = end_valid[turn];
 
-    // What has waited goes first. An end of the next band waits; there is room, as there are not more of them.
+    // Ends that have waited in the FIFO are painted first. An end of the next band goes to the FIFO, which always has room,
+    // because at most EARLY rays of the next band enter.
     assign next_now      = next_valid && next_end.place.odd == odd && !cones;
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;
     assign waiting_ready = waiting_now && band_open && paint_ready;
@@ -216,7 +227,7 @@ module raymarcher #(
     );
     assign waiting_end = raymarch_pkg::END_BITS'(kept);
 
-    // What is round gets its light first.
+    // Computes the light of the ends on spheres and fillets before they are painted.
     logic            lit_valid, lit_ready;
     raymarch_pkg::end_t lit_end;
     logic [23:0]     lit_colour;

@@ -1,25 +1,25 @@
-// Lane of the raymarcher: rays circulate in a ring pipeline, one evaluation of the field per round, one evaluation a
-// clock in total.
+// Lane of the raymarcher: a pipeline closed to a ring, in which rays circulate. A ray makes one evaluation of the field in each
+// round, and the lane makes one evaluation a clock.
 //
 //   rays ──▶ slot ─▶ o + t·d ─▶ field_unit ─▶ distance ─▶ hit? miss? undecided? ─┐
 //             ▲                                                                   ├─▶ fifo ─▶ ends
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //
-// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. p = o + t·d is recomputed in each round, so no
-// error accumulates. A slot whose ray has ended takes the next ray in the same clock. A ray enters only if the fifo has
-// a free place for its end: the fifo has PLACES, and each ray in the ring reserves one. `evaluates` is high in clocks
-// in which an occupied slot passes the field, `waits` in clocks in which a ray was offered to an empty slot while no
-// place was free.
+// The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. o is the eye, d the direction of a ray and t its
+// parameter. The point o + t·d is computed anew in each round, so errors do not accumulate. A slot whose ray has ended takes
+// the next ray in the same clock. A ray enters only if the FIFO of ends has a free place for its end: the FIFO has PLACES, and
+// each ray in the ring reserves one. `evaluates` is high in clocks in which an occupied slot passes the field, `waits` in
+// clocks in which a ray was offered to an empty slot while no place was free.
 //
-// With ROUND a field may have spheres. A ray then makes one round per sphere without a change of t until the last
-// round, and carries the nearest sphere along. Its end has its direction, and its step limit is four times that of
-// `tuning`.
+// With ROUND a field may have spheres. A ray then makes one round for each sphere and keeps its t until the last of these
+// rounds, with the nearest sphere so far as part of its slot. Its end includes its direction, and its limit of evaluations is
+// four times that of `tuning`.
 //
-// While `cones` is high, which holds while rays are in the ring, the rays are cones: a cone steps by the distance less
-// its radius, which is t times its spread, and ends where the distance is close to the radius.
+// While `cones` is high, the rays in the ring are cones, and `cones` must not change while rays are in the ring. A cone steps
+// by the distance minus its radius, which is t times its spread, and ends where the distance is close to the radius.
 //
 // Streams are valid/ready: each item moves in a clock in which both are high, payloads stay until then, and ready
-// depends on registers alone. Parameters hold while rays are in the ring. `restart` discards all rays.
+// depends on registers alone. Parameters hold while rays are in the ring. `rst` discards all rays.
 
 `default_nettype none
 
@@ -30,7 +30,7 @@ module ring_lane #(
     parameter bit          BLEND  = 1'b0,
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
-    // More than the number of slots: fewer places would leave slots empty.
+    // Places in the FIFO of ends, more than the number of slots: with fewer places some slots would stay empty.
     parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND) > 24 ? 64 : 32
 ) (
     input  wire                      clk,
@@ -57,14 +57,14 @@ module ring_lane #(
     output logic                     evaluates,
     output logic                     waits
 );
-    // Stage of the distance, counted from the slot.
+    // Pipeline stage in which the distance is valid, counted from the slot.
     localparam int unsigned DISTANCE = 3 + raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND);
     localparam int unsigned COUNT_BITS = $clog2(PLACES + 1);
     localparam int unsigned STEP_BITS  = ROUND ? 10 : 8;
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Data that circulates with a ray, beside t.
+    // Data that circulate with a ray in addition to t.
     typedef struct packed {
         raymarch_pkg::place_t                         place;
         logic [9:0]                     length;
@@ -76,12 +76,12 @@ module ring_lane #(
     logic [COUNT_BITS-1:0] places;
     logic              enter, finished, again, ended, end_ready, gone_out;
 
-    // The slot.
+    // The first stage of the ring, which receives new rays.
     cargo_t            cargo;
     logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
-    // Last stage.
+    // The last stage of the ring, in which it is known whether the ray has ended.
     cargo_t            early_cargo, last_cargo;
     logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
@@ -111,7 +111,7 @@ module ring_lane #(
         end
     end
 
-    // The point. Its origin is selected in the clock of the product.
+    // The point o + t·d. The origin o of the eye is selected two clocks after the slot, when the product t·d is there.
     logic                  eye_2;
     logic [2:0]            backwards;
     logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
@@ -139,7 +139,7 @@ module ring_lane #(
         wire _unused = &{1'b0, sum[16:0]};
     end
 
-    // A ray outside of the box that moves away from it.
+    // `gone` is high if the point is outside of the box about the field along some axis, and the ray leads away from it.
     logic [2:0] leaves;
     logic       gone, gone_late;
 
@@ -155,8 +155,8 @@ module ring_lane #(
     logic [2:0]         surface, face, face_end;
     logic [7:0]         share, share_end;
 
-    // The sphere of the current pass, and the nearest one of the passes before: aligned with the slot, and with the
-    // distance.
+    // The number of the sphere in the current pass and the nearest sphere of the earlier passes, by clock after the slot (the
+    // suffix of a name). `nearest` and `is_last`, the last pass, are aligned with the distance.
     logic                round, is_last_early, is_last, is_last_2;
     logic [2:0]          pass_2;
     raymarch_pkg::nearest_t so_far_3, nearest;
@@ -199,7 +199,8 @@ module ring_lane #(
         assign {is_last_early, is_last, is_last_2} = '1;
     end
 
-    // Aligned with the distance: t of the evaluation, t less the radius of a cone, and the threshold.
+    // Values in the clock of the distance: t of this evaluation (`t_1`), t minus the radius of a cone (`from_1`), the threshold
+    // of a hit, and the number of earlier evaluations (`steps_1`).
     logic [raymarch_pkg::T_BITS-1:0] t_early, t_1;
     logic [raymarch_pkg::T_BITS:0]   from_early, from_1;
     logic [15:0]       footprint;
@@ -210,7 +211,8 @@ module ring_lane #(
     delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
 
-    // The slope against a face perpendicular to a diagonal takes one more clock.
+    // The slope of a ray against a face perpendicular to a diagonal takes one more clock, so the direction is needed
+    // one clock earlier.
     if (OCTANTS) begin : carried_early
         delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 1)) carried (.clk, .enable(1'b1), .in(cargo), .out(early_cargo));
         always_ff @(posedge clk) last_cargo <= early_cargo;
@@ -228,7 +230,8 @@ module ring_lane #(
 
         assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
 
-        // Each coordinate is truncated by less than one step, the point by less than two.
+        // Each coordinate of a point is truncated by less than 2^-12. This changes a Euclidean distance by less than 2·2^-12,
+        // so in a round field the width of a cone is 2^-12 larger.
         multiply_add #(.BITS(43)) widening (
             .clk, .enable(1'b1), .a({2'b0, t}), .b({2'b0, widens}), .c({26'b0, ROUND && cones && solid.is_round, 16'b0}), .p(product)
         );
@@ -238,7 +241,7 @@ module ring_lane #(
         assign from_early = {1'b0, t_early} + ({24{cones && is_last_early}} & ~{8'b0, footprint});
         wire _unused = &{1'b0, product[15:0]};
     end else begin : rays_alone
-        // `tuning.footprint` is 7 to 15: a shift by 7, or by 8 and its low bits.
+        // The footprint is t shifted right by `tuning.footprint`, which is 7 to 15: by 7, or by 8 plus its low three bits.
         assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
         assign wide       = 1'b0;
         assign from_early = {1'b0, t_early};
@@ -252,7 +255,8 @@ module ring_lane #(
         threshold <= {1'b0, tuning.threshold} + {1'b0, footprint};
     end
 
-    // 2: is the distance below the threshold? Then: is t beyond the far limit, or the step limit reached?
+    // One clock after the distance (suffix _2): whether the distance is below the threshold, the ray has left the box, or the
+    // limit of evaluations is reached. A clock later: whether t is beyond the far limit, and the state of the ray.
     logic            near_2, gone_2, late_2;
     logic [raymarch_pkg::T_BITS:0] next_2;
     logic [raymarch_pkg::T_BITS-1:0] t_2, taken_t;
@@ -263,7 +267,8 @@ module ring_lane #(
 
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
-    // The current evaluation counts. Scenes with spheres have a larger step limit, and a threshold that does not grow.
+    // Limit of evaluations, which includes the current one, and the doublings of the threshold (`patience`). Fields with
+    // spheres have a larger limit, and a threshold that does not grow.
     logic [1:0] patience;
     logic       late_1;
 
@@ -300,15 +305,15 @@ module ring_lane #(
     logic [7:0]      height, steps_end;
     logic [raymarch_pkg::T_BITS-1:0] end_t;
 
-    // Saturated.
+    // The number of evaluations in the end of a ray, saturated at 255.
     if (ROUND) begin : many_steps
         assign steps_end = last_steps[STEP_BITS-1:8] != '0 ? '1 : last_steps[7:0];
     end else begin : few_steps
         assign steps_end = last_steps;
     end
 
-    // Slope of the ray towards the face: the direction's component along the inward normal; all ones for a ray that
-    // does not approach the face. Only the quotient of `gap` and `slope` matters.
+    // Slope of the ray towards the face: the direction's component along the inward normal, or all ones for a ray that does not
+    // approach the face. Only the quotient of `gap` and `slope` matters.
     logic [10:0] part;
     logic [9:0]  axis_slope, slope;
     logic [11:0] face_gap;
@@ -320,8 +325,8 @@ module ring_lane #(
     always_comb
         for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
 
-    // For a face perpendicular to a diagonal, gap and slope are three quarters of their value: the sum of three
-    // components over four needs no division.
+    // For a face perpendicular to a diagonal, `face_gap` and `slope` are both three quarters of their true values, which keeps
+    // the quotient: the slope is then the sum of three components divided by four, and needs no division by three.
     if (OCTANTS) begin : diagonals
         logic signed [11:0] x_y;
         logic signed [10:0] z;

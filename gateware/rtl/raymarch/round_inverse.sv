@@ -15,8 +15,8 @@ module round_inverse (
     logic [14:0] inverses [0:1023];
     logic [14:0] latched, given;
 
-    // Real numbers have enough digits to truncate the root of an integer correctly. Tools evaluate this in a second; a root by
-    // an integer loop would take them a minute.
+    // Floating-point numbers have enough digits to truncate the root of an integer correctly. Tools evaluate this in a second;
+    // an integer loop for the root would take them a minute.
     initial begin
         for (int i = 0; i < 1024; i++) inverses[i] = 15'($rtoi($sqrt($itor(((1 << 28) - (1 << 13)) / (i + 1)))));
     end

@@ -1,13 +1,13 @@
-// Light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats.md, "Light").
+// Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats.md, "Round fields").
 //
 //   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
 //                                   └──────────── once for each light ────────────┘
 //
-// All ends pass in order; the colour of ends on other surfaces is undefined. An end on a sphere or fillet takes one clock per
-// light, any other end one clock. With BLEND the colour is interpolated, by `share`, between that of the face, from
-// `palette`, and that of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light but the first. The ends
-// of the output have no direction. Streams are valid/ready. Spheres are written, and parameters change, only while the
-// pipeline is empty.
+// All ends of rays pass in order; the colour of ends on other surfaces is undefined. An end on a sphere or fillet takes one
+// clock for each light, any other end one clock. With BLEND the colour is interpolated, by `share`, between the colour of the
+// face, from `palette`, and that of the sphere. Latency 24 clocks, 28 with BLEND, plus one clock for each light after the
+// first. The ends at the output have no direction. Streams are valid/ready. Spheres are written, and parameters change, only
+// while the pipeline is empty.
 
 `default_nettype none
 
@@ -43,7 +43,7 @@ module round_light #(
     (* ram_style = "distributed" *) logic [16:0] inverses [0:7];
     (* ram_style = "distributed" *) logic [23:0] materials [0:7];
 
-    // Clock 0 holds an end, for one clock per light.
+    // In clock 0 an end is held, for one clock per light.
     logic            enable, held_valid, last_0;
     raymarch_pkg::end_t held;
     logic [1:0]      light_0;
