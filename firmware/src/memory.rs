@@ -1,4 +1,4 @@
-//! The windows of main memory that the linker script `memory.x` defines, as typed slices.
+//! The windows of main memory, which are regions that the linker script `memory.x` reserves, as typed slices.
 
 use core::mem::MaybeUninit;
 use core::ptr;

@@ -15,19 +15,19 @@ pub struct InputPort<T> {
 }
 
 impl<T: Value> InputPort<T> {
-    /// The port whose pins `register` shows, pin 0 in bit 0.
+    /// Returns the port whose pin levels are the bits of `register`; bit 0 is pin 0.
     #[must_use]
     pub const fn new(register: Register<T, ReadOnly>) -> Self {
         Self { register }
     }
 
-    /// Reads the levels of all pins at once, pin 0 in bit 0.
+    /// Reads the levels of all pins at once; bit 0 is pin 0.
     #[must_use]
     pub fn read(&self) -> T {
         self.register.read()
     }
 
-    /// The input pin `index`; it reads as low if the register has no such bit.
+    /// Returns the input pin `index`, which reads as low if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Input<'_, T> {
         Input { port: self, index }
@@ -60,24 +60,24 @@ pub struct OutputPort<T> {
 }
 
 impl<T: Value> OutputPort<T> {
-    /// The port whose pins `register` drives, pin 0 from bit 0.
+    /// Returns the port whose pins are driven by the bits of `register`; bit 0 drives pin 0.
     #[must_use]
     pub const fn new(register: Register<T, ReadWrite>) -> Self {
         Self { register }
     }
 
-    /// Levels to which all pins are driven, pin 0 in bit 0.
+    /// Reads the levels to which all pins are driven; bit 0 is pin 0.
     #[must_use]
     pub fn get(&self) -> T {
         self.register.read()
     }
 
-    /// Drives all pins at once, pin 0 from bit 0.
+    /// Drives all pins at once to the bits of `value`; bit 0 drives pin 0.
     pub fn set(&self, value: T) {
         critical_section::with(|_| self.register.write(value));
     }
 
-    /// The output pin `index`; changes of the pin have no effect if the register has no such bit.
+    /// Returns the output pin `index`. Changes of the pin have no effect if the register has no such bit.
     #[must_use]
     pub const fn pin(&self, index: u8) -> Output<'_, T> {
         Output { port: self, index }

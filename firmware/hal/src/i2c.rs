@@ -49,8 +49,9 @@ pub struct I2c {
 /// Periodic reads that are in progress.
 #[derive(Clone, Copy)]
 struct Periodic {
-    /// Time at which the next read to be taken starts, in clock cycles; `period` is the time between two starts.
+    /// Time in clock cycles at which the read starts whose bytes the driver takes next.
     next: u64,
+    /// Number of clock cycles between the starts of two reads.
     period: u64,
 }
 

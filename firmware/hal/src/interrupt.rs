@@ -1,4 +1,4 @@
-//! The CPU's interrupt lines, by name.
+//! The CPU's interrupt lines, as values of the type `Interrupt`.
 //!
 //! VexRiscv has one external interrupt with up to 32 lines. Each line is the interrupt of a peripheral and stays active until its
 //! handler clears the pending register of that peripheral.
@@ -22,7 +22,7 @@ pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
 /// Enables `interrupt`.
 ///
 /// # Safety
-/// Its handler must be ready, and no critical section may rely on the line being disabled.
+/// The handler of the interrupt must be ready, and no critical section may rely on the line being disabled.
 #[cfg(target_arch = "riscv32")]
 pub unsafe fn enable(interrupt: Interrupt) {
     use litex_pac::cpu;
@@ -32,7 +32,7 @@ pub unsafe fn enable(interrupt: Interrupt) {
     });
 }
 
-/// Disables `lines` (bits as [`Interrupt::bit`]).
+/// Disables the interrupt lines of the mask `lines`, in which each line has its [`Interrupt::bit`].
 #[cfg(target_arch = "riscv32")]
 pub fn disable(lines: u32) {
     use litex_pac::cpu;

@@ -30,7 +30,7 @@ pub enum Scale {
     Four = 4,
 }
 
-/// The scale that fills the screen.
+/// The scale at which a frame of this size fills the screen.
 impl From<Size> for Scale {
     fn from(size: Size) -> Self {
         match size {
@@ -41,7 +41,7 @@ impl From<Size> for Scale {
     }
 }
 
-/// The scan-out block, present in this SoC.
+/// The registers of the scan-out block, whose presence in this SoC has been checked.
 pub struct Scanout {
     registers: scanout::Scanout,
 }
@@ -133,7 +133,7 @@ impl Display {
         }
     }
 
-    /// The frame to draw on; `None` while it is still on the screen.
+    /// The frame to draw on; `None` while this frame is still on the screen.
     pub fn back(&mut self) -> Option<&mut [u16]> {
         let address = address(self.back);
         let held = self

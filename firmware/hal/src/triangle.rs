@@ -152,7 +152,7 @@ pub struct Counts {
 /// Result of the last started pass; `None` while the pass runs.
 pub type PassResult = Option<Result<(), EngineError>>;
 
-/// The engine, present in this SoC.
+/// Driver of the triangle engine, whose presence in this SoC has been checked.
 pub struct TriangleEngine {
     registers: triangle::Triangle,
 }

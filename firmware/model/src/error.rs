@@ -15,8 +15,8 @@ pub const SIZES: [(u32, u32); 3] = {
     ]
 };
 
-/// Largest distance of the eye from the origin in a frame with a mesh, in world units. It bounds the translation among
-/// the mesh's frame constants, whose bit widths follow from it.
+/// Largest distance of the eye from the origin in a frame with a mesh, in world units. It bounds the translation in the
+/// mesh's frame constants, and thereby the bit widths of the vertex stage.
 pub const MAX_EYE: u32 = 8;
 
 /// One of the buffers of a picture.

@@ -20,9 +20,9 @@ use crate::raymarch::{
 };
 use crate::triangle::{MeshSetup, Options, Projected, Stats, trace_frame};
 
-/// Triangles between two calls of `progress` in [`Frame::draw`].
+/// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;
-/// Pixels of a field between two calls of `progress` in [`Frame::draw`].
+/// Number of pixels of a field that are drawn between two calls of `progress` in [`Frame::draw`].
 const PIXELS_A_CALL: u32 = 16;
 
 /// The description of one picture.

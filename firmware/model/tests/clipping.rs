@@ -104,7 +104,8 @@ fn clipping_does_not_depend_on_the_first_vertex() {
                     .collect::<Vec<_>>()
             };
             let (mine, others) = (exceptions(&pictures[0]), exceptions(other));
-            // Colours are not compared: the test computes normals in f64, whose rounding depends on the order.
+            // Colours are not compared, because the test computes normals in f64 and their rounding depends on the order of
+            // the vertices.
             assert_eq!(mine.len(), others.len());
             assert!(
                 mine.iter()
@@ -141,7 +142,7 @@ fn from_inside_every_pixel_is_covered() {
     }
     println!("{clipped} triangles clipped, {twice} of {pixels} pixels covered twice");
     assert!(clipped > 200);
-    // Rounding bends a cut edge by half a subpixel; no other overlap is allowed.
+    // The rounding of its new vertices bends a cut edge by up to half a subpixel; no other overlap is allowed.
     assert!(twice < pixels as u64 / 100_000, "{twice}");
 }
 

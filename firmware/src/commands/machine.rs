@@ -106,7 +106,7 @@ impl<'l> MachineCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    // Tests find this function by its symbol and place a trap in its code.
+    // Tests of the trap handler find this function by its symbol and patch its code with instructions that cause a trap.
     #[inline(never)]
     fn reboot(&mut self) -> Outcome<'l> {
         self.terminal.print(format_args!("ok\n"));
@@ -114,7 +114,7 @@ impl<'l> MachineCommands<'l> for Machine {
         self.ctrl
             .reset()
             .write(ctrl::Reset::default().with_soc_rst(true));
-        // The program runs on for some cycles until the reset takes effect.
+        // The program continues for some cycles until the reset takes effect.
         loop {
             core::hint::spin_loop();
         }

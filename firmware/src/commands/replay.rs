@@ -1,5 +1,5 @@
-//! The command `replay`: uploads a log of sensor samples, computes the attitude after each sample, and downloads the
-//! attitudes.
+//! The command `replay`: receives a log of sensor samples, computes the attitude after each sample, and sends the
+//! attitudes to the host.
 
 use core::task::Poll;
 

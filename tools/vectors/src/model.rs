@@ -121,10 +121,10 @@ impl Model {
         model
     }
 
-    /// Encodes the model as a mesh of one chunk; each triangle has its own colour and its geometric normal.
+    /// Encodes the model as a mesh, in as many chunks as it needs; each triangle has its own colour and its geometric normal.
     ///
     /// # Panics
-    /// If the model has more vertices than a chunk can hold.
+    /// If the model has no vertex, a triangle refers to a missing position, or the mesh would be too large.
     #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self

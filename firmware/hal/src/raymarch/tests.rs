@@ -19,7 +19,7 @@ fn registers() -> raymarch::Raymarch {
     unsafe { Peripherals::steal() }.raymarch
 }
 
-/// Probes a block with the given identification and capabilities.
+/// Probes a block whose registers `ident` and `caps` have the given values. Returns the result, and the block's registers.
 fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
     let block = recording::connect([(r.ident().address(), ident), (r.caps().address(), caps)]);

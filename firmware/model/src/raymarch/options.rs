@@ -17,12 +17,12 @@ pub struct Tuning {
     /// Threshold: a ray hits where the distance is below `threshold` + t·2^−`footprint`; field units, 12 fraction bits,
     /// below 2^16.
     pub threshold: u32,
-    /// Footprint: the exponent that gives the share of t in the threshold, 7 to 15.
+    /// Footprint: the exponent of the part of the threshold that grows with t, t·2^−`footprint`; 7 to 15.
     pub footprint: u32,
     /// Step limit: number of evaluations after which a ray ends undecided, 1 to 255. In scenes with spheres the limit is
     /// four times this number.
     pub cap: u32,
-    /// Far limit of t, u11.12.
+    /// Far limit: a ray has missed when its parameter t exceeds this number, u11.12.
     pub far: u32,
 }
 

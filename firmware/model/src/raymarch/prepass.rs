@@ -6,7 +6,7 @@ const CONES: u32 = 1 << 14;
 /// The constants of a frame's cones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Cones {
-    /// Blocks have 2^`block` by 2^`block` pixels: 2, 3 or 4.
+    /// Exponent of the block size, 2, 3 or 4: blocks have 2^`block` by 2^`block` pixels.
     pub block: u32,
     /// Change of the unscaled ray direction D (docs/formats.md, "Rays") from a block's first pixel to its
     /// middle, 30 fraction bits.

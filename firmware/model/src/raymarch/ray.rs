@@ -48,7 +48,7 @@ pub struct Ray {
     /// Length index: the first ten fraction bits of the largest component of the unscaled direction D (docs/formats.md,
     /// "Rays"), or of |D|² for scenes with spheres. It selects the table entry that scales D to `direction`.
     pub length: u32,
-    /// Start of the ray, u11.12: the near plane, or the entry into the bounding box.
+    /// Parameter t at the start of the ray, u11.12: at the near plane, or where the ray enters the bounding box.
     pub start: u32,
 }
 
@@ -94,7 +94,7 @@ impl FieldSetup {
         self.ray_from(eye, x, y, self.near)
     }
 
-    /// The ray of pixel (x, y) for an eye, which starts not before the depth `near`.
+    /// The ray of pixel (x, y) for an eye. It starts at the depth `near`, or farther away where it enters the bounding box.
     pub(super) fn ray_from(&self, eye: usize, x: u32, y: u32, near: u32) -> Ray {
         // The unscaled direction D with 24 fraction bits, s1.24.
         let direction = [0, 1, 2].map(|i: usize| {

@@ -14,7 +14,7 @@ use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
 use crate::error::{RenderError, SIZES};
 
-/// Bound of the magnitude of every coordinate of a point (s13.12): half side of the bounding box of unbounded fields.
+/// Half side of the bounding box that is used for unbounded fields: the largest magnitude of a point's coordinate (s13.12).
 const UNBOUNDED: u32 = (1 << (12 + FRACTION)) - 1;
 
 /// Position of an eye, and direction of its first ray.
@@ -203,7 +203,7 @@ fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
         Field::Union(union) => union,
     };
     let [flat, round] = [union.flat(), union.round()].map(Primitive::placed);
-    // A fillet is higher than both members by a quarter of its width at most.
+    // A fillet extends beyond both members of the union by at most a quarter of its width.
     let extent = flat
         .extent
         .zip(round.extent)

@@ -7,8 +7,8 @@
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::CameraVertex;
 
-/// Largest number of vertices of a clipped triangle. Each of the five planes replaces every run of outside vertices by
-/// two vertices, and at most every second vertex is a run: 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but
+/// Largest number of vertices of a clipped triangle. Each of the five planes replaces every run of consecutive outside
+/// vertices by two vertices, and n vertices have at most n/2 such runs: 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but
 /// rounding may make a polygon concave.)
 const MAX_VERTICES: usize = 19;
 

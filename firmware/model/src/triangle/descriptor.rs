@@ -6,7 +6,7 @@ use glint_core::picture::Size;
 
 use crate::triangle::setup::{Plane, Setup};
 
-/// Columns of a group: the pixels that the raster pass draws in one clock.
+/// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
 /// A triangle after its setup, packed into words of 32 bits. The words for smooth shading, with the planes of light, come

@@ -48,9 +48,9 @@ pub struct Reciprocal {
 }
 
 impl Reciprocal {
-    /// The reciprocal of `v`, truncated to 24 bits. 0 counts as 1.
+    /// Computes the reciprocal of `v` after truncating `v` to its highest 24 bits. A `v` of 0 counts as 1.
     ///
-    /// The relative error is below 2^−22: 2^−23 from the truncation and one unit of `y`.
+    /// The relative error is below 2^−22: 2^−23 from the truncation of `v`, and one unit of the last place of `y`.
     pub const fn of(v: u64) -> Self {
         let v = v | (v == 0) as u64;
         let lead = v.ilog2();

@@ -67,7 +67,7 @@ pub fn render(
     trace(mesh, view, target, scratch, options, |_| {})
 }
 
-/// Draws a mesh as [`render`] does, and calls `show` before each triangle.
+/// Draws a mesh as [`render`] does, and calls `show` with each triangle before it is drawn.
 ///
 /// # Errors
 /// [`RenderError`]; the frame buffer is then unchanged.

@@ -11,7 +11,8 @@ use crate::triangle::vertex::ScreenVertex;
 pub struct Oriented {
     /// The vertices, with 1 and 2 swapped for a front face.
     pub vertices: [ScreenVertex; 3],
-    /// The doubled area a = |2A| > 0, u40 with 16 fraction bits: a triangle is at most half of a square that holds it.
+    /// The doubled area a = |2A| > 0, u40 with 16 fraction bits. It is at most the area of a square that contains the
+    /// triangle.
     pub doubled_area: u64,
     /// The visible side.
     pub facing: Facing,
