@@ -34,23 +34,23 @@ pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// `a` scaled to length 1; `a` is not zero.
+/// Returns `a` scaled to length 1. `a` must not be zero.
 pub(crate) fn normalised(a: Vector) -> Vector {
     let length = length(a);
     a.map(|c| c / length)
 }
 
-/// The points origin + t·direction for all t of at least 0.
+/// A ray: the points origin + t·direction for all t ≥ 0. The number t is the parameter of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// The point at t = 0, in world units.
+    /// The point with the parameter 0, in world units.
     pub origin: Vector,
-    /// Change of the point for one unit of t, in world units; not 0.
+    /// Change of the point, in world units, if the parameter grows by 1. Must not be zero.
     pub direction: Vector,
 }
 
 impl Ray {
-    /// The point at the parameter `t`.
+    /// Returns the point with the parameter `t`.
     pub fn at(&self, t: f64) -> Vector {
         add_scaled(self.origin, self.direction, t)
     }
@@ -116,7 +116,7 @@ pub struct Size {
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`, with +z up.
+    /// Makes a camera at `eye` that looks at `target`, with +z up.
     ///
     /// `half_width` and `near` become the camera's fields of these names. If the line of sight is parallel to z, u and v
     /// are NaN.
@@ -244,7 +244,7 @@ impl Camera {
         kept
     }
 
-    /// The factor K of depth codes, with code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17
+    /// Computes the factor K of depth codes, with code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17
     /// significant bits. The factor 1 + 2^-13 allows for a length of n slightly above 1.
     ///
     /// `radius` is the radius of a sphere about the origin that contains the scene, in world units.

@@ -163,7 +163,7 @@ fn a_camera_in_the_plane_of_a_face_sees_what_is_before_it() {
         .near(2e-6, 7e-3)
         .faced(0.01)
         .cheap(3.3);
-    // Half of the rays go into the face, and the other half away from it.
+    // The eye is in the plane of the front face. Half of the rays go into the face, and the other half away from it.
     let on = at([0.9375, -1.0, 0.9375], [-0.5, -1.5, 0.5]);
     see("on the front", "menger:4", &on)
         .masked(20)

@@ -260,7 +260,7 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Integrates the tumble and the coning of imu-methods.csv again, at the rates that have few samples.
+/// Integrates the motions of imu-methods.csv (tumble and coning) again, at two rates with few samples.
 #[test]
 fn the_committed_errors_of_attitudes_hold() {
     let rows: Vec<MethodTrial> = committed("imu-methods.csv");

@@ -13,7 +13,7 @@ use glint_reference::report::table::write_csv;
 use glint_reference::report::workspace;
 use serde::Serialize;
 
-/// Measures error against run time.
+/// Measures errors and run times for the pages of docs/report.
 #[derive(Parser)]
 #[command(name = "report")]
 struct Arguments {
@@ -23,7 +23,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Page {
-    /// Sine and cosine over all inputs, beside other libraries
+    /// Sine and cosine: errors over all inputs, and cycles, compared with other libraries
     Sine {
         /// Measure a sample of the inputs instead of all (seconds instead of minutes)
         #[arg(long)]
@@ -31,7 +31,7 @@ enum Page {
         #[command(flatten)]
         bench: Bench,
     },
-    /// The triangle engine on the whole SoC, beside its requirements
+    /// Speed of the triangle engine on the whole SoC, compared with its requirements
     Triangle {
         /// Leave out the CPU's frames, which take most of the time
         #[arg(long)]
@@ -50,7 +50,7 @@ enum Page {
         #[command(flatten)]
         output: Output,
     },
-    /// Smooth shading beside light that is linear on the screen
+    /// Errors of smooth shading, compared with light that is linear on the screen
     Gouraud {
         /// Leave out the gateware's cost, which takes most of the time
         #[arg(long)]
@@ -58,7 +58,7 @@ enum Page {
         #[command(flatten)]
         output: Output,
     },
-    /// Attitudes from gyroscope and accelerometer against f64 and the truth
+    /// Attitudes from gyroscope and accelerometer, compared with f64 and with the true attitude
     Imu {
         /// Shorten long motions to a tenth and leave out motions of a day (half a minute instead of ten)
         #[arg(long)]

@@ -28,7 +28,7 @@ pub enum Filter {
     /// rotates the accelerometer's readings to world axes, where they pass a second-order low pass. Then the attitude is
     /// turned so that the filtered reading points upwards.
     LowPass(f64),
-    /// The firmware's filter, with this time constant.
+    /// The firmware's filter (`glint_core::orientation::Tilt`), with this time constant.
     Tilt(f64),
     /// The firmware's filter, changed to ignore readings of the accelerometer whose strength is outside a range.
     Gated {
@@ -74,7 +74,8 @@ pub struct Estimator {
     last: Option<u32>,
     /// Attitude at the first sample, for a filter that ignores the accelerometer.
     start: Quaternion,
-    /// Time constant in use, in seconds: it grows from a small value to the filter's own, so that the tilt settles quickly.
+    /// Time constant in use, in seconds. It grows from a small value to
+    /// the time constant of `filter`, so that the tilt settles quickly.
     age: f64,
     /// Correction by the last reading of the accelerometer, which the next step applies: half the angle of the rotation about
     /// each of the body's axes, in radians.

@@ -61,7 +61,7 @@ impl Quaternion {
         Self([w, -x, -y, -z])
     }
 
-    /// The length of the quaternion.
+    /// Returns the length of the quaternion.
     pub fn norm(self) -> f64 {
         self.0.iter().map(|x| x * x).sum::<f64>().sqrt()
     }

@@ -24,7 +24,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     let mut entered = (slabs.enter >= t_min).then_some(slabs.axis);
     let mut cell = number(t).map(|i| i.clamp(0, count - 1));
     while let Some(side) = hole(cell, count) {
-        // The borders of a hole are multiples of the hole's side, so its first cell along each axis is one too.
+        // Along each axis, the number of a hole's first cell is a multiple of the hole's side.
         let first = cell.map(|i| i / side * side);
         let border = |axis: usize| {
             let d = ray.direction[axis];

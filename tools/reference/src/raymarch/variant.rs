@@ -37,9 +37,9 @@ pub struct Method {
     pub threshold: f64,
     /// Growth of the threshold for each unit of distance that the ray has travelled.
     pub footprint: f64,
-    /// Limit of the number of steps.
+    /// Limit of the number of steps of a ray.
     pub cap: u32,
-    /// Number of steps after which the threshold doubles, again and again; `None` if it never doubles.
+    /// The threshold doubles each time this number of steps is complete; `None` if it never doubles.
     pub relax: Option<u32>,
     /// Whether the hit of a ray that approaches a face is moved forward to the plane of the face. The ray's parameter grows by
     /// the remaining distance divided by the component of the ray's direction along the normal.

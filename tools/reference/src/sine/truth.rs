@@ -42,7 +42,7 @@ impl Image {
     /// Returns the images of a phase of the first octant, no more than one in each octant.
     ///
     /// Together, the phases from 0 to [`OCTANT`] have each of the 2^32 angles as an image exactly once: an angle at the border
-    /// of two octants is an image in one of the two only.
+    /// of two octants counts as an image in only one of these octants.
     pub fn all(phase: u32) -> impl Iterator<Item = Self> {
         (0..8)
             .map(|i| Self {

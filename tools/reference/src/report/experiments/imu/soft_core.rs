@@ -31,11 +31,11 @@ pub struct Kernel {
     pub what: String,
     /// Required upper bound of the cycles per sample.
     pub at_least: u64,
-    /// The goal beyond that bound.
+    /// The goal for the cycles per sample, beyond that bound.
     pub aim: u64,
-    /// Median of the measured runs.
+    /// Median of the cycles per sample, over the measured runs.
     pub median: u64,
-    /// Slowest of the measured runs.
+    /// Cycles per sample of the slowest measured run.
     pub max: u64,
 }
 

@@ -80,7 +80,7 @@ impl FixedPoint {
         }
     }
 
-    /// Draws the picture, row by row.
+    /// Draws the picture, row by row, and returns the results of its rays.
     pub fn picture(&self) -> Vec<RenderedRay> {
         let (width, height) = (self.setup.width, self.setup.height);
         (0..width * height)
@@ -160,7 +160,7 @@ impl FixedPoint {
     fn sample(&self, point: [i32; 3]) -> (i32, usize, bool) {
         let mut p = [0, 1, 2].map(|axis| (point[axis], axis, true));
         for &s in &self.levels {
-            // −x is computed as `!x`, because a coordinate stands for the middle of its step.
+            // `mirrored` negates x as `!x`, which is −x − 1, because a coordinate x stands for the middle of its step, x + 1/2.
             p = p.map(|x| if x.0 >= 0 { mirrored(x) } else { x });
             p = p.map(|(x, axis, positive)| (x + s, axis, positive));
             let big = largest(p.map(|x| x.0));

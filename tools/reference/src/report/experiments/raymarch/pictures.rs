@@ -32,9 +32,9 @@ pub struct Row {
     pub undecided: usize,
     /// Median error of depths that are computed from the rays' parameters t.
     pub depth_median: Option<f64>,
-    /// 99th percentile of the errors of depths that are computed from t.
+    /// 99th percentile of the errors of depths that are computed from the rays' parameters t.
     pub depth_p99: Option<f64>,
-    /// Largest error of depths that are computed from t.
+    /// Largest error of depths that are computed from the rays' parameters t.
     pub depth_max: Option<f64>,
     /// Median error of depths that are computed from depth codes.
     pub code_median: Option<f64>,

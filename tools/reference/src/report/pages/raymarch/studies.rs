@@ -24,7 +24,7 @@ const DEPTH_MEDIAN: &str = "median error of the depth, in world units";
 const EVALUATIONS: &str = "evaluations a ray";
 const CYCLES: &str = "cycles a picture, two lanes";
 
-/// The studies, in the order of the page.
+/// The studies and how they are presented, in their order on the page.
 pub const STUDIES: [Study; 7] = [
     Study {
         name: "fraction",
