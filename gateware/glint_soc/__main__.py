@@ -38,7 +38,7 @@ def main():
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
-    # LiteX asks git for LiteX's own version, and would get the version of this project.
+    # LiteX asks git for LiteX's own version. Without this limit it would get the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
     full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
@@ -54,7 +54,7 @@ def main():
     output = arguments.output.resolve()
     builder = Builder(
         soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
-        # Without inlining, the loop of the serial boot would evict itself from the instruction cache.
+        # Inlines the loop of the serial boot, which would evict itself from the instruction cache otherwise.
         bios_lto=True,
         # The vendor tool is run by hand, on a computer where it is installed.
         compile_gateware=False)

@@ -31,7 +31,7 @@ class Struct:
     @property
     def value(self):
         """All members as one value for a port of this type, an input or an output."""
-        # SystemVerilog lists the member in the highest bits first, Migen the one in the lowest bits.
+        # A struct in SystemVerilog lists the member in the highest bits first, Cat in Migen the member in the lowest bits.
         return Cat(*(_flat(value) for value in reversed(self._members.values())))
 
     def typedef(self):

@@ -86,8 +86,8 @@ class UrbanaSoC(GlintSoC):
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)
-        # Set directly, because `add_electrical_settings` stores the value under a name that the initialisation of the
-        # memory does not read.
+        # The termination is set directly, because `add_electrical_settings` stores the value under a name that the initialisation
+        # of the memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
         self.add_dram(self.ddrphy)
         for name in {"triangle", "raymarch"} & self.blocks:

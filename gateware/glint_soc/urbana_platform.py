@@ -21,8 +21,8 @@ _io = [
         Subsignal("tx", Pins("A16")),
         IOStandard("LVCMOS33")),
 
-    # An external MPU-6050 at PMOD B, pins 2 and 3. Its module has pull-up resistors; those of the FPGA keep the bus idle while
-    # no module is connected.
+    # An external MPU-6050 motion sensor at PMOD B, pins 2 and 3. Its module has pull-up resistors; the pull-ups of the FPGA keep
+    # the bus idle while no module is connected.
     ("i2c", 0,
         Subsignal("sda", Pins("G18")),
         Subsignal("scl", Pins("K14")),

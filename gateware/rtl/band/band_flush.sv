@@ -92,7 +92,7 @@ module band_flush #(
     assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
-    // Requests a row in each clock, and clears it a clock later, when its read is under way.
+    // Requests one row of the bank in each clock, and clears it a clock later, when its read is under way.
     always_ff @(posedge clk) begin
         clears    <= 1'b0;
         clear_row <= row;
@@ -206,7 +206,7 @@ module band_flush #(
         endcase
     end
 
-    // A place is reserved for each word, so `word_ready` is high whenever a word comes.
+    // A place in the FIFO is reserved for each requested word, so `word_ready` is high whenever a word comes.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),

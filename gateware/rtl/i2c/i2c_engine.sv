@@ -4,7 +4,7 @@
 //
 //   START             start condition, or repeated start within a transaction
 //   WRITE  byte       send a byte and check its acknowledge
-//   READ   count - 1  receive 1 to 256 bytes and acknowledge all but the last; the last too with `more`
+//   READ   count - 1  receive 1 to 256 bytes and acknowledge all but the last, or with `more` all
 //   STOP              stop condition, after which the bus stays free for two phases
 //
 //             ┌──────┐   ┌────────────┐   ┌──────┐

@@ -24,7 +24,7 @@ module cone_table #(
     input  wire  [13:0] number,
     output logic [22:0] cleared
 );
-    // Depth that each cone has cleared, u11.7.
+    // Depth up to which each cone is free of surfaces, u11.7.
     (* ram_style = "block", no_rw_check *) logic [17:0] depths [0:16383];
 
     logic [16:0]        largest_inverse_2, inverse_2;

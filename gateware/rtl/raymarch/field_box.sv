@@ -23,7 +23,8 @@ module field_box (
     always_comb begin
         for (int i = 0; i < 3; i++) begin
             place[i] = point[i];
-            // The period of 64 units is 2^18. The point moves to the same position in the cell about the origin.
+            // The period of 64 units is 2^18 in units of the coordinates. The point moves to the same position in the cell
+            // about the origin.
             if (repeated) place[i][21:18] = {4{point[i][17]}};
         end
     end

@@ -1,4 +1,4 @@
-// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats.md, "Fields").
+// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats.md, "Round fields").
 //
 //   point - centre ─▶ |x|, |y|, |z| ─▶ shift ─▶ three squares, one sum ─▶ root ─▶ shift back ─▶ - radius ─▶ distance
 //                                        │                                            ▲
@@ -84,7 +84,8 @@ module field_sphere (
         for (int i = 0; i < 3; i++) begin
             logic [22:0] apart;
             apart = minus(point[i], centre_0[i]);
-            // The period of 64 units is 2^18. The difference moves to the range about the middle of the point's cell.
+            // The period of 64 units is 2^18 in units of the coordinates. The difference is reduced modulo the period, to the
+            // range from -2^17 to 2^17 - 1.
             apart_1[i] <= repeated ? {{5{apart[17]}}, apart[17:0]} : apart;
             size_2[i]  <= magnitude(apart_1[i]);
             by_8[i]    <= shifted_8[i];

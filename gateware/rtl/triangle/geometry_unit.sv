@@ -49,9 +49,9 @@ module geometry_unit #(
     output triangle_registers_pkg::results_t results,
     output triangle_registers_pkg::events_t events
 );
-    // Bits of a triangle's colour and normal.
+    // Number of bits of a triangle's colour and normal together.
     localparam int unsigned SIDE_BITS = 64;
-    // Bits of a triangle_pkg::light_t.
+    // Number of bits of a triangle_pkg::light_t.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
     localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;
@@ -75,7 +75,7 @@ module geometry_unit #(
         done <= 1'b0;
         case (state)
             IDLE:    if (start) state <= PREPARE;
-            // Waits while the lists are emptied.
+            // Waits until binner has emptied all band lists.
             PREPARE: if (lists_idle) state <= BEGIN;
             BEGIN:   state <= WALK;
             WALK:    if (!walk_busy && drained && lists_idle) state <= FINISH;
@@ -213,8 +213,8 @@ module geometry_unit #(
     assign hurry       = state == FINISH || state == IDLE;
     assign write_ready = write_descriptor ? descriptors_ready : lists_ready;
 
-    // Descriptors follow each other in memory, lists do not. With a port for each, lists do not make the descriptors' port
-    // turn to other banks.
+    // Descriptors are written to consecutive addresses, words of lists are not. Each kind has its own port, so that lists do
+    // not make the descriptors' port turn to other memory banks.
     assign descriptors_write_request.wdata_strobe = '1;
 
     /* verilator lint_off PINCONNECTEMPTY */

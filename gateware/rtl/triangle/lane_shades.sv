@@ -19,7 +19,7 @@ module lane_shades #(
     input  wire                    enable,
     output logic                   idle,
     // Stage 1.
-    input  wire  [2:0][31:0]       in_light,  // red in the lowest
+    input  wire  [2:0][31:0]       in_light,  // red in the lowest bits
     input  wire  [2:0][31:0]       in_step_x,
     input  wire                    in_smooth,
     // Stage 3.

@@ -22,7 +22,8 @@ module mesh_walk #(
     input  wire                     drained,
     output logic                    busy,
     output logic                    error,
-    // `vertex_base` belongs to the chunk of the emitted triangles. `chunk` is high for one clock when the chunk changes.
+    // `vertex_base` is the address of the first vertex of the chunk whose triangles are sent. `chunk` is high for one clock
+    // when the chunk changes.
     output logic                    chunk,
     output logic [ADDRESS_BITS-1:0] vertex_base,
     // Memory.
@@ -32,7 +33,7 @@ module mesh_walk #(
     input  wire                     data_valid,
     output logic                    data_ready,
     input  wire  [127:0]            data,
-    // Triangles in their memory format.
+    // Triangles of the mesh, in the format in which they are stored in memory.
     output logic                    out_valid,
     input  wire                     out_ready,
     output logic [127:0]            out_triangle

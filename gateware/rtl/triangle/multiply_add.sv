@@ -1,4 +1,4 @@
-// p = a·b + c, mapped to one DSP48: signed, 25 by 18 bits, with registers on both sides of the multiplier.
+// Computes p = a·b + c, mapped to one DSP48: signed, 25 by 18 bits, with registers on both sides of the multiplier.
 //
 //   a, b ─▶│a, b│─▶ × ─▶│product│─▶ + ─▶│p│
 //                                   ▲

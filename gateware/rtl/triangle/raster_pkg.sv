@@ -1,4 +1,4 @@
-// Types between the parts of triangle_raster.
+// Types of the values that the modules inside triangle_raster exchange.
 
 `default_nettype none
 

@@ -39,7 +39,8 @@ module raster_unit #(
     input  wire                       start,
     output logic                      busy,
     output logic                      done,
-    // Valid with `done`: a list was damaged (see list_reader), or a descriptor was outside of the picture and was skipped.
+    // Valid with `done`: high if a band list was damaged (see list_reader), or if a descriptor with groups outside of the
+    // picture was skipped.
     output logic                      list_error,
     input  wire triangle_registers_pkg::raster_flags_t flags,
     input  wire triangle_registers_pkg::raster_t parameters,

@@ -28,7 +28,7 @@ module reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // Bit k of `since` is high when an m came k + 1 clocks ago.
+    // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago.
     logic [13:0] since;
     logic [23:0] m;
     logic [9:0]  y0;

@@ -1,4 +1,4 @@
-// Types between the parts of the triangle setup.
+// Type of the triangles that the module `cull` passes to the later stages of the triangle setup.
 
 `default_nettype none
 

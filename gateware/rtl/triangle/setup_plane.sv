@@ -32,7 +32,7 @@ module setup_plane (
     assign step_x = gx[31:0];
     assign step_y = gy[31:0];
 
-    // Stage 4 begins a clock after its beat, because the gradients are rounded first.
+    // Stage 4 begins one clock after the beginning of its beat, because the gradients are rounded in this clock.
     always_ff @(posedge clk) begin
         if (beat) begin
             nx_3       <= nx;

@@ -1,4 +1,4 @@
-// Types between the parts of the triangle engine. Formats: docs/formats.md.
+// Types of the values that the modules of the triangle engine exchange. docs/formats.md explains the number formats.
 
 `default_nettype none
 

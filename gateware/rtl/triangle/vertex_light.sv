@@ -22,7 +22,7 @@ module vertex_light (
     // The FIFO has more places than vertex_stage can hold vertices.
     localparam int unsigned PLACES = 16;
 
-    // Bit k of `since` is high when a vertex came k + 1 clocks ago.
+    // Bit k of `since` is high when a vertex entered k + 1 clocks ago.
     logic        [13:0]      since;
     logic        [2:0][15:0] normal;
     logic        [15:0]      colour, colour_held;

@@ -89,7 +89,7 @@ module vertex_stage (
         .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
         .inverse(inverse), .vertex(vertex));
 
-    // The FIFO is never full, since a place is reserved for each vertex.
+    // The FIFO is never full, since a place is reserved for each vertex inside the stage.
     logic room, unused;
     assign unused = room;
 

@@ -213,7 +213,7 @@ module walker #(
                 rows_below   <= in_triangle.rows - 1'b1;
                 last_row     <= !in_valid || in_triangle.rows == 6'd1;
             end
-            // Without a next triangle the walker stays, ready to load one.
+            // Without a next triangle the walker stays idle, ready to load one.
             if (leave && !in_valid) begin
                 seek_left    <= 1'b0;
                 seek_right   <= 1'b0;
