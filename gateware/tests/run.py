@@ -26,13 +26,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
+import netlist  # noqa: E402
 import route  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
 import urbana  # noqa: E402
 from glint_soc import packages  # noqa: E402
 from modules import MODULES  # noqa: E402
-from tools import ToolError, prepare_yosys  # noqa: E402
+from tools import NEXTPNR, YOSYS, ToolError, prepare  # noqa: E402
 from verilate import module as verilated_module  # noqa: E402
 from verilate.programs import run_verilator  # noqa: E402
 
@@ -77,7 +78,7 @@ def run_all(checks):
 
 def test():
     """Runs all checks and returns the number of those that failed."""
-    prepare_yosys()
+    prepare(YOSYS)
     failures = run_all(module_checks())
     files = urbana.generate()
     others = {
@@ -85,6 +86,8 @@ def test():
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},
+        **{f"netlists: {name}": action for name, action in netlist.CHECKS.items()},
+        **{f"clock rates: {name}": action for name, action in route.CHECKS.items()},
         **{f"urbana: {name}": partial(action, *files) for name, action in urbana.CHECKS.items()},
     }
     return failures + sum(check(name, action) for name, action in others.items())
@@ -99,6 +102,7 @@ def run_lint(module, parameters):
 def print_measured(measure, name):
     """Prints a measurement of the block `name` as a line of JSON. Returns whether the measurement failed."""
     try:
+        prepare(YOSYS, NEXTPNR)
         print(json.dumps({"name": name, **measure(name)}), flush=True)
     except ToolError as error:
         print(error)

