@@ -207,7 +207,7 @@ pub enum Progress {
 }
 
 impl Calibration {
-    /// Starts a calibration. The number of samples saturates to [`MOST_SAMPLES`].
+    /// Starts a calibration. The number of samples is limited to the range [`MOST_SAMPLES`].
     pub fn new(units: Units, samples: u32) -> Self {
         Self {
             units,

@@ -40,8 +40,8 @@ pub struct View {
 impl View {
     /// Makes a camera from its eye, basis, half width and near plane, after checking them.
     ///
-    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. The
-    /// eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
+    /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. In world
+    /// units, the eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
     ///
     /// # Errors
     /// The first violated condition.
@@ -75,11 +75,11 @@ impl View {
     ///
     /// With θ = `theta` and φ = `phi`, C = r·(sin φ cos θ, sin φ sin θ, cos φ), u = (−sin θ, cos θ, 0),
     /// v = (cos φ cos θ, cos φ sin θ, −sin φ) and n = −C/r. θ is the azimuth, and φ the angle from the z axis, at most half a
-    /// turn. The formulas have no singularity: at the poles the basis follows from θ. Given the sines of [`sin_cos_q30`], the eye
-    /// is exact to 2^−32, and each component of the basis to 2^−24.
+    /// turn. The formulas have no singularity: at the poles the basis follows from θ. The sines and cosines have the errors of
+    /// [`sin_cos_q30`]; apart from these errors the eye is exact to 2^−32, and each component of the basis to 2^−24.
     ///
     /// # Errors
-    /// `r` is outside [2, 5], or `phi` is beyond half a turn.
+    /// `r` is outside [2, 5] world units, or `phi` is beyond half a turn.
     pub fn spherical(r: Q32_32, theta: Turns, phi: Turns) -> Result<Self, ViewError> {
         if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
             return Err(ViewError::Radius(r));
@@ -105,11 +105,12 @@ impl View {
     ///
     /// In a left-handed frame (x right, y up, z forward) the directions to the right, up and forward without roll are
     /// R = (cos y, 0, −sin y), U = (sin p sin y, cos p, sin p cos y) and F = (cos p sin y, −sin p, cos p cos y). Roll turns the
-    /// first two directions to R' = R cos r + U sin r and U' = −R sin r + U cos r. P exchanges y and z, which converts to the
-    /// world's right-handed frame: u = P·R', v = −P·U', n = P·F. With all angles 0 the camera looks along +y.
+    /// first two directions to R' = R cos r + U sin r and U' = −R sin r + U cos r. P exchanges the second and the third
+    /// coordinate, which converts to the world's right-handed frame: u = P·R', v = −P·U', n = P·F. With all angles 0 the camera
+    /// looks along +y.
     ///
     /// # Errors
-    /// The eye is more than 32 from the origin.
+    /// The eye is more than 32 world units from the origin.
     pub fn look(
         eye: [Q32_32; 3],
         yaw: Turns,
@@ -150,7 +151,7 @@ impl View {
         self.eye
     }
 
-    /// Whether the eye is within `distance` of the origin.
+    /// Whether the eye is within `distance` world units of the origin.
     pub fn is_within(&self, distance: u32) -> bool {
         within(self.eye, distance)
     }
@@ -170,12 +171,12 @@ impl View {
         self.n
     }
 
-    /// Half the width of the image plane at distance 1, in [0.05, 4].
+    /// Half the width of the image plane at distance 1, in world units, from 0.05 to 4.
     pub const fn half_width(&self) -> U4_28 {
         self.half_width
     }
 
-    /// The distance of the near plane along `n`, in [0.01, 2].
+    /// The distance of the near plane from the eye along `n`, in world units, from 0.01 to 2.
     pub const fn near(&self) -> U4_28 {
         self.near
     }

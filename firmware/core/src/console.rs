@@ -1,7 +1,7 @@
 //! The console: a line editor and the grammar of commands.
 //!
 //! [`LineEditor`] turns the bytes of a terminal into lines, [`Command::parse`] turns a line into a command, and
-//! [`Command::execute`] calls the command's method of the machine. One table defines the commands; the parser, the help, the
+//! [`Command::execute`] calls the machine's method for this command. One table defines the commands; the parser, the help, the
 //! completion and the traits that the machine implements are generated from this table.
 
 mod argument;

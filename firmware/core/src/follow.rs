@@ -97,7 +97,7 @@ impl fmt::Display for Mounting {
 /// The basis is orthonormal within 2^−21.
 ///
 /// # Errors
-/// The eye is more than 32 from the origin.
+/// The eye is more than 32 world units from the origin.
 pub fn free_look(
     eye: [Q32_32; 3],
     attitude: Quaternion,
@@ -111,7 +111,7 @@ pub fn free_look(
 /// the sensor move the eye about the origin, roll turns the picture.
 ///
 /// # Errors
-/// `r` is outside [2, 5].
+/// `r` is outside [2, 5] world units.
 pub fn orbit(r: Q32_32, attitude: Quaternion, mounting: Mounting) -> Result<View, ViewError> {
     if !(RADIUS[0]..=RADIUS[1]).contains(&r) {
         return Err(ViewError::Radius(r));
@@ -145,7 +145,7 @@ pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
 /// Computes the camera's attitude from the sensor's attitude, the attitude chosen as centre, and the sensitivity.
 ///
-/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, with the same accuracy. With
+/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, and as accurate as it. With
 /// another sensitivity the angle of each turn is scaled and its axis is kept; the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
@@ -165,7 +165,7 @@ impl Default for Steering {
 }
 
 impl Steering {
-    /// Starts with a sensitivity in units of 1/256, which saturates to [`SENSITIVITY`].
+    /// Starts with a sensitivity in units of 1/256, which is limited to the range [`SENSITIVITY`].
     pub fn new(sensitivity: u16) -> Self {
         Self {
             sensitivity: sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]),
@@ -175,12 +175,12 @@ impl Steering {
         }
     }
 
-    /// The sensitivity, in 1/256.
+    /// The sensitivity, in units of 1/256.
     pub const fn sensitivity(&self) -> u16 {
         self.sensitivity
     }
 
-    /// Changes the sensitivity; the camera keeps its attitude.
+    /// Changes the sensitivity, in units of 1/256; the camera keeps its attitude.
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.sensitivity = sensitivity.clamp(SENSITIVITY[0], SENSITIVITY[1]);
     }
@@ -198,7 +198,7 @@ impl Steering {
         self.camera
     }
 
-    /// Turns the camera about the vertical, back to the heading that it had at the start. From then on the sensor's present
+    /// Turns the camera about the vertical to the heading 0, that of the identity. From then on the sensor's present
     /// attitude stands for this heading. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());

@@ -48,7 +48,7 @@ impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     }
 }
 
-/// State of the last or present calibration.
+/// State of the last or present calibration. `Going` holds the calibration in progress and its number of samples so far.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,
@@ -198,18 +198,18 @@ impl<E: Copy> Imu<E> {
         self.moved = true;
     }
 
-    /// Camera gain (the sensitivity of the steering), in units of 1/256.
+    /// Sensitivity of the steering: the ratio of the camera's turns to the sensor's turns, in units of 1/256.
     pub const fn sensitivity(&self) -> u16 {
         self.steering.sensitivity()
     }
 
-    /// Sets the camera gain in units of 1/256, which saturates to [`SENSITIVITY`](follow::SENSITIVITY).
+    /// Sets the sensitivity of the steering in units of 1/256, limited to the range [`SENSITIVITY`](follow::SENSITIVITY).
     pub fn set_sensitivity(&mut self, sensitivity: u16) {
         self.steering.set_sensitivity(sensitivity);
     }
 
-    /// Turns the camera back to the heading that it had at the start. From then on the sensor's present
-    /// attitude stands for this heading.
+    /// Turns the camera about the vertical to the heading 0. From then on the sensor's present attitude stands for this
+    /// heading.
     pub fn recentre(&mut self) {
         self.steering.recentre();
         self.moved = true;

@@ -37,13 +37,14 @@ pub struct Mesh<'a> {
 }
 
 impl<'a> Mesh<'a> {
-    /// Checks every length, count, index and reserved field of a mesh, and that the sphere with its radius contains all vertices.
+    /// Checks every length, count, index and reserved field of a mesh, and that the sphere about the origin with the radius in
+    /// the header contains all vertices.
     ///
     /// # Errors
     /// The first deviation from the format, with its place.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
         let found = bytes.len();
-        // Truncation is harmless: the comparison with the length below rejects longer inputs.
+        // A length of more than 32 bits is reported as the largest 32-bit number.
         let wrong_length = |expected| MeshError {
             offset: 0,
             expected,

@@ -95,7 +95,8 @@ fn plain_light_leaves_colours_as_they_are() {
     }
 }
 
-/// If two faces had the same colour, the edge between them would be invisible.
+/// All faces of a material have different lit colours, except those that only the ambient light reaches: between faces of the
+/// same colour no edge would be visible.
 #[test]
 fn every_face_of_a_material_looks_different() {
     for material in Material::ALL {

@@ -13,7 +13,7 @@ pub trait Argument {
     type Value<'a>;
     /// Whether the argument may be missing at the end of the line.
     const OPTIONAL: bool = false;
-    /// The words of the argument.
+    /// The words that the argument consists of.
     const SHAPE: Shape;
 
     /// Takes the argument's words from `reader` and returns their value. `None` means an error, which `reader` stores.
@@ -24,7 +24,7 @@ pub trait Argument {
 pub trait WordArgument {
     /// The value that the word is parsed into.
     type Value<'a>;
-    /// The accepted texts.
+    /// The texts that are accepted as the word.
     const KIND: Kind;
 
     /// Parses a word. `None` means that the word is not accepted.

@@ -58,7 +58,7 @@ pub enum ValueError<'a> {
     },
     /// The two directions of a mounting, forward and up, lie on the same axis of the sensor.
     Mounting,
-    /// The camera gain is outside [`SENSITIVITY`].
+    /// The sensitivity of the steered camera is outside [`SENSITIVITY`].
     Sensitivity,
     /// The numbers do not describe a camera.
     View(ViewError),

@@ -50,7 +50,7 @@ pub enum Shape {
 pub enum Kind {
     /// One of a list of words.
     Words(&'static [&'static str]),
-    /// A text of a form that this description states.
+    /// Any text of a certain form. The value is a description of this form, for help and error messages.
     Text(&'static (dyn Display + Sync)),
     /// The given keyword, or a word of the given kind.
     Either(&'static str, &'static Kind),

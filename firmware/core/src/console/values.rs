@@ -219,7 +219,8 @@ impl WordArgument for light::Light {
     }
 }
 
-/// A camera gain: a decimal number on the console, which is stored in units of 1/256, rounded down.
+/// The sensitivity of a camera that the sensor steers: the ratio (gain) of the camera's turns to the sensor's turns. It is a
+/// decimal number on the console, and is stored in units of 1/256, rounded down.
 pub struct Sensitivity;
 
 impl WordArgument for Sensitivity {
@@ -278,7 +279,7 @@ pub enum ImuAction {
     Stream(Option<u32>),
     /// Let the sensor steer the camera in this way; `None` stops the steering.
     Follow(Option<Follow>),
-    /// Turn the camera back to the heading that it had at the start.
+    /// Turn the steered camera about the vertical, back to heading 0.
     Recentre,
 }
 

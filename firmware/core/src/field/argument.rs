@@ -79,7 +79,7 @@ impl<'a> Words<'a> {
             .ok_or(FieldError::Missing { kind, name })
     }
 
-    /// Checks that all numbers of the text, or of its present group, were read.
+    /// Checks that no number is left in the present group, or in the whole text if `group` was not called.
     pub fn end(&mut self) -> Result<(), FieldError<'a>> {
         let kind = self.kind;
         self.word()

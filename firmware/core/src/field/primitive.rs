@@ -71,7 +71,7 @@ macro_rules! primitives {
                 }
             }
 
-            /// Converts the field to its solid in field units, in which the engine computes.
+            /// Converts the field to its solid in field units, in which the raymarcher computes.
             pub fn placed(&self) -> Placed<Solid> {
                 match self {
                     $(Self::$kind(shape) => shape.placed().map(Into::into),)*
@@ -157,7 +157,7 @@ flat_solids! {
     FixedOctahedron,
 }
 
-/// A solid with lengths in field units, in which the engine computes (`Placed` states the scale).
+/// A solid with lengths in field units, in which the raymarcher computes (`Placed` states the scale).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solid {
     /// A solid with flat faces.

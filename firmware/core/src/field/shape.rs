@@ -1,4 +1,4 @@
-//! The definition of a kind of field: its name, its numbers, and the solid that the engine evaluates.
+//! The definition of a kind of field: its name, its numbers, and the solid that the raymarcher evaluates.
 
 use core::fmt;
 
@@ -9,7 +9,7 @@ use crate::fixed::Q32_32;
 
 /// A kind of field, and its text form.
 pub trait Shape: Sized {
-    /// The type of the solid with lengths in field units, which the engine evaluates.
+    /// The type of the solid with lengths in field units, which the raymarcher evaluates.
     type Solid;
     /// The name of the kind: the word before the colon of the text form.
     const NAME: &'static str;
@@ -106,8 +106,8 @@ pub trait FlatSolid {
     fn constants(&self) -> FlatConstants;
 }
 
-/// The constants of a flat solid. Each field has the name of its register in the raymarcher. A constant that the solid does not
-/// use is 0.
+/// The constants of a flat solid. Each constant has the name of its register or register field in the raymarcher, and is 0 if the
+/// solid does not use it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FlatConstants {
     /// [`FlatSolid::CODE`].

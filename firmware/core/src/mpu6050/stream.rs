@@ -12,8 +12,8 @@ use crate::i2c::PeriodicI2c;
 /// Time between the starts of two reads in µs. It is slightly longer than one read takes, and slightly less than half a sample
 /// period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.
 const LOOK: u32 = 480;
-/// Time between the starts of two reads in µs for a chip that stretches the clock. It is slightly less than a sample period, and
-/// gives the same drift as `LOOK`.
+/// Time between the starts of two reads in µs for a chip that stretches the I2C clock. It is slightly less than a sample period,
+/// and gives the same drift as `LOOK`.
 const LONG_LOOK: u32 = 960;
 
 /// Longest time without a new sample that is not an error, in µs.

@@ -46,8 +46,8 @@ pub struct Tilt {
 }
 
 impl Tilt {
-    /// Prepares the correction for an accelerometer with `lsb_per_g` (which saturates to [`LSB_PER_G`]) and a time
-    /// constant in µs.
+    /// Prepares the correction for an accelerometer with `lsb_per_g`, which is limited to the range [`LSB_PER_G`],
+    /// and a time constant in µs.
     pub fn new(lsb_per_g: u32, time_constant: u32) -> Self {
         let one = lsb_per_g.clamp(LSB_PER_G[0], LSB_PER_G[1]);
         Self {

@@ -173,7 +173,7 @@ mod tests {
             window.take(4, 100);
         }
         let says = |number, next, map| Acknowledge { number, next, map };
-        // Frames 1 and 3 have arrived, frame 2 is lost.
+        // Of the sent frames 1 to 3 with four blocks each, frames 1 and 3 have arrived, and frame 2 is lost.
         let fate = window.update(says(3, 4, 0b1111_0000)).expect("possible");
         assert_eq!((fate.arrived, fate.lost, fate.lost_frames), (8, 4, 1));
         assert_eq!(
@@ -186,7 +186,7 @@ mod tests {
         assert!(window.update(says(4, 13, 0)).is_none());
         assert!(window.update(says(4, 12, 1)).is_none());
         assert!(window.update(says(5, 12, 0)).is_none());
-        // The next acknowledgement corrects a damaged acknowledgement that was possible.
+        // An acknowledgement of all blocks, which is wrong but possible, is accepted. The next acknowledgement corrects it.
         assert!(window.update(says(4, 12, 0)).is_some());
         assert!(window.update(says(4, 4, 0b1111_0000)).is_some());
         assert_eq!(
