@@ -356,6 +356,14 @@ fn a_cut_line_ends_both_sides() {
 #[test]
 fn what_was_not_announced_or_does_not_fit_is_refused() {
     let data = some_data(1_000);
+    let check = |scene: Scene, reason| {
+        let outcome = scene.run(&data);
+        assert_eq!(
+            outcome.sender,
+            State::Failed(Failure::AbortedByPeer(reason))
+        );
+        assert_eq!(outcome.receiver, State::Failed(Failure::Aborted(reason)));
+    };
     for announced in [
         Manifest {
             length: 999,
@@ -366,32 +374,22 @@ fn what_was_not_announced_or_does_not_fit_is_refused() {
             ..Manifest::of(&data)
         },
     ] {
-        let outcome = Scene {
-            announced: Some(announced),
+        let announced = Some(announced);
+        check(
+            Scene {
+                announced,
+                ..Scene::default()
+            },
+            Reason::Unannounced,
+        );
+    }
+    let room = 999;
+    check(
+        Scene {
+            room,
             ..Scene::default()
-        }
-        .run(&data);
-        assert_eq!(
-            outcome.sender,
-            State::Failed(Failure::AbortedByPeer(Reason::Unannounced))
-        );
-        assert_eq!(
-            outcome.receiver,
-            State::Failed(Failure::Aborted(Reason::Unannounced))
-        );
-    }
-    let outcome = Scene {
-        room: 999,
-        ..Scene::default()
-    }
-    .run(&data);
-    assert_eq!(
-        outcome.sender,
-        State::Failed(Failure::AbortedByPeer(Reason::TooLong))
-    );
-    assert_eq!(
-        outcome.receiver,
-        State::Failed(Failure::Aborted(Reason::TooLong))
+        },
+        Reason::TooLong,
     );
 }
 
