@@ -5,7 +5,7 @@
 //! in the norm of the field's distances. A cone therefore steps by the distance less t·spread, and no ray of its block
 //! meets a surface before the end of the cone. The depth of this end replaces the near plane for the block.
 
-use glint_core::field::{FRACTION, cropped, magnitude};
+use glint_core::field::{FRACTION, magnitude};
 
 use super::options::FARTHEST;
 use super::prepass::Cones;
@@ -71,9 +71,7 @@ impl FieldSetup {
         let mut t = ray.start;
         let mut steps = 0;
         loop {
-            let point = self.point(ray, t);
-            let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
-            let gone = self.is_gone(ray, &point);
+            let (sample, gone) = self.evaluate(ray, t);
             let width = ((u64::from(t) * u64::from(*spread)) >> 16) as u32 + cut;
             let wide = width >> (4 + FRACTION) != 0;
             let threshold = i64::from(tuning.threshold + width);

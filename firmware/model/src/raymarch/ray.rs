@@ -1,6 +1,6 @@
 //! Rays through a distance field: their start, their march and their end.
 
-use glint_core::field::{FRACTION, Surface, cropped, magnitude};
+use glint_core::field::{FRACTION, Sample, Surface, cropped, magnitude};
 
 use super::options::FARTHEST;
 use super::setup::{Eye, FieldSetup};
@@ -188,9 +188,7 @@ impl FieldSetup {
         let mut t = ray.start;
         let mut steps = 0;
         loop {
-            let point = self.point(ray, t);
-            let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
-            let gone = self.is_gone(ray, &point);
+            let (sample, gone) = self.evaluate(ray, t);
             let threshold = (tuning.threshold + (t >> tuning.footprint)) << self.patience(steps);
             steps += 1;
             let next = t + sample.distance.max(0) as u32;
@@ -240,8 +238,16 @@ impl FieldSetup {
         self.tuning.cap << if self.is_round() { 2 } else { 0 }
     }
 
+    /// Evaluates the field at the ray's point at t. Returns the sample, and whether the ray has left the field's bounds for
+    /// good.
+    pub(super) fn evaluate(&self, ray: &Ray, t: u32) -> (Sample, bool) {
+        let point = self.point(ray, t);
+        let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
+        (sample, self.is_gone(ray, &point))
+    }
+
     /// Whether a ray is outside of the bounding box and moves away from it.
-    pub(super) fn is_gone(&self, ray: &Ray, point: &[i32; 3]) -> bool {
+    fn is_gone(&self, ray: &Ray, point: &[i32; 3]) -> bool {
         (0..3).any(|i| {
             magnitude(point[i]) > self.bounds[i] && (point[i] < 0) == (ray.direction[i] < 0)
         })
