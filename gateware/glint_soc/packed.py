@@ -116,7 +116,7 @@ class Package:
             "`default_nettype none",
             "",
             f"package {self.name};",
-            "    // Each module uses some.",
+            "    // A module uses only some of these constants.",
             "    /* verilator lint_off UNUSEDPARAM */",
             "\n\n".join(parts),
             "    /* verilator lint_on UNUSEDPARAM */",

@@ -1877,7 +1877,7 @@ pub mod i2c {
         /// Every value, in the order of the gateware's description.
         pub const ALL: [Self; 4] = [Self::Start, Self::Write, Self::Read, Self::Stop];
 
-        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
         #[inline]
         #[must_use]
         pub const fn from_bits(bits: u8) -> Self {
@@ -3812,7 +3812,7 @@ pub mod triangle {
         /// Every value, in the order of the gateware's description.
         pub const ALL: [Self; 8] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled];
 
-        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
         #[inline]
         #[must_use]
         pub const fn from_bits(bits: u8) -> Self {
@@ -5246,7 +5246,7 @@ pub mod raymarch {
         /// Every value, in the order of the gateware's description.
         pub const ALL: [Self; 4] = [Self::None, Self::Field, Self::Stereo, Self::Prepass];
 
-        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
         #[inline]
         #[must_use]
         pub const fn from_bits(bits: u8) -> Self {

@@ -4,7 +4,7 @@
 `default_nettype none
 
 package i2c_registers_pkg;
-    // Each module uses some.
+    // A module uses only some of these constants.
     /* verilator lint_off UNUSEDPARAM */
     // Operations of a command.
     localparam logic [1:0] OPERATION_START = 2'd0;

@@ -4,7 +4,7 @@
 `default_nettype none
 
 package raymarch_registers_pkg;
-    // Each module uses some.
+    // A module uses only some of these constants.
     /* verilator lint_off UNUSEDPARAM */
     // The solid: width of the fillet, u5.12, 0 without a fillet, and 1 / (2 * width), u1.16; whether the flat field is in
     // union with spheres; whether the field has spheres, whether they repeat, and the number of the last one; kind of the flat

@@ -4,7 +4,7 @@
 `default_nettype none
 
 package triangle_registers_pkg;
-    // Each module uses some.
+    // A module uses only some of these constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned ADDRESS_BITS = 23;
     localparam int unsigned COUNT_BITS = 20;

@@ -143,7 +143,7 @@ pub fn write(out: &mut String, enumeration: &Enumeration) -> fmt::Result {
         write!(
             out,
             "
-        /// The value of a field's `bits`; bits beyond the field are not looked at.
+        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
         #[inline]
         #[must_use]
         pub const fn from_bits(bits: u8) -> Self {{
