@@ -349,6 +349,7 @@ mod tests {
         // The nearest depth is 3: 3·262140 has 20 bits, and the lowest three of them are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
         // The nearest depth is 2 − 2^-13: (2 − 2^-13)·262140 = 524248.0005 has 19 bits before the point, which end in two zeros.
+        // So only the fraction is truncated.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);
         assert_eq!(CAMERA.depth_scale(9.0), 262_140.0);
     }

@@ -72,9 +72,10 @@ fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
 /// Each level divides a cube into 27 cubes of side s, whose centres have the coordinates 0 and ±s. The point is mirrored so
 /// that all its coordinates are positive. Then it is expressed relative to the centre of the corner cube at (s, s, s), with
 /// each axis reversed, so that the middle of the divided cube is at (s, s, s). Of the three cubes that are in the middle along
-/// one axis, only the cube along the largest coordinate can be the nearest. The cubes that are in the middle along two or
-/// three axes are holes of the sponge. Each step keeps lengths on either side of a fold and is continuous across the
-/// fold. So the mapped point's distance changes by at most the length by which the original point moves.
+/// one axis, only the cube along the largest coordinate can be the nearest. So this coordinate is mirrored or shifted such that
+/// the nearer one of this cube and the corner cube has its centre at the origin. The cubes that are in the middle along two or
+/// three axes are holes of the sponge. Each step (a fold) keeps lengths on either side of a plane and is continuous across the
+/// plane. So the mapped point's distance changes by at most the length by which the original point moves.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);

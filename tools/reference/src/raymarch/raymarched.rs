@@ -23,7 +23,8 @@ pub struct RenderedRay {
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
     pub steps: u32,
-    /// Number of evaluations by the cones of the prepass that were marched just before the ray.
+    /// Number of evaluations by the cones that were marched just before the ray. The prepass marches one cone for each block of
+    /// pixels.
     pub cones: u64,
 }
 
@@ -152,7 +153,7 @@ fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
 }
 
 impl Field {
-    /// Converts a field as the engine describes it to the reference's solid with the same numbers.
+    /// Converts `scene`, a field as `glint_core` describes it, to the reference's solid with the same numbers.
     pub fn of(scene: &Scene) -> Self {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
@@ -232,11 +233,11 @@ pub struct Subject {
     pub size: (u32, u32),
     /// The camera, with numbers that a view holds exactly.
     pub camera: Camera,
-    /// The field, as the reference describes it.
+    /// The field, as this crate (the reference) describes it.
     pub field: Field,
-    /// The reference picture, up to the default far limit.
+    /// The reference picture, with hits up to the default far limit of the model's rays.
     pub expected: Vec<Expected>,
-    /// The field, as the engine describes it.
+    /// The field, as `glint_core` describes it.
     pub parsed: Scene,
     view: View,
 }
@@ -340,7 +341,7 @@ pub struct Measured {
     pub coded: Option<Quantiles>,
     /// Number of evaluations of the field by all rays and cones.
     pub evaluations: u64,
-    /// Number of evaluations by cones alone.
+    /// Number of evaluations by the cones of the prepass alone (one cone for each block of pixels).
     pub cones: u64,
     /// Largest number of evaluations by a single ray.
     pub most: u32,
@@ -362,7 +363,7 @@ impl Measured {
         }
     }
 
-    /// Returns the mean number of evaluations per ray, including the evaluations by cones.
+    /// Returns the mean number of evaluations per ray, including the evaluations by the cones of the prepass.
     pub fn cost(&self) -> f64 {
         self.evaluations as f64 / self.accuracy.rays.max(1) as f64
     }

@@ -5,8 +5,8 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's module, built with all kinds of fields. This bench opens each band of the picture immediately, and accepts
-/// each pixel immediately.
+/// The raymarcher's SystemVerilog module, built with all kinds of fields. Nothing makes it wait: it may draw each band (strip of
+/// lines) of the picture at once, and each pixel is accepted at once.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
@@ -25,7 +25,7 @@ pub struct Taken {
 }
 
 impl Raymarcher {
-    /// Number of parallel lanes in the built raymarcher.
+    /// Number of lanes (parallel pipelines that evaluate the field) in the built raymarcher.
     pub const LANES: u32 = 2;
 
     /// Makes a raymarcher and resets it.

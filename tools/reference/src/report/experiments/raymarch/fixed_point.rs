@@ -211,7 +211,7 @@ impl FixedPoint {
     }
 }
 
-/// Returns the largest t with 11 integer bits and `fraction` fraction bits.
+/// Returns the largest parameter t of a ray, a number with 11 integer bits and `fraction` fraction bits.
 const fn farthest(fraction: u32) -> u32 {
     (1 << (11 + fraction)) - 1
 }

@@ -48,9 +48,9 @@ pub struct Row {
     pub normal_p99: Option<f64>,
     /// Fraction of unstable pixels, which are close to an edge: a tiny change of the ray changes their result.
     pub unstable: f64,
-    /// Mean number of evaluations per ray, including the evaluations by cones.
+    /// Mean number of evaluations per ray, including the evaluations by the cones of the prepass.
     pub evaluations: f64,
-    /// Number of evaluations by cones, divided by the number of rays.
+    /// Number of evaluations by the cones of the prepass, divided by the number of rays.
     pub evaluations_cones: f64,
     /// Largest number of evaluations by a single ray.
     pub evaluations_max: u32,

@@ -22,7 +22,7 @@ use crate::report::workspace;
 /// A verilated build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
     folder: &'static str,
-    /// Number of parallel lanes of the build's raymarcher.
+    /// Number of lanes (parallel pipelines that evaluate the field) of the build's raymarcher.
     pub lanes: u32,
 }
 
@@ -40,7 +40,7 @@ pub struct Case {
     /// Text form of the field, as typed in the console.
     pub field: &'static str,
     stereo: Option<&'static str>,
-    /// Whether cones are marched before the rays (prepass).
+    /// Whether a prepass marches a cone for each block of pixels before the rays.
     pub prepass: bool,
     /// Width and height in pixels.
     pub size: (u32, u32),
@@ -164,13 +164,13 @@ pub struct Row {
     pub field: String,
     /// Stereo parameters, as typed in the console; `None` for a picture of one eye.
     pub stereo: Option<String>,
-    /// Whether cones are marched before the rays (prepass).
+    /// Whether a prepass marches a cone for each block of pixels before the rays.
     pub prepass: bool,
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Number of parallel lanes of the raymarcher.
+    /// Number of lanes (parallel pipelines that evaluate the field) of the raymarcher.
     pub lanes: u32,
     /// Name of the view.
     pub view: String,

@@ -18,7 +18,7 @@ pub const FACES: [f64; 2] = [0.01, 0.003];
 /// Upper bound of the 99th percentile of the angle between normals on round surfaces, in degrees; there is no goal.
 pub const NORMALS: f64 = 0.3;
 /// Upper bounds of the distance evaluations per ray at 320 × 180. The requirement
-/// makes 60 frames per second possible for two eyes, with two lanes at 81.25 MHz.
+/// makes 60 frames per second possible for two eyes, with two lanes of the raymarcher at 81.25 MHz.
 pub const SMALL_COST: [f64; 2] = [23.5, 11.7];
 /// Upper bounds of the distance evaluations per ray at 1280 × 720.
 pub const LARGE_COST: [f64; 2] = [14.4, 11.5];

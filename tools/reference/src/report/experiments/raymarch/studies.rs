@@ -53,7 +53,7 @@ fn tuned(tuning: Tuning) -> FieldOptions {
 /// Number of field units in one world unit, for the sponge.
 const UNITS: f64 = 40.5;
 
-/// Returns Glint's method of marching for f64, with another threshold. `threshold` is in field units with 12 fraction bits.
+/// Returns Glint's method of marching, computed in f64, with this `threshold` in field units with 12 fraction bits.
 fn in_f64(threshold: u32) -> Method {
     Method {
         distance: Norm::Maximum,
