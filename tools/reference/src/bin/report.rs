@@ -36,7 +36,7 @@ enum Page {
         /// Leave out the CPU's frames, which take most of the time
         #[arg(long)]
         quick: bool,
-        /// Measure only scenes whose name contains TEXT; implies the default folder of --quick
+        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
         #[command(flatten)]

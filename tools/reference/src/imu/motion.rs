@@ -49,9 +49,9 @@ pub enum Motion {
         /// Frequency of the square wave, in Hz.
         frequency: f64,
     },
-    /// Hand motion about a wrist 10 cm away, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
+    /// Hand motion about the wrist, which is 10 cm away from the sensor, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
     Hand,
-    /// Hand motion about a wrist 10 cm away, mostly up and down.
+    /// Hand motion about the wrist, which is 10 cm away from the sensor, mostly up and down.
     Nod,
     /// Motion of a walking person: accelerations of ±3 m/s² up and down and of ±1.5 m/s²
     /// fore and aft, both at 2 Hz, and of 10 m/s² upwards for 50 ms at every footstep.

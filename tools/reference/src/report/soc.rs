@@ -18,8 +18,8 @@ pub struct BackToBack {
 }
 
 impl BackToBack {
-    /// Draws the scene that the renderer shows many times, back to back.
-    /// `kernel` is the engine's name in the console command `bench`.
+    /// Draws the renderer's current scene many times, back to back, by the console command `bench KERNEL`. `kernel` is
+    /// `triangle` or `field`.
     ///
     /// # Errors
     /// When the console reports an error, or its reply has no line for this kernel.

@@ -37,7 +37,8 @@ pub struct Kernel {
     show: Box<dyn Fn(u64) -> String + Sync>,
 }
 
-/// Measures the steps `stride·i` for all i in a range, and adds their errors to the statistics.
+/// Measures a kernel at its steps with the numbers `stride·i`, for all i in a range, and adds the errors to statistics. The
+/// arguments are the range, the stride and the statistics.
 type Run = dyn Fn(Range<u64>, u64, &mut Statistics) + Sync;
 
 impl Kernel {
@@ -65,17 +66,17 @@ impl Kernel {
         }
     }
 
-    /// Number of steps that cover all inputs.
+    /// Number of steps of the measurement that cover all inputs. A step covers one or several inputs.
     pub fn steps(&self) -> u64 {
         self.steps
     }
 
-    /// Measures the steps `stride·i` for all i in `range`, and adds their errors to `statistics`.
+    /// Measures the kernel at its steps with the numbers `stride·i`, for all i in `range`, and adds the errors to `statistics`.
     pub fn run(&self, range: Range<u64>, stride: u64, statistics: &mut Statistics) {
         (self.run)(range, stride, statistics);
     }
 
-    /// Describes the input with the number `number`, in the numbering of `Statistics::worst_input`.
+    /// Describes an input as text. `number` is the input's bits as an integer.
     pub fn show_input(&self, number: u64) -> String {
         (self.show)(number)
     }
@@ -151,7 +152,7 @@ pub fn kernels() -> Vec<Kernel> {
 
 const GLINT: &str = "glint: table of 64 and Taylor";
 
-/// The choice of inputs to measure: every n-th input of a format, and the description of this choice in words.
+/// The choice of inputs to measure: a number n, for every n-th input of a format, and the description of this choice in words.
 type Inputs = (u32, &'static str);
 
 const SHORT_PHASES: Inputs = (1 << 16, "all 2^16 phases of 16 bits");

@@ -37,7 +37,7 @@ pub struct Statistics {
     pub inputs: u64,
     /// The largest error of an output.
     pub max: f64,
-    /// Number of an input with the largest error, as `Kernel::show_input` numbers the inputs.
+    /// Number of an input with the largest error: the input's bits as an integer.
     pub worst_input: u64,
     /// Whether the sine or the cosine has the largest error.
     pub worst_function: Function,

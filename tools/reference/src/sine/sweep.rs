@@ -7,8 +7,8 @@ use std::thread;
 use super::kernels::Kernel;
 use super::statistics::Statistics;
 
-/// Number of steps in a part, which one core measures at a time. The results of the parts are added in order of their numbers,
-/// so that the rounded sum is reproducible.
+/// Number of a kernel's steps in a part of a measurement. A core measures one part at a time. The results of the parts are added
+/// in the order of the parts, so that the rounded sum is reproducible.
 const PART: u64 = 1 << 18;
 
 /// Measures the errors of `kernel` in every `stride`-th of its steps. After

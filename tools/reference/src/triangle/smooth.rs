@@ -14,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::errors::Errors;
 
-/// Number of steps of the red, green and blue channel that a light of 1 spans. These steps are the unit of all colours here.
+/// Number of steps of the red, green and blue channel that a light of 1 spans. All colours in this module are in these steps.
 const RANGES: [f64; 3] = [32.0, 64.0, 32.0];
 
 /// A triangle on the screen, whose light is interpolated between the vertices in f64.

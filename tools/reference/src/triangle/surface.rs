@@ -207,7 +207,8 @@ pub fn visible_surfaces(
     pixels.iter().map(Candidates::decide).collect()
 }
 
-/// The nearest surface of a pixel so far, and the largest 1/z that any other surface may have there.
+/// The nearest surface of a pixel so far (index of the triangle, its 1/z at the pixel, the largest slope of its 1/z, and the
+/// largest error of its 1/z), and the largest 1/z that any other surface may have there.
 #[derive(Clone)]
 struct Candidates {
     nearest: Option<(usize, f64, f64, f64)>,

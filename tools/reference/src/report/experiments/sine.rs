@@ -11,8 +11,8 @@ use crate::sine::statistics::Statistics;
 use crate::sine::sweep::sweep;
 use crate::sine::truth::reference_error;
 
-/// Approximate number of steps of each kernel that a quick run measures. The stride
-/// between these steps is odd, so that the inputs have all values of the low bits.
+/// Approximate number of steps (one or several inputs each, see `Kernel`) that a quick run measures for each kernel. Only every
+/// n-th step is measured, where n is odd, so that the measured inputs have all values of the low bits.
 const SAMPLE: u64 = 1 << 15;
 
 /// Errors and cycles of a kernel in one configuration: a line of `sine.csv`. Errors are absolute.
@@ -46,7 +46,8 @@ pub struct Row {
     pub argmax: String,
     /// Largest value of |sin² + cos² − 1|, from the two outputs of an input.
     pub max_norm: f64,
-    /// Number of phases at which a symmetry of the circle does not hold bit for bit. `None` if the inputs are not phases.
+    /// Number of phases (inputs as fractions of a turn) at which a symmetry of the circle does not hold bit for bit. `None` if
+    /// the inputs are not phases.
     pub asymmetric: Option<u64>,
     /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,

@@ -21,7 +21,8 @@ use crate::report::soc::{self, BackToBack, CLOCKS};
 /// The requirement on the speed at which a scene is drawn. Most kinds of requirement also have a goal beyond it.
 #[derive(Clone, Copy)]
 enum Target {
-    /// Lower bound of the pixels per clock, over the clocks in which the rasterizer walks (counter `cycles_walking`).
+    /// Lower bound of the pixels per clock, over the clocks in which the rasterizer is at pixels of a triangle (counter
+    /// `cycles_walking`).
     Fill(f64),
     /// Lower bound and goal of the pixels per clock, for frames that are drawn back to back.
     Sustained(f64, f64),
@@ -102,7 +103,8 @@ fn named(name: &str) -> Result<Vec<u8>> {
         .0)
 }
 
-/// Makes a mesh of one triangle that covers the whole screen and stays inside the guard band, seen from distance 1.
+/// Makes a mesh of one triangle. Seen from distance 1, it covers the whole screen and stays inside the guard band, so it is not
+/// clipped.
 fn screen() -> Result<Vec<u8>> {
     let mut polygons = Polygons::default();
     let corners = [[-1.09, -1.0, -0.4], [1.09, -1.0, -0.4], [0.0, -1.0, 1.2]];
@@ -223,7 +225,7 @@ fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenan
         "{}: the engine's frame is not the model's",
         case.name
     );
-    // The engine writes only words that may differ from the previous frame in the same frame buffer. So
+    // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So
     // each of the two frame buffers receives the frame once before the frame is measured.
     renderer.look(&frame.view)?;
     let alone = renderer.look(&frame.view)?;
