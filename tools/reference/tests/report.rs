@@ -131,7 +131,7 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
     }
 }
 
-/// Measures again the rows of sine.csv that take less than a second.
+/// Measures the rows of sine.csv that take less than a second again, and compares the errors with the committed ones.
 #[test]
 fn the_committed_errors_of_sines_hold() {
     let rows: Vec<sine::Row> = committed("sine.csv");
@@ -155,8 +155,8 @@ fn the_committed_errors_of_sines_hold() {
     assert!(recomputed >= 2);
 }
 
-/// Counts the distance evaluations of the sponge's small frames again. The cycles of
-/// these frames are not measured again, because that needs the whole SoC.
+/// Counts the distance evaluations of the sponge's small frames in raymarch-rates.csv again, and compares them with the committed
+/// ones. The cycles of these frames are not measured again, because that needs the whole SoC.
 #[test]
 fn the_committed_frames_a_second_are_of_these_frames() {
     let rows: Vec<rates::Row> = committed("raymarch-rates.csv");
@@ -190,7 +190,8 @@ fn the_committed_frames_a_second_are_of_these_frames() {
     assert_eq!(counted, 4 * views::path().len());
 }
 
-/// Draws the views again with Glint's configuration on the verilated raymarcher, and compares the cycles.
+/// Draws the views of the sponge again with Glint's configuration on the verilated raymarcher, and compares the cycles with the
+/// committed ones in raymarch-cap.csv.
 #[test]
 fn the_committed_cycles_of_pictures_hold() {
     let size = (320, 180);
@@ -205,14 +206,15 @@ fn the_committed_cycles_of_pictures_hold() {
     let shipped = rows.iter().find(|row| row.shipped);
     let cycles = shipped.and_then(|row| row.cycles).expect("Glint's cycles");
     let now = clocks as f64 / subjects.len() as f64;
-    // The picture before decides which lane gets the first ray of a picture. This can change the cycles of the picture by one.
+    // The previous picture decides which of the raymarcher's two lanes gets the first ray of a picture. This can change the
+    // cycles of the picture by one.
     assert!(
         (cycles - now).abs() <= 1.0,
         "raymarch-cap.csv: {cycles} cycles in the table and {now} now: run `cargo xtask report raymarch`"
     );
 }
 
-/// Draws the small pictures of raymarch.csv again, and compares their errors.
+/// Draws the small pictures of raymarch.csv again, and compares their errors with the committed ones.
 #[test]
 fn the_committed_pictures_of_fields_hold() {
     let rows: Vec<pictures::Row> = committed("raymarch.csv");
@@ -260,7 +262,8 @@ fn the_committed_pictures_of_fields_hold() {
     }
 }
 
-/// Integrates the motions of imu-methods.csv (tumble and coning) again, at two rates with few samples.
+/// Integrates the motions of imu-methods.csv (tumble and coning) again, at two low sample rates, and compares the errors of the
+/// attitude with the committed ones.
 #[test]
 fn the_committed_errors_of_attitudes_hold() {
     let rows: Vec<MethodTrial> = committed("imu-methods.csv");

@@ -74,7 +74,7 @@ struct Subject {
 }
 
 /// Distance in pixels from the middle of the picture to each border of llvmpipe's viewport. The viewport is larger than the
-/// model's guard band, so llvmpipe clips only triangles that the model clips too.
+/// model's guard band (the positions that need no clipping), so llvmpipe clips only triangles that the model clips too.
 const REACH: u32 = 2400;
 
 /// Converts a point of the world to clip coordinates. x/w and y/w are −1 and 1 at the borders of the viewport, and the near plane

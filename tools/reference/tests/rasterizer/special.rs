@@ -72,7 +72,7 @@ fn slivers_a_thousand_times_longer_than_wide() {
     for i in (1..40).step_by(3) {
         let along = [0.9, 0.0, 0.02 * f64::from(i) - 0.4];
         let back = along.map(|x: f64| -x);
-        // In x and z, the third corner is 1 to 40 steps of Q2.14 away from the long edge, at its middle or one of its ends.
+        // In x and z alone, the third corner is 1 to 37 steps of Q2.14 above the long edge, at its middle or one of its ends.
         for (place, depth) in [(0.0, 0.0), (0.9, 1.0), (-0.9, -1.0)] {
             let off = [place, depth, place * along[2] / 0.9 + f64::from(i) * STEP];
             triangles.push([along, back, off]);
@@ -85,8 +85,8 @@ fn slivers_a_thousand_times_longer_than_wide() {
 #[test]
 fn off_the_screen_on_every_side() {
     let mut triangles = Vec::new();
-    // Triangles beside the picture, some of them beyond the guard band. The last triangle, below, is between the
-    // eye and the near plane.
+    // Triangles beside the picture, some of them so far away that they are clipped (beyond the guard band). The triangle that is
+    // added last is between the eye and the near plane.
     for far in [1.2, 1.9] {
         for [x, z] in [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [1.0, 1.0]] {
             let middle = [x * far, -0.5, z * far];

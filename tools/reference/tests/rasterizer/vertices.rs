@@ -13,8 +13,8 @@ use crate::cameras::{around, log_range, view};
 use crate::renderer::Renderer;
 use crate::scenes::{LARGE, ONE, SMALL, Scene};
 
-/// Largest distances of snapped vertices from their projection in f64, in steps of 1/256 pixel, and the largest error of their
-/// depth, in steps of 1/64 depth code.
+/// Number of compared vertices, largest distances of these snapped vertices from their projection in f64, in steps of 1/256
+/// pixel, and the largest error of their depth, in steps of 1/64 depth code.
 #[derive(Clone, Copy, Debug, Default)]
 struct Worst {
     vertices: u64,
@@ -44,7 +44,8 @@ fn offset(snapped: ScreenVertex, exact: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Projects random vertices through random cameras and compares those that are in the guard band.
+/// Projects random vertices through random cameras, by the model and in f64, and compares the vertices that are in the guard
+/// band (the positions that need no clipping).
 ///
 /// `limit` is the largest allowed distance from the projection through the unrounded camera, in steps of 1/256 pixel.
 fn compare(size: Size, seeds: std::ops::Range<u64>, limit: f64) -> Worst {
