@@ -11,8 +11,8 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // Upper bound on the clocks with a ready consumer from the entry of a ray until its end is taken: two rounds of 9 slots, then
-    // the wait in the FIFO behind the end of the other ray.
+    // PLACES: number of ends for which the lane has room. WITHIN: upper bound on the clocks with a ready consumer from the entry
+    // of a ray until its end is taken: two rounds of 9 clocks, then the wait in the FIFO behind the end of the other ray.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;

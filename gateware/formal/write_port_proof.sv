@@ -39,7 +39,7 @@ module write_port_proof (
     );
 
     // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` counts those in which the port holds
-    // words and `hurry` is high, `refused` those in which the port accepts no word.
+    // words and must not wait for a full burst (`hurry` is high), `refused` those in which the port accepts no word.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

@@ -26,7 +26,8 @@ class Module:
         return {self.top: {}, **self.variants}
 
 
-# Video timing of a small picture: each memory word has the same time as at 1280x720, and a frame takes a 200th of the time.
+# Video timing of a small picture: a frame takes about 1/200 of the time of one at 1280x720, but in the active part of a line
+# a memory word lasts as many pixel clocks.
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
@@ -42,7 +43,7 @@ MODULES = [
     ),
     Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}}),
-    # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is half a millisecond.
+    # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is 2^15 clocks, 0.4 ms.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
     Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}}),
     Module(top="binner"),

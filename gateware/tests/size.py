@@ -14,7 +14,7 @@ SOC = "soc"
 _SOC_FILES = BUILD.parent / "urbana" / "gateware"
 _FOLDER = BUILD.parent / "size"
 
-# The cells of each resource, as a pattern of their names. Other cells are counted by name.
+# For each resource, a regular expression for the names of its cells. Cells with any other name are counted per name.
 _RESOURCES = {"logic": r"LUT[1-6]|INV", "srl": r"SRL16E|SRLC32E", "lutram": r"RAM\d+[MX]\w*", "ff": r"(FD[RSCP]|LD[CP])E(_1)?",
               "dsp48": r"DSP48E1", "ramb36": r"RAMB36E1", "ramb18": r"RAMB18E1", "carry4": r"CARRY4"}
 

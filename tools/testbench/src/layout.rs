@@ -106,7 +106,7 @@ pub enum LayoutError {
         path: String,
         /// The value.
         value: String,
-        /// Bits of the part.
+        /// Number of bits of the part.
         width: usize,
     },
     /// A name that is not a value of an enumeration.

@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file is missing, is not a library, or lacks a function.
+    /// The file is missing, is not a library, or lacks a function that was looked up.
     #[error("{}: {source}", path.display())]
     Library {
         /// The file.
@@ -28,7 +28,7 @@ pub enum LoadError {
         /// The loader's message.
         source: libloading::Error,
     },
-    /// The library was built with another version of the interface.
+    /// The library was built with another version of the harness, the code that contains its C interface.
     #[error("{}: version {found} of the harness, expected {expected}", path.display())]
     Version {
         /// The file.

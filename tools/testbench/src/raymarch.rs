@@ -13,7 +13,7 @@ pub struct Place {
     pub odd: bool,
     /// Line in the band.
     pub line: u32,
-    /// Column.
+    /// Column in the picture.
     pub column: u32,
     /// Eye: 0 is the left eye or the only one, 1 the right eye.
     pub eye: usize,
@@ -106,17 +106,17 @@ pub struct End {
     pub state: Kind,
     /// Whether the surface is a sphere.
     pub round: bool,
-    /// Number of the sphere if `round`, else axis and sign of the face.
+    /// Number of the sphere if `round`, else axis and sign of the flat face.
     pub surface: u64,
-    /// Axis and sign of the face of a fillet.
+    /// On a fillet, which joins a sphere and a flat face: axis and sign of this face.
     pub face: u64,
-    /// Share of the sphere in a fillet, u0.8.
+    /// Weight of the sphere in the surface, u0.8: 0 for a face alone, 255 for a sphere alone, between them on a fillet.
     pub share: u64,
     /// Distance along the ray, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
     pub t: u64,
     /// Number of evaluations of the field; 255 stands for 255 or more.
     pub steps: u64,
-    /// Length of the ray's direction.
+    /// Length of the ray's direction, as an index into the table of inverse lengths.
     pub length: u64,
     /// Distance of the face from the point at `t` (*gap* in docs/formats.md).
     pub gap: u64,
@@ -383,7 +383,7 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
 pub struct Pixel {
     /// Eye: 0 is the left eye or the only one, 1 the right eye.
     pub eye: u64,
-    /// Row of the band buffer.
+    /// Row (address) of the group in the band buffer.
     pub row: u64,
     /// Line in the band.
     pub line: u64,
@@ -391,7 +391,7 @@ pub struct Pixel {
     pub column: u64,
     /// Mask of the group's eight pixels; only the bit of this pixel is set.
     pub mask: u64,
-    /// Depth code.
+    /// Depth code of the pixel; a larger one is nearer.
     pub code: u64,
     /// RGB565 colour; with two eyes, the luminance in both bytes.
     pub colour: u64,

@@ -3,7 +3,7 @@
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Clocks of a phase (part of a bit on the bus) at 81.25 MHz, as in the SoC.
+/// Clocks of a phase, a third of a bit on the bus, at 81.25 MHz as in the SoC.
 const PHASE: u64 = 68;
 /// Longest clock stretching that the tested variant of the engine accepts, in clocks.
 const PATIENCE: u64 = 1 << 15;
@@ -181,7 +181,8 @@ impl Bench {
         self.failure()
     }
 
-    /// Makes the engine run `commands` every `period` clocks (a round), with one event per `batch` rounds.
+    /// Makes the I2C engine run the transaction `commands` every `period` clocks. Each run is a round; the output `ended`
+    /// pulses once per `batch` rounds.
     fn repeat(&mut self, commands: &[u32], period: u64, batch: u64) {
         let [repeats, clocks, rounds] = self.ports.rounds;
         self.module.set(clocks, period - 1);
@@ -277,7 +278,8 @@ fn a_round_that_is_not_over_in_time_is_an_error() {
     bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
     bench.starts(3 * 34_000);
     assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 1));
-    // No received byte is taken. Nine rounds receive 15 bytes each, but the queue has room for only 129 bytes.
+    // The test bench takes no received byte. Nine rounds receive 15 bytes each, but the queue of received bytes has room for
+    // only 129, so the ninth round does not end in time.
     let mut bench = Bench::new(None);
     bench.listens = false;
     bench.repeat(&transfer(&[0x3a], 15), 39_000, 1);

@@ -5,7 +5,7 @@ mod program;
 use litex_pac::{buttons, leds, switches};
 use virtual_board::VirtualBoard;
 
-/// Address of the word in DDR3 that the program reads or writes; its row holds no other data of the program.
+/// Address of the word in DDR3 that the program reads or writes. The DDR3 row of this word holds no other data of the program.
 const WORD: u32 = 0x4012_3450;
 
 /// Upper bound on the cycles of one round of the program's loop.
@@ -54,8 +54,9 @@ fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
 #[test]
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
-    // The many writes meet every phase of the program's rounds. In 16 rounds of 32 the program displaces the word from
-    // the cache: old data from the last fill of these rounds would stay in the cache for the next 16 rounds.
+    // The many writes meet the program at every point of its loop. In 16 of 32 rounds of the loop, the program displaces the
+    // word from the cache and loads it again. If such a load brought data from before a write, the LEDs would go on to show
+    // them, because the word then stays in the cache for 16 rounds.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
         board.ddr_write(WORD, &[value as u8]).expect("main RAM");

@@ -80,8 +80,8 @@ fn random_groups_in_many_bands_with_stalls() {
         println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
-        // All bands have groups for both eyes, so the groups of the next band may follow the end of a band at once. A group
-        // that is taken just before the end of a band belongs to that band.
+        // All groups of this test are for both eyes (`halves` is 3), so the groups of the next band may follow the end of a
+        // band at once. A group that is taken just before the end of a band belongs to that band.
         let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
@@ -155,7 +155,8 @@ fn whole_bands_leave_nothing_to_the_next() {
     bench.finish();
 }
 
-/// Draws groups at all four corners of the largest bands, at the top and at the bottom of the picture.
+/// Draws groups at all four corners of the largest bands, at the top and at the bottom of the picture. In each line, a flush
+/// must write only the words from the first to the last group that was drawn for this flush or for the line's previous one.
 #[test]
 fn only_pixels_drawn_now_or_last_are_flushed() {
     let mut bench = Bench::ready(11, 0.0, 0.1);
@@ -173,7 +174,8 @@ fn only_pixels_drawn_now_or_last_are_flushed() {
             bench.draw([], *band);
         }
         let last = lines * stride - 1;
-        // Each case draws two rows of the band buffer (groups), mostly at corners: in the first and in the last line.
+        // For each case, the addresses of two groups of pixels in the band buffer, which has `stride` groups per line. Most are
+        // at the ends of the band's first and last line. Frame buffer 0 gets both groups, frame buffer 1 only the first one.
         for rows in [
             [0, last],
             [stride - 1, last + 1 - stride],
@@ -297,8 +299,8 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Per case: the number of drawn words in every n-th line, the number n, and the clocks of the flush if the previous
-    // frame was the same.
+    // Per case: the number of drawn words in every n-th line, the number n, and the clocks of the flush, without its start
+    // and end, if the same words were drawn in the previous frame.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)

@@ -1,4 +1,4 @@
-//! Tests of whole frames of the raymarcher: every pixel comes once, equal to the model's, while its band is open.
+//! Tests of whole frames of the raymarcher: every pixel comes once, equal to the model's, while `band_open` is high for its band.
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
@@ -94,7 +94,8 @@ impl Bench {
         self.port("size", u64::from(setup.width / 640));
     }
 
-    /// Draws a frame. With `hurry`, bands open immediately and no stream stalls.
+    /// Draws a frame and compares its pixels with the model's. With `hurry`, `band_open` rises at once for each band, and the
+    /// output stream does not stall; else both wait for random times.
     fn draw(
         &mut self,
         random: &mut Random,
@@ -169,7 +170,7 @@ impl Bench {
         stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
-        // The last events (increments of counters) come some clocks after the last pixel; then there are none.
+        // The last events (increments of counters) come up to four clocks after the last pixel; then all are 0.
         self.clocks(4);
         let events = self.module.port("events");
         assert_eq!(

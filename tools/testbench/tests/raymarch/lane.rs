@@ -24,7 +24,7 @@ struct Sent {
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
-    // Places repeat after two bands, so only one ray is kept for each place.
+    // A place has the band's number modulo 2 only, so rays of different bands can have the same place; one of them is kept.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;

@@ -58,8 +58,8 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns fields of all kinds: those of the lists above, an example of each kind, and random fields, some of which have
-/// values at the ends of their ranges.
+/// Returns fields of all kinds: those of `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each kind, and random
+/// fields, some of which have values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
@@ -144,7 +144,7 @@ pub fn lights(random: &mut Random) -> Lights {
     }
 }
 
-/// Makes the frame constants of a view along the largest tunnel of the sponge.
+/// Makes the frame constants of a view along the largest tunnel of the Menger sponge.
 pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let (eye, target) = ([0.0625, -0.8125, 0.09375], [-0.125, 0.9375, 0.03125]);
     let view = Camera::looking(eye, target, 0.9, 0.01).rounded();

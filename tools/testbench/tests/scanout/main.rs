@@ -1,7 +1,8 @@
 //! Tests of scan-out with two clocks, a memory of any timing and a monitor; the test bench checks every cycle and every pixel.
 //!
 //! The module `scanout` has the video timing of the SoC, CEA-861 1280×720. The module `scanout_small` has frames of a few
-//! thousand clocks, with the same time per memory word, so that thousands of frames fit in a test.
+//! thousand clocks, so that thousands of frames fit in a test; in the active part of a line, a memory word lasts as many
+//! pixel clocks as in `scanout`.
 
 mod bench;
 mod memory;

@@ -26,7 +26,8 @@ impl Raster {
         v_back: 20,
     };
 
-    /// The timing of the module `scanout_small`: a frame takes about a 200th of the time, with the same time per memory word.
+    /// The timing of the module `scanout_small`: a frame takes about 1/200 of the time of one of `scanout`, but in the active
+    /// part of a line a memory word lasts as many pixel clocks.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,

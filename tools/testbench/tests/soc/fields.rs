@@ -156,7 +156,8 @@ fn compare_picture(
     }
 }
 
-/// Whether the environment variable `GLINT_RTL_FIELDS` asks for all combinations, which take long.
+/// Whether the environment variable `GLINT_RTL_FIELDS` asks for more combinations of fields, cameras and sizes, which take
+/// long.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
@@ -243,8 +244,8 @@ fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     format!("load {length} {crc32:08x}")
 }
 
-/// Draws a mesh that intersects a field, with clipped triangles, light, fog, sky and prepass. With
-/// `GLINT_RTL_FIELDS=all`, also from more cameras, at a second size, and in consecutive frames.
+/// Draws a mesh that intersects a field, with clipped triangles, light, fog, sky and prepass, and compares the pictures with
+/// the model's. With `GLINT_RTL_FIELDS=all`, also draws from more cameras, at a second size, and in consecutive frames.
 #[test]
 fn the_soc_draws_a_mesh_in_a_field() {
     let mut board = board();

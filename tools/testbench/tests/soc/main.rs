@@ -232,7 +232,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let mut drawn = u32::MAX;
 
     for (name, mesh, view, cull) in scenes {
-        // Further views are drawn without depths, so that the engine writes only the changed part of a frame.
+        // Further views are drawn without depths, so that the triangle engine writes only the changed part of a frame.
         let others = if name == "a sphere" {
             ["2,60,100", "3,200,60"].map(view::spherical).to_vec()
         } else {

@@ -13,8 +13,8 @@ use crate::control::passes::{
     RASTER, refusal, regions,
 };
 
-/// Asks for passes with each of their regions of memory at valid and at invalid addresses: for one pass alone, and for both
-/// passes.
+/// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
+/// pass is refused if the region is not wholly in memory or does not begin at a multiple of 16 bytes.
 #[test]
 fn regions_are_wholly_in_memory() {
     let mut bench = Bench::new(1);

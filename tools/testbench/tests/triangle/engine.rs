@@ -158,7 +158,7 @@ fn nothing_new_is_not_written() {
     let mut bench = Bench::new(11, 0.0);
     bench.with_depth = false;
     let nothing = meshes::mesh(&[], 100);
-    // At 1280x720, the rectangle covers 160 pixels, in at most 21 words, of each of 90 lines.
+    // At 1280x720, a `square` covers 160 pixels (20 or 21 words) of each of about 90 lines.
     let square = |x: f64| {
         let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
         let corner = |x, z| at(x, 0.0, z);
@@ -198,7 +198,8 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// When a pass has ended, the engine's clock may stop: no write follows, not even that of the last list lengths.
+/// When a pass has ended, all its words are in memory, even the last lengths of lists. The engine writes nothing
+/// afterwards, so its clock may stop.
 #[test]
 fn all_is_in_memory_when_a_pass_has_ended() {
     for (stalls, mesh) in [0.0, 0.3, 0.6, 0.9].into_iter().flat_map(|stalls| {
@@ -317,7 +318,7 @@ fn frames_end_with_random_memory() {
         let expected = expected(&mesh, &inside(), size, false);
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
         if seed % 4 > 0 {
-            // Keeps the columns of groups, in the bits from 344 on, within the picture, as the engine draws only those.
+            // Keeps the columns of groups, in the bits from 344 on, within the picture; columns outside of it are an error.
             let last = (size.0 / 8 - 1) as u8;
             for descriptor in descriptors.as_chunks_mut::<48>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));

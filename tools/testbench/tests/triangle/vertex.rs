@@ -219,7 +219,8 @@ fn edges() {
 }
 
 /// The camera coordinates of a vertex at the origin are the translation. The tested translations cover mantissas of Z at
-/// both ends of the range of each seed of the reciprocal, and X' (docs/formats.md) on both sides of rounding limits.
+/// both ends of the range of each seed (table entry) of the reciprocal, and X' (docs/formats.md) on both sides of rounding
+/// limits.
 #[test]
 fn mantissas_and_shifts() {
     let mut random = Random(4);

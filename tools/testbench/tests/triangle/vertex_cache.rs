@@ -187,7 +187,7 @@ fn every_chunk_begins_empty() {
     let mut chunks = vec![(0..512).map(|i| [i, i, i]).collect::<Vec<Triangle>>()];
     chunks.extend((1..400).map(|chunk| vec![[chunk * 37 % 512; 3], [chunk * 41 % 512; 3]]));
     bench.check(1, &chunks);
-    // Chunks without a triangle also take an epoch each.
+    // A chunk without a triangle also takes an epoch, the time between two clears of the cache.
     for _ in 0..100 {
         bench.check(1000, &[vec![]]);
     }
@@ -208,7 +208,7 @@ fn a_triangle_in_three_clocks_when_all_is_there() {
 fn the_latency_of_memory_is_hidden() {
     let mut bench = Bench::new(40, [0.0; 4], 150, 6);
     let apart: Vec<Triangle> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    // The first chunk follows a sweep of the cache, so it is not measured.
+    // Before the first chunk the cache empties all its slots one by one, so this chunk is not measured.
     bench.check(1, &[vec![[0; 3]]]);
     let clocks = bench.check(2, &[apart]);
     assert!(clocks <= 18 * 300 + 200, "{clocks} clocks for 900 misses");

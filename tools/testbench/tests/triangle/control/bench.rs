@@ -17,7 +17,8 @@ pub enum State {
     Runs(u64),
 }
 
-/// Whether the engine can start a pass: it can `Since` a clock, or `Waits` after a cancel until it is ready again.
+/// Whether the engine can start a pass: it can from the clock in `Since` on; with `Waits` it cannot, until the engine is
+/// ready again after a cancel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
@@ -32,7 +33,7 @@ pub struct Bench {
     pub passes: [Pass; 2],
     pub list_shift: u64,
     pub states: [State; 2],
-    /// Expected value of the output `error` of each pass; `kept` has those of the outputs `kept`.
+    /// Expected values of each pass's output `error`; `kept` holds the expected values of each pass's output `kept`.
     pub errors: [u64; 2],
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
@@ -81,7 +82,7 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // Runs one clock in which the engine is ready, because no pass starts before.
+        // Runs one clock in which the engine is ready: no pass can start before such a clock.
         bench.clock(Events::default());
         bench
     }

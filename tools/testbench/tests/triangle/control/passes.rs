@@ -1,4 +1,4 @@
-//! The two passes of the engine: their parameters, their regions of memory, and the errors with which they are refused.
+//! The two passes of the triangle engine: their parameters, their regions of memory, and the errors with which they are refused.
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;

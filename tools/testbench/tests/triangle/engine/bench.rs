@@ -24,8 +24,8 @@ const WORDS: usize = 0x20_0000;
 const LIST_SHIFT: u32 = 11;
 /// Number of words behind a picture that are checked not to change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
-/// Largest number of exceptions (triangles left to the clipper) that the engine may write, and room for descriptors in
-/// units of three words.
+/// Largest number of exceptions (triangles left to the clipper) that the engine may write. There is also room for this number
+/// of descriptors of three words each; a descriptor for smooth shading takes six.
 const LIMIT: u32 = 80_000;
 pub const CLEAR: u16 = 0x1234;
 
