@@ -54,7 +54,8 @@ def main():
     output = arguments.output.resolve()
     builder = Builder(
         soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
-        # Inlines the loop of the serial boot, which would evict itself from the instruction cache otherwise.
+        # Link-time optimisation inlines the calls in the loop of the BIOS's serial boot, so that the loop stays in the
+        # instruction cache.
         bios_lto=True,
         # The vendor tool is run by hand, on a computer where it is installed.
         compile_gateware=False)

@@ -38,7 +38,7 @@ class MemoryBridge(LiteXModule):
 
         # Data of writes wait here from the acceptance of their command until the controller requests them.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", 2)], depth=8)
-        # FIFO with room for both 16-byte words of a line, which the controller sends without back-pressure.
+        # FIFO with room for both 16-byte words of a cache line, which the controller sends without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", _PORT_BITS)], depth=2)
         self.comb += [
             writes.sink.data.eq(bus.dat_w),
@@ -57,7 +57,7 @@ class MemoryBridge(LiteXModule):
         # memory takes its command.
         second = Signal.like(port.cmd.addr)
 
-        # Number of requested words that were not yet taken out of `reads`.
+        # Number of 16-byte words that were requested and not yet taken out of `reads`.
         owed = Signal(max=3)
         asked = Signal()
         taken = Signal()
@@ -100,8 +100,8 @@ class MemoryBridge(LiteXModule):
         fsm.act("SERVE",
             bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
             If(bus.ack,
-                # Takes the word out of `reads` with its last part, or with the end of the burst. After the last requested
-                # word, further words need a new request.
+                # Takes the 16-byte word out of `reads` when the bus gets the last of its 32-bit parts, or when the burst ends.
+                # After the last requested 16-byte word, the bus needs a new request.
                 reads.source.ready.eq(~more | (beat == _WORDS - 1)),
                 If(~more | ((beat == _WORDS - 1) & (owed == 1)),
                     NextState("DROP"),

@@ -176,7 +176,8 @@ class Raymarcher(LiteXModule):
         error = self._status.fields.error
         solid, tuning = self._solid.fields, self._tuning.fields
         write_sphere, number, sphere, lights, (blend_width, blend_inverse) = self._spheres(fields, solid.last_light)
-        # A sponge without levels is an empty field, which a frame of spheres alone selects. So kind 0 is always accepted.
+        # Kind 0, the sponge, is accepted by every build: without levels it is an empty field, which a frame of spheres alone
+        # selects.
         unknown = [solid.kind == number for number, flat in enumerate(FLAT_FIELDS) if number and flat.name not in fields.flat]
         not_built = Signal()
         self.comb += not_built.eq(reduce(or_, unknown, Constant(0)) | (solid.is_round & int(not fields.round)) |

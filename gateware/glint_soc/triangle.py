@@ -13,7 +13,8 @@ from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
 
-# Fields of a group from the raymarcher: one pixel, or the half of a pixel that belongs to one eye.
+# Members of a group from the raymarcher: `halves` is 3 for a pixel, or 1 or 2 for its half of the left or right eye; `row`,
+# `line` and `column` locate eight pixels in the band, and `mask` selects one of them; then its depth code and colour.
 _FIELD_GROUP = [("halves", 2), ("row", 11), ("line", 6), ("column", 8), ("mask", 8), ("code", 18), ("colour", 16)]
 
 _ADDRESS_BITS = 23
@@ -124,7 +125,7 @@ class TriangleEngine(LiteXModule):
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
             CSRField("first", offset=3, description="Draw the first set of lists."),
             CSRField("second", offset=4, description="Draw the second set, in each band after the first."),
-            CSRField("depth", offset=5, description="Write depths too, and the whole frame."),
+            CSRField("depth", offset=5, description="Write the depths as well as the colours. Implies `whole`."),
             CSRField("slot", offset=6, description="Number of the frame buffer: the engine remembers the extents of the last frame in each "
                      "slot."),
             CSRField("whole", offset=7, description="Write all of the frame buffer. Required for the first frame of a buffer, "

@@ -3743,7 +3743,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
 
-        /// `depth`, bit 5: Write depths too, and the whole frame.
+        /// `depth`, bit 5: Write the depths as well as the colours. Implies `whole`.
         #[inline]
         #[must_use]
         pub const fn depth(self) -> bool {

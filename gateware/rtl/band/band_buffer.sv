@@ -90,14 +90,14 @@ module band_buffer #(
     // Number of the colour bank that is drawn; the other bank is flushed.
     logic drawn, closing, swap;
 
-    // Signals between band_pipe, which draws, and the memories.
+    // State of band_pipe, which draws, and its signals to and from the memories.
     logic                open, empty, held;
     logic [ROW_BITS-1:0] draw_read_row, draw_write_row;
     logic [7:0]          draw_lanes, drawn_written;
     logic [1:0]          draw_halves;
     logic [8*18-1:0]     draw_codes, stored_codes;
     logic [8*16-1:0]     draw_colours;
-    // Signals between band_flush, which reads and clears the other bank, and the memories.
+    // State of band_flush, which reads and clears the bank that is not drawn, and its signals to and from the memories.
     logic                flush_idle, flush_reads_depth, flush_waits, flush_clears;
     logic [ROW_BITS-1:0] flush_row, flush_clear_row;
     logic [8*16-1:0]     flushed_colours;

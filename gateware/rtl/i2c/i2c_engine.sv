@@ -65,7 +65,8 @@ module i2c_engine #(
     output logic [2:0]  error,
     // High for one clock at the end of a transaction or of a batch, or at an error.
     output logic        ended,
-    // State of the wires, and their drivers: 0 pulls low, 1 releases.
+    // The wires: `scl` and `sda` are their states after a spike filter, `*_in` are the input pins, and `*_out` the drivers (0
+    // pulls low, 1 releases).
     output logic        scl,
     output logic        sda,
     input  wire         scl_in,
@@ -81,8 +82,8 @@ module i2c_engine #(
     localparam int unsigned PHASE_BITS = $clog2(PHASE);
     localparam logic [3:0]  LAST_CLOCK = 4'd8;
 
-    // States: in IDLE the bus is free; HELD is a wait within a transaction; FALL makes a start condition, RISE a stop
-    // condition; FREE is the bus free time after a stop.
+    // States: in IDLE the bus is free; HELD is a wait within a transaction; SET, HIGH and LOW are phases of a bit; FALL makes a
+    // start condition, RISE a stop condition; FREE is the bus free time after a stop; FAILED follows an error, until `rst`.
     typedef enum logic [3:0] {IDLE, HELD, SET, HIGH, LOW, FALL, RISE, FREE, FAILED} state_t;
     state_t state;
 

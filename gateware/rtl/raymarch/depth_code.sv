@@ -65,8 +65,8 @@ module depth_code (
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
-    // In clock 20 the product K·y is there, to be divided by 2^(22 + shift). A divisor below 2^22 would give a code above the
-    // largest one, so a negative shift saturates the code.
+    // In clock 20 the product mantissa·y is valid. It is then divided by 2^(22 + shift). A divisor below 2^22 would give a code
+    // above the largest one, so a negative shift saturates the code.
     logic signed [42:0] product_20;
     logic [5:0]         lead_19;
     logic signed [7:0]  shift_20;

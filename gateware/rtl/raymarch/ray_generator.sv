@@ -311,7 +311,8 @@ module ray_generator #(
     );
     assign near_21 = near_product[32:10];
 
-    // Clocks 22 and 23 select the largest of these four values of t, the start of the ray.
+    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21, which are those of the
+    // near plane and of the entry into the box along each axis.
     logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin

@@ -120,13 +120,14 @@ module raymarcher #(
 
     // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone stands for a block of 2^`block`
     // by 2^`block` pixels, and `fine` means 160 blocks in a line instead of 80. `cleared` is the depth from which the rays of
-    // block `number` start.
+    // block `number` start; its read advances while `looks` is high.
     logic        cones, fine, generate_rays, looks;
     logic [2:0]  block;
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
 
-    // Last column, last line of a band and last band, counted in blocks for cones and in pixels for rays.
+    // Numbers of the last column, of the last line of a band, and of the last band, from 0. Columns and lines are those of
+    // pixels for rays, and those of blocks for cones; a band of cones has 45 lines of blocks.
     logic [10:0] column_ends;
     logic [5:0]  line_ends, band_ends;
 

@@ -255,8 +255,9 @@ module ring_lane #(
         threshold <= {1'b0, tuning.threshold} + {1'b0, footprint};
     end
 
-    // One clock after the distance (suffix _2): whether the distance is below the threshold, the ray has left the box, or the
-    // limit of evaluations is reached. A clock later: whether t is beyond the far limit, and the state of the ray.
+    // One clock after the distance (suffix _2): whether the distance is below the threshold (`near_2`), the ray has left the
+    // box (`gone_2`), or the step limit is reached (`late_2`). A clock later: whether t is beyond the far limit, and the state
+    // of the ray.
     logic            near_2, gone_2, late_2;
     logic [raymarch_pkg::T_BITS:0] next_2;
     logic [raymarch_pkg::T_BITS-1:0] t_2, taken_t;
@@ -267,8 +268,8 @@ module ring_lane #(
 
     assign beyond = gone_2 || next_2 > {1'b0, tuning.far_limit};
 
-    // Limit of evaluations, which includes the current one, and the doublings of the threshold (`patience`). Fields with
-    // spheres have a larger limit, and a threshold that does not grow.
+    // `late_1` is high if the current evaluation reaches the step limit, `tuning.cap`. `patience` is the number of doublings of
+    // the threshold. Fields with spheres have four times the limit, and a threshold that does not grow.
     logic [1:0] patience;
     logic       late_1;
 

@@ -39,7 +39,8 @@ module scanout_lines #(
     output logic              shown_slot,
     output logic              underflow
 );
-    // The source line that the next output line shows, and the source line after it.
+    // `needed` is the source line that the next output line shows, `next` the source line after it. `group_mask` selects the
+    // bits of `tick_line` that number the output lines of one source line.
     logic [Y_BITS-1:0] needed, next, group_mask;
     logic              in_picture, first_use, next_exists;
 

@@ -147,8 +147,8 @@ module band_entry #(
     logic [2:0]          all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        // LANE_0: the pass in whose clock the product with the edge's value in lane 0 arrives. STEP: the pass that multiplies
-        // the edge's step_x.
+        // LANE_0: the number of the pass in whose clock the edge's value in lane 0 arrives. STEP: the number of the pass that
+        // multiplies the edge's step_x.
         localparam logic [2:0] LANE_0 = k == 2 ? 3'd7 : 3'd3 + 3'(k);
         localparam logic [2:0] STEP   = k == 2 ? 3'd6 : 3'd2 + 3'(k);
         logic at_lane_0, at_lane_7;

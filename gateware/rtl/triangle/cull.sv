@@ -148,7 +148,8 @@ module cull #(
     assign right_last = right - 1'b1;
 
     always_comb begin
-        // `topmost` is the lowest vertex number among vertices of equal height, numbered after the swap of a front face.
+        // `topmost` is the number of the highest vertex on the screen, after vertices 1 and 2 of a front face are swapped.
+        // Among vertices of equal height it is the smallest number.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;

@@ -25,7 +25,7 @@ module descriptor_cache #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter int unsigned LINE_BITS    = 8,
-    // With SMOOTH a descriptor has six words instead of three, which include the planes of light.
+    // A descriptor has three words of 16 bytes, or with SMOOTH six, because the planes of light follow it.
     parameter bit          SMOOTH       = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (

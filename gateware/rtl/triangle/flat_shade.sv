@@ -2,7 +2,8 @@
 // the camera's viewing direction, and − for a front face. The result is colour·intensity, rounded to nearest.
 //
 // One multiplier makes five products: three for N·n, one for blue and green side by side, and one for red. The module `setup`
-// drives `count`, the clock of a beat: the inputs hold during a beat; the colour is valid in clock 10 of the beat.
+// drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
+// inputs hold during a beat; the colour is valid in clock 10 of the beat.
 
 `default_nettype none
 

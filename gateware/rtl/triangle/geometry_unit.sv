@@ -49,9 +49,9 @@ module geometry_unit #(
     output triangle_registers_pkg::results_t results,
     output triangle_registers_pkg::events_t events
 );
-    // Number of bits of a triangle's colour and normal together.
+    // Number of bits of a triangle's colour and normal together, 16 and 3 times 16.
     localparam int unsigned SIDE_BITS = 64;
-    // Number of bits of a triangle_pkg::light_t.
+    // Number of bits of the light of a vertex: a triangle_pkg::light_t, or without SMOOTH one bit in its place, 0.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
     localparam int unsigned VERTEX_BITS = SMOOTH ? 68 + LIGHT_BITS : 68;
     localparam int unsigned FLIGHT_BITS = 8;

@@ -6,10 +6,11 @@
 // floor(E' / |step_x|)) lanes; the quotient comes from three steps of a restoring division. From E' = 2^23 on, which exceeds 7
 // * 2^20, the edge passes in all lanes.
 //
-// The depths of the lanes come from `lane_values`. In the table, `count` is the division of E' by |step_x|.
+// The depths of the lanes come from `lane_values`. In the table, `count` is the division of E' by |step_x|: stages 1 to 3
+// compare the rest with 4, 2 and 1 times |step_x|, which gives bits 2, 1 and 0 of the quotient.
 //
 //   stage    1           2            3           4
-//   count    4, bit 2    2, bit 1     1, bit 0    mask
+//   count    bit 2       bit 1        bit 0       mask
 //   depth    lane_values                          codes, at least 1
 //   address  5 * line    * stride / 5 + group
 //

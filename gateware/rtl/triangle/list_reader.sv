@@ -31,7 +31,8 @@ module list_reader #(
     input  wire                       start,
     input  wire                       forget,
     input  wire  [5:0]                last_band,
-    // Set 0 comes from the geometry unit, set 1 from the firmware.
+    // Two sets of lists and descriptors: set 0 is written by the geometry unit, set 1 by the firmware. The low bits belong to
+    // set 0.
     input  wire  [1:0]                present,
     input  wire  [2*ADDRESS_BITS-1:0] list_base,
     input  wire  [2*ADDRESS_BITS-1:0] descriptor_base,

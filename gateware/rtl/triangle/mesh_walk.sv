@@ -38,7 +38,8 @@ module mesh_walk #(
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
-    // Width of sums of addresses and counts: values from memory may be arbitrary, and their sums do not wrap around.
+    // Bits of sums of addresses and counts. Values from memory may be arbitrary, and this is wide enough that their sums do not
+    // wrap around.
     localparam int unsigned SUM_BITS = 34;
 
     typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;

@@ -22,7 +22,8 @@
 `default_nettype none
 
 module setup #(
-    // Number of the last clock of a beat; the formal proof of the control uses a smaller number.
+    // Number of the last clock of a beat, the time of a triangle in a stage; the formal proof of the control uses a smaller
+    // number.
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,

@@ -2,8 +2,9 @@
 // E − bias.
 //
 // Both edges pass through vertex 0, and (px, py) is the centre of the start pixel relative to vertex 0. An edge takes four
-// products, first the two with the 17 low bits of its steps. The module `setup` drives `count`, the clock of a beat: the inputs
-// hold during a beat; E0 is valid from clock 7 on, E2 in clock 10.
+// products, first the two with the 17 low bits of its steps. The module `setup` drives `count`, the number of the clock in a
+// beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The inputs hold during a beat; E0 is valid from clock
+// 7 on, E2 in clock 10.
 
 `default_nettype none
 

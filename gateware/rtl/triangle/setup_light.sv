@@ -2,9 +2,10 @@
 // (docs/formats.md, "Smooth shading"), with w the depth of the vertex and L its light. The results have the form that a plane
 // needs: P at vertex 0 (`p0`), and the differences of the other vertices from it (`p10`, `p20`).
 //
-// There are nine products, one for each channel of a vertex, vertex after vertex. The module `setup` drives `count` and `beat`:
-// the inputs hold during a beat, and the results belong to the next beat. The blue of `p20` is valid from clock 1 of that beat
-// on, all other results from clock 0 on.
+// There are nine products, one for each channel of a vertex, vertex after vertex. The module `setup` drives `count`, the number
+// of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more), and `beat`, which is high in the
+// last clock of a beat. The inputs hold during a beat, and the results belong to the next beat. The blue of `p20` is valid from
+// clock 1 of that beat on, all other results from clock 0 on.
 
 `default_nettype none
 

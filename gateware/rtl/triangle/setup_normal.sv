@@ -2,8 +2,8 @@
 // s46. w10 is w1 − w0, y01 is y0 − y1, and so on.
 //
 // Each component takes four products: first the two with the four high bits of a coordinate difference, then the two with its
-// 17 low bits. The module `setup` drives `count`, the clock of a beat: the inputs hold during a beat; Nx is valid from clock 7
-// on, Ny in clock 10.
+// 17 low bits. The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of
+// `setup`, 11 clocks or more). The inputs hold during a beat; Nx is valid from clock 7 on, Ny in clock 10.
 
 `default_nettype none
 

@@ -3,7 +3,8 @@
 // relative to vertex 0.
 //
 // Each gradient takes three products, with pieces of 17, 17 and 6 bits from the low end; bits 8 to 39 of their sum are exact.
-// The module `setup` drives `count`, the clock of a beat: the inputs hold during a beat; the result is valid from clock 9 on.
+// The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks
+// or more). The inputs hold during a beat; the result is valid from clock 9 on.
 
 `default_nettype none
 

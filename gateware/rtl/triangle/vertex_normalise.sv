@@ -17,7 +17,7 @@ module vertex_normalise (
     input  wire  [4:0]         scale_shift,
     // `planar` is X or Y without its lowest five bits; the lowest bit of `planar` is worth at most half a unit of the result.
     input  wire  signed [38:0] planar,
-    // Leading zeros of Z, valid in clock 7. The shift sh is f + lead − 34, and lead is 40 − zeros.
+    // Leading zeros of Z, valid in clock 7. The shift sh is f + lead − 34, where f is `scale_shift` and lead is 40 − zeros.
     input  wire  [3:0]         zeros,
     output logic signed [24:0] x,
     output logic signed [24:0] y

@@ -20,7 +20,8 @@ module vertex_snap (
     input  wire  [9:0]        centre_y,
     input  wire  [16:0]       depth_mantissa,
     input  wire  signed [3:0] depth_exponent,
-    // Values of a vertex: leading zeros of Z in clock 7, `behind` in clock 8, mantissas from clock 25 on.
+    // Values of a vertex: leading zeros of Z in clock 7, `behind` in clock 8; X', Y' and the reciprocal of Z's mantissa from
+    // clock 25 on.
     input  wire  [3:0]        zeros,
     input  wire               behind,
     input  wire signed [24:0] x,
