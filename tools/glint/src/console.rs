@@ -149,7 +149,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
-    /// Returns the board, and the received bytes that have not been used yet. A transfer reads and writes both.
+    /// Returns the board, and the received bytes that the console has not used yet. A transfer takes its first bytes from these,
+    /// and puts back the bytes that follow the transfer.
     pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
     }

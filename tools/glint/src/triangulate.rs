@@ -128,7 +128,8 @@ fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
         for i in [before, after] {
             scratch.is_ear[i] = is_ear(scratch, i);
         }
-        // The search goes on one corner after the next one: this gives fewer narrow triangles than a fan around one corner.
+        // The search for the next ear skips the corner `after`. Without this the triangles would often
+        // form a fan of narrow triangles around one corner.
         at = scratch.next[after];
     }
 }
@@ -169,7 +170,7 @@ mod tests {
         polygons
     }
 
-    /// Signed areas of a face's triangles in the plane x, y.
+    /// Twice the signed area of each triangle of a polygon in the plane x, y.
     fn areas(points: &[Vector]) -> Vec<f64> {
         let polygons = polygon(points);
         face(&polygons, &polygons.faces[0], &mut Scratch::default())

@@ -33,7 +33,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Number of inputs that a thread takes from the shared counter at a time.
+/// Number of consecutive inputs that a thread takes at a time. `Tally` has the first one not taken yet.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {

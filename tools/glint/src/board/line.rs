@@ -10,8 +10,8 @@ pub trait Board {
     /// The line is broken.
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError>;
 
-    /// Appends the bytes that the board has sent to `bytes`. If there are none yet, it waits for the first one, at most `wait_ms`
-    /// milliseconds of the board's time.
+    /// Reads what the board has sent, and appends it to the buffer `bytes`. If the board has sent nothing yet, the call waits for
+    /// the first byte, at most `wait_ms` milliseconds of the board's time.
     ///
     /// # Errors
     /// The line is broken.

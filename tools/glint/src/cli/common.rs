@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Options for the connection to a board.
 #[derive(clap::Args)]
 pub struct LineArguments {
-    /// Bit rate of a serial port.
+    /// Baud rate of a serial port, in bits per second.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     pub baud: u32,
     /// Firmware of the virtual board [default: the one built by `cargo xtask firmware`].
@@ -50,7 +50,7 @@ impl LineArguments {
 /// Options of a command that transfers data to and from a board, and prints a result.
 #[derive(clap::Args)]
 pub struct TransferArguments {
-    /// Route of the data to and from a board [default: memory on the virtual board, serial on a port].
+    /// Route of the data to and from a board [default: memory for the virtual board, serial for a board on a serial port].
     #[arg(long, value_enum)]
     pub transfer: Option<Route>,
     #[command(flatten)]

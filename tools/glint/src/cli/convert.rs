@@ -26,10 +26,10 @@ pub struct ModelArguments {
     json: bool,
 }
 
-/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to Q2.14.
+/// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to multiples of 2^-14.
 ///
 /// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, and
-/// GLM. GLM is the format of boards. OBJ, STL and PLY are written with scaled, unrounded coordinates.
+/// GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
     /// Mesh file to read.

@@ -36,10 +36,10 @@ pub struct DemoArguments {
     /// Firmware image [default: the output of `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Frames of the orbit animation.
+    /// Number of frames of the animation in which the camera goes around a model.
     #[arg(long, default_value_t = 24)]
     orbit: u16,
-    /// Frames of the stereo animation of the sponge.
+    /// Number of frames of the stereo animation of a Menger sponge.
     #[arg(long, default_value_t = 4)]
     sponge: u16,
 }
@@ -68,7 +68,7 @@ struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Cycles that the soft core takes for the same frame, if measured.
+    /// Clock cycles that the board's soft core takes for the frame that the accelerators have drawn, if measured.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }

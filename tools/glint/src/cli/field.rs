@@ -33,7 +33,8 @@ pub struct FieldArguments {
     /// Background of a field [default: white].
     #[arg(long, value_parser = named(Background::ALL, Background::name))]
     background: Option<Background>,
-    /// Fog in the background's colour: transmittance is exp(-distance * DENSITY). 0 to below 16.
+    /// Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is
+    /// from 0 to below 16.
     #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
     fog: Option<String>,
     /// Ambient occlusion: darken a field's surface where other surfaces are close.

@@ -27,7 +27,7 @@ pub struct FlashArguments {
     /// command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
-    /// Baud rate of a serial port.
+    /// Baud rate of a serial port, in bits per second.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     baud: u32,
     /// Print the report as JSON.

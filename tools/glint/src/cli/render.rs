@@ -33,8 +33,8 @@ pub struct RenderArguments {
     model: Option<String>,
     #[command(flatten)]
     field: FieldArguments,
-    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees; half_width is 0.9
-    /// and near 0.1 [default: 2,30,60, with a field 4,30,60].
+    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The image plane at
+    /// distance 1 has a half width of 0.9, the near plane is at 0.1 [default: 2,30,60, with a field 4,30,60].
     #[arg(
         long,
         value_name = "R,THETA,PHI",
@@ -57,7 +57,8 @@ pub struct RenderArguments {
     /// The picture to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
-    /// Write the distance along n in world units: one little-endian f32 a pixel, +inf where no surface is.
+    /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 a pixel, +inf where no
+    /// surface is.
     #[arg(long, value_name = "DEPTH.f32")]
     depth: Option<PathBuf>,
     /// Write cycles, counts of triangles, pixels and rays, and the clock as JSON.

@@ -191,7 +191,8 @@ impl<'b> Link<'b> {
         }
     }
 
-    /// Makes batches and frames shorter after a failure at `address`.
+    /// Makes batches and frames shorter after a batch has failed: `frames` frames whose data start at `address`. `found` shows
+    /// the received answers, for the error.
     ///
     /// # Errors
     /// Too many failures in a row.

@@ -23,7 +23,7 @@ pub enum Format {
     Stl,
     /// PLY; written as binary, little-endian.
     Ply,
-    /// Glint's own format: a board's memory layout.
+    /// Glint's own format, GLM: the bytes of a mesh as they lie in a board's memory.
     Glm,
 }
 

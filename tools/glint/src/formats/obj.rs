@@ -172,9 +172,9 @@ impl Reader {
             count += 1;
         }
         let colour = match count {
-            // A fourth number is a weight, used by curves only.
+            // A single number after x, y and z is a weight, which only curves use.
             0 | 1 => None,
-            // Three numbers are a colour; a fourth is an opacity, which is ignored.
+            // Three numbers after x, y and z are a colour. A fourth one is an opacity, which is ignored.
             3 | 4 => Some([extra[0] as f32, extra[1] as f32, extra[2] as f32]),
             _ => {
                 return Err(FormatError::new(

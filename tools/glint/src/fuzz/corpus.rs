@@ -123,7 +123,8 @@ fn still_log() -> Vec<u8> {
     log.into_bytes()
 }
 
-/// Logs in a board's format, with all options and with none: in motion and at rest, with a gap and repeated time stamps.
+/// Logs of 200, 30 and 1 samples in a board's format, with different options. The longer two have rest, motion, repeated time
+/// stamps and a gap.
 fn images() -> Vec<Vec<u8>> {
     let image = |tilt, follow_bias, samples: u32| {
         let setup = Setup::new(Units::MPU_6050, tilt, follow_bias, [1_000, -300, 0]).ok()?;

@@ -6,8 +6,8 @@ use crate::polygons::{Polygons, Rgb8, Vector};
 use std::f64::consts::TAU;
 
 const TEETH: usize = 20;
-/// Radius and angle of each point in the outline of one tooth, from the root to the tip and back to the root. Angles are in
-/// pitches: one pitch is the angle between two teeth.
+/// Radius and angle of each point in the outline of one tooth, from the root over the tip to the far flank, which ends at the
+/// first point of the next tooth. Angles are in pitches: one pitch is the angle between two teeth.
 const TOOTH: [(f64, f64); 6] = [
     (0.80, -0.50),
     (0.80, -0.26),

@@ -294,7 +294,8 @@ mod tests {
 
     #[test]
     fn stamps_of_any_size() {
-        // The sensor turns at 100 °/s. The stamps have a step back in time, a step across 2^32 and a gap of an hour.
+        // The sensor turns at 100 °/s. The stamps, in µs, have a step across 2^32, a step back in time and a gap of an hour. Only
+        // the three steps of 10 ms turn the attitude, by 1° each.
         let log = entries(&[
             u64::from(u32::MAX) - 5_000,
             u64::from(u32::MAX) + 5_000,

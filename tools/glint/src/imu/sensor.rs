@@ -47,8 +47,8 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Streams as many samples as `samples` says from the board to `on_sample`. The time of a sample is in µs of board time, counted
-/// from the first sample.
+/// Streams the number of samples given by `samples` from the board to `on_sample`. The time of a sample is in µs of board time,
+/// counted from the first sample.
 ///
 /// # Errors
 /// The sensor or the board fails.
@@ -119,7 +119,8 @@ pub struct Calibrated {
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates the gyroscope with as many samples as `samples` says. Calls `progress` with the number of samples taken so far.
+/// Calibrates the gyroscope with the number of samples given by `samples`. Calls `progress` with the number of samples taken
+/// so far.
 ///
 /// # Errors
 /// The sensor moves or fails, as reported by the firmware.

@@ -139,7 +139,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             .collect())
     }
 
-    /// Downloads the depth codes of the scene on the monitor.
+    /// Downloads the depth codes of the scene that the board shows.
     ///
     /// # Errors
     /// The download fails, or the board does not offer `route`.

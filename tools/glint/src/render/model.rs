@@ -68,7 +68,8 @@ mod tests {
         let Rendered { image, stats } = on_model(&frame).unwrap();
         let triangles = stats.triangles();
         assert_eq!((triangles.triangles_in, triangles.triangles_drawn), (12, 2));
-        // The front face is a square of half width 0.5 at depth 2. The picture's half width is 160 pixels, or 0.9 at depth 1.
+        // The front face is a square of half width 0.5 at depth 2. The picture's half width is 160 pixels, or 0.9 at depth 1, so
+        // the face ends `half` pixels to the right of the picture's centre.
         let half = (160.0 * 0.25 / 0.9) as usize;
         let scale = frame.constants().unwrap().depth_scale().unwrap();
         let depth = |x: usize, y: usize| scale.distance(image.depth[y * 320 + x]);

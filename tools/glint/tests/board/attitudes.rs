@@ -111,7 +111,7 @@ fn attitudes_of_a_log_are_the_models() {
         rejected,
     } = board.counts;
     println!("{:?}, {:?} cycles a sample", board.counts, board.cycles);
-    // The log has samples for every counter.
+    // The log has more than 50 samples of each of these kinds, and one gap, so every counter is tested.
     assert!([stale, saturated, rejected].iter().all(|&count| count > 50));
     assert!(steps > 4_000 && gaps == 1);
 }

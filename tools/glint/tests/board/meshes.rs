@@ -52,7 +52,7 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
-    // A camera inside a mesh sees mostly back faces.
+    // Each camera has a flag that turns back-face culling on. A camera inside a mesh sees mostly back faces, so its flag is off.
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut board = running_board();

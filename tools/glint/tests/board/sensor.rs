@@ -31,7 +31,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
             "{step}"
         );
     }
-    // The acceleration along z is gravity, with the virtual sensor's scale error and bias.
+    // The acceleration along z is gravity (4096 counts), changed by the virtual sensor's scale error and bias.
     assert!(
         entries
             .iter()

@@ -70,7 +70,7 @@ fn fields_and_their_files() {
         refused(&folder, &arguments),
         "error: --light: expected at most 4 lights, found 5"
     );
-    // One blue light from above, and no ambient light.
+    // One blue light from above and no ambient light: the box's top is blue, its other sides are black, the background is white.
     let blue = [
         "--material",
         "ivory",
@@ -96,7 +96,8 @@ fn fields_and_their_files() {
             "{more:?}"
         );
     }
-    // The default camera sees the whole sponge.
+    // The default camera sees the whole sponge: the picture's first pixel is background. A camera at distance 3 gives another
+    // picture.
     let (sponge, _) = render("menger:3", &[]);
     assert_eq!(sponge[..3], [0xff; 3]);
     assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);

@@ -9,7 +9,7 @@ const MAX_DECLARED: usize = 64;
 /// Encoding of the values after the header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
-    /// Text, one line per instance.
+    /// Text, one line per row of an element's table.
     Ascii,
     /// Binary, little-endian.
     LittleEndian,
@@ -131,7 +131,7 @@ pub struct Property {
     pub kind: Kind,
 }
 
-/// An element: the type of a table of instances.
+/// An element of a PLY: a table in the file, such as that of the vertices, with one row (an instance) for each of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
     /// Name of the element.
@@ -140,7 +140,7 @@ pub struct Element {
     pub count: u32,
     /// Properties of each instance.
     pub properties: Vec<Property>,
-    /// Place of the element's declaration.
+    /// Place of the element's declaration in the header.
     pub place: Place,
 }
 
