@@ -18,8 +18,9 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     tool("glint", "glint", "demo", arguments)
 }
 
-/// Builds everything and measures the page `name` of the report. For the raymarcher's page it also builds the SoC with four lanes
-/// and the raymarcher alone. With `pages` as name it rebuilds all pages from their tables, and needs no build.
+/// Builds everything, makes the measurements of the report's page `name`, and writes the page. For the page `raymarch` it also
+/// builds the SoC whose raymarcher evaluates the field four times a clock, and the raymarcher without a SoC. With `pages` as name
+/// it writes all pages from the tables of earlier measurements, and builds only the report program.
 ///
 /// # Errors
 /// A build or a measurement fails.

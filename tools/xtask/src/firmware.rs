@@ -35,8 +35,8 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
     ]);
     cargo.arg("--features").arg(features.join(","));
     if features.contains(&"peers") {
-        // The generic kernels of other crates are compiled in the firmware's crate, so it gets the same optimization level as
-        // those crates.
+        // Benchmarked functions of other crates that are generic are compiled in the firmware's crate, so it gets the same
+        // optimization level as those crates.
         for package in ["glint-firmware", "\"*\""] {
             cargo
                 .arg("--config")

@@ -40,13 +40,13 @@ impl Board {
 /// The sets of distance fields that a raymarcher can be built with: `BUILDS` of `glint_soc/raymarch.py`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fields {
-    /// Every field, with cones: two lanes
+    /// Every field, with the prepass; two evaluations of the field per clock
     All,
-    /// No fillets, sponge up to depth 4, no cones: two lanes
+    /// Sponge up to depth 4, box and spheres, without fillets and prepass; two evaluations of the field per clock
     Round,
-    /// No fillets, no spheres, sponge up to depth 4, no cones: two lanes
+    /// Sponge up to depth 4 and box, without prepass; two evaluations of the field per clock
     Faces,
-    /// Sponge up to depth 4 only, with cones: four lanes
+    /// Sponge up to depth 4 only, with the prepass; four evaluations of the field per clock
     Sponge,
 }
 
@@ -83,7 +83,7 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Builds the virtual board with the four lanes of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, and leaves the
+/// Builds the virtual board with the raymarcher of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, and leaves the
 /// standard build as it is.
 ///
 /// # Errors
@@ -108,7 +108,7 @@ pub fn build_with_waveforms() -> Result<()> {
     verilate(&folder, Waveforms::With)
 }
 
-/// Runs LiteX, which writes Verilog, the BIOS, `csr.json` and `soc.svd` to `folder`, unless its inputs are unchanged.
+/// Runs LiteX if its inputs have changed since its last run. It writes Verilog, the BIOS, `csr.json` and `soc.svd` to `folder`.
 fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     let root = paths::root();
     let gateware = root.join("gateware");

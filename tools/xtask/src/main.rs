@@ -39,7 +39,7 @@ enum Task {
         /// Fields of the raymarcher [default: all; faces for the urbana, which has no room for more]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
-        /// Build the virtual board's library with waveform output too
+        /// Also build a second library of the virtual board, which writes waveforms
         #[arg(long, conflicts_with_all = ["smooth", "fields"])]
         waveforms: bool,
     },
@@ -51,7 +51,7 @@ enum Task {
     },
     /// Build the firmware
     Firmware {
-        /// Cargo features of the firmware; `peers` adds kernels of other crates to `bench`
+        /// Cargo features of the firmware; `peers` lets the console command `bench` measure other crates too
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
@@ -67,7 +67,7 @@ enum Task {
     Modules,
     /// Measure the FPGA resources of the gateware; fail above the limits of gateware/budget.toml
     Resources {
-        /// Blocks to measure: own blocks, `flat_build`, `soc` [default: all]
+        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all]
         blocks: Vec<String>,
         /// Print JSON; progress goes to standard error
         #[arg(long)]

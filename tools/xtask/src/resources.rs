@@ -1,7 +1,7 @@
 //! `cargo xtask resources`: FPGA resources of the gateware, against `gateware/budget.toml`.
 //!
-//! `gateware/tests/size.py` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] has the result,
-//! [`budget::Budget`] the limits; [`table`] prints both.
+//! `gateware/tests/run.py --size` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] has the
+//! result, [`budget::Budget`] the limits; [`table`] prints both.
 
 mod blocks;
 mod budget;

@@ -35,7 +35,7 @@ pub fn arrows(tree: &Crate) -> Arrows {
 struct Collector<'a> {
     tree: &'a Crate,
     module: Id,
-    /// Variables and parameters of the current item. A name of these alone is not the path of an item.
+    /// Variables and parameters of the current item. A path that is just one of these names does not lead to an item.
     bindings: HashSet<String>,
     /// Imports of the code blocks around the current expression, the outermost block first.
     blocks: Vec<HashMap<String, Segments>>,
@@ -87,7 +87,7 @@ impl Collector<'_> {
     }
 
     /// Collects the paths in the arguments of a macro or attribute, which syn leaves as tokens. With `absolute`, only paths that
-    /// start with `crate` count.
+    /// start with `crate` or `$crate` count.
     fn tokens(&mut self, tokens: TokenStream, absolute: bool) {
         let mut path = Segments::new();
         // What the last tokens were: after a single `.`, the next name is a field or a method; after `::` it continues the path.
@@ -221,7 +221,7 @@ struct Bindings(HashSet<String>);
 impl<'ast> Visit<'ast> for Bindings {
     fn visit_pat_ident(&mut self, pattern: &'ast PatIdent) {
         let name = tree::text(&pattern.ident);
-        // A name in a pattern that starts with a capital is a constant or a variant.
+        // In a pattern, a name that starts with a capital letter is a constant or a variant, not a new variable.
         if !name.starts_with(char::is_uppercase) {
             self.0.insert(name);
         }

@@ -8,13 +8,13 @@ use serde_json::Value;
 
 use super::description::{self, Block, Constant, Description, Machine, NamedValue};
 
-/// Name of the constant that carries the CRC-32 of the pinned register map.
+/// Name of the constant with the CRC-32 of the register map that `gateware/glint_soc/register_map.py` fixes.
 const BUILD_ID: &str = "build_id";
 
 /// The parts of the SoC that the generated files list, each sorted by address or by name.
 #[derive(Debug)]
 pub struct Soc {
-    /// CRC-32 of the pinned register map.
+    /// CRC-32 of the register map that `gateware/glint_soc/register_map.py` fixes.
     pub build_id: u32,
     /// Peripherals in the order of their base addresses.
     pub peripherals: Vec<Peripheral>,

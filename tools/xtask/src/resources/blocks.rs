@@ -17,8 +17,8 @@ pub const OWN: [&str; 7] = [
     "i2c_engine",
 ];
 
-/// Engines that consist of own blocks, in several builds, and parts of the raymarcher. The tables list them, but they take too
-/// long to be measured by `cargo xtask test`.
+/// Engines that consist of the blocks in `OWN`, in several builds, and parts of the raymarcher. The tables list them, but they
+/// take too long to be measured by `cargo xtask test`.
 pub const BUILDS: [&str; 10] = [
     "triangle_engine_smooth",
     "raymarcher",
@@ -51,7 +51,7 @@ pub fn fields() -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Parts of the smallest engine that draws flat triangles.
+/// Blocks that together are the smallest triangle engine, which draws triangles of one colour each.
 pub const FLAT_PARTS: [&str; 3] = ["vertex_stage", "setup", "triangle_raster"];
 /// Name of the block that is the sum of [`FLAT_PARTS`].
 pub const FLAT: &str = "flat_build";
@@ -59,7 +59,7 @@ pub const FLAT: &str = "flat_build";
 /// Name of the whole design in the Urbana's FPGA.
 pub const SOC: &str = "soc";
 
-/// The blocks in the order of their rows in the tables. Other modules come after these rows.
+/// The blocks in the order of their rows in the tables. Other measured modules come after them.
 pub const ROWS: [&str; 22] = [
     "scanout",
     "i2c_engine",

@@ -113,7 +113,8 @@ pub mod tests {
     use super::super::size::tests::size;
     use super::*;
 
-    /// A budget that the block of [`size`] meets as `setup`, but exceeds as `band_buffer` and as `soc`.
+    /// A budget with different limits for three names. The block of [`size`] is within those of `setup`, and exceeds those of
+    /// `band_buffer` and `soc`.
     pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
         own = { path = 9 }
         [block]

@@ -97,7 +97,7 @@ fn yosys(sizes: &[Size]) -> &str {
     sizes.first().map_or("Yosys", |size| &size.yosys)
 }
 
-/// Formats both tables for a terminal.
+/// Formats the tables of the sizes and of the limits for a terminal.
 pub fn text(sizes: &[Size], budget: &Budget) -> String {
     let mut out = aligned(&sizes_rows(sizes, budget));
     write!(out, "\nbudget\n{}\n", aligned(&budget_rows(sizes, budget)))
