@@ -213,8 +213,8 @@ impl Steering {
     }
 }
 
-/// Returns the rotation about the axis of `turn` whose angle is `sensitivity`/256 times the angle of `turn`, which is at most
-/// half a turn.
+/// Scales the angle of the rotation `turn` by `sensitivity`/256 and keeps its axis. The angle before scaling is taken as at most
+/// 180°.
 fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
     let [w, x, y, z] = turn
         .canonical()
@@ -226,7 +226,7 @@ fn scaled(turn: Quaternion, sensitivity: u16) -> Quaternion {
         return Quaternion::IDENTITY;
     }
     let (_, half) = polar(w << 30, sine << 30);
-    // The product is at most 8 times a quarter of a turn.
+    // The product is at most 8 times a quarter of a turn; the conversion to 32 bits drops whole turns.
     let half = Turns(((u64::from(half.0) * u64::from(sensitivity)) >> 8) as u32);
     let (sin, cos) = sin_cos_q30(half);
     let along = |x: i64| Q2_30::from_bits((i64::from(sin.to_bits()) * x / sine) as i32);

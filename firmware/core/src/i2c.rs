@@ -28,6 +28,6 @@ pub trait PeriodicI2c: I2c {
     /// Waits for the bytes of the next read, fills `bytes` with them, and returns the time at which the read started, in µs.
     ///
     /// # Errors
-    /// The bus reports an error, no read is repeated, or the queue overflowed because reads were not taken in time.
+    /// The bus reports an error, no read is being repeated, or the queue overflowed because reads were not taken in time.
     fn next(&mut self, bytes: &mut [u8]) -> impl Future<Output = Result<u64, Self::Error>>;
 }

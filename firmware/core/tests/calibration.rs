@@ -21,8 +21,8 @@ impl Random {
 
 const BIAS: [f64; 3] = [73.8, -0.77, 18.4];
 
-/// Calibrates with samples of a sensor at rest with noise of 0.1 °/s. `change` may modify each sample. Returns the
-/// report and the exact means.
+/// Calibrates with samples of a sensor at rest with noise of 0.1 °/s. `change` may modify each sample. Returns the report, and
+/// the exact mean of the rate about each axis in LSB.
 fn calibrate(
     samples: u32,
     mut change: impl FnMut(u32, &mut Sample),
@@ -212,7 +212,8 @@ fn a_bias_that_wanders_is_followed_at_rest() {
 
 #[test]
 fn motion_is_not_learnt() {
-    // Two oscillations of ±1500 °/s with different periods, a slow sway, and a steady turn that is too fast to be a bias.
+    // The motions are two oscillations of ±1500 °/s with different periods, a slow sway, and a steady turn that is too fast to be
+    // a bias. None of them may change the bias.
     let square = |i: u32, period: u32| if i % period < period / 2 { 1.0 } else { -1.0 };
     for rate in [
         Box::new(move |i| [0.0, 0.0, 24_600.0 * square(i, 1_000)])

@@ -105,7 +105,7 @@ impl PeriodicI2c for Master {
     }
 }
 
-/// The events that the stream reports, each with the time on the bus's clock, in ns.
+/// The events that the stream reports, each with the time on the bus's clock in ns. A sample also has its time stamp in µs.
 #[derive(Default)]
 struct Record {
     starts: Vec<(u64, Identity)>,

@@ -50,7 +50,7 @@ pub struct LineEditor {
     cursor: usize,
     /// Whether the typed line is longer than its buffer.
     overlong: bool,
-    /// Whether the line has ended and was returned to the caller; if so, the next byte clears it.
+    /// Whether the line has ended and was returned to the caller; if so, the next byte first clears the line.
     ended: bool,
     /// Whether the last byte was a carriage return; if so, a line feed that follows belongs to the same end of line.
     returned: bool,

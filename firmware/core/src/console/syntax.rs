@@ -16,7 +16,7 @@ pub struct Syntax {
 /// A parameter of a command.
 #[derive(Debug)]
 pub struct Parameter {
-    /// Name in lower case, equal to the field's name in `Command`.
+    /// Name in lower case, equal to the name of the parameter's member in the enumeration `Command`.
     pub name: &'static str,
     /// Whether the line may end before this parameter.
     pub optional: bool,

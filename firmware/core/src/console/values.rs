@@ -44,7 +44,7 @@ impl WordArgument for Q32_32 {
     }
 }
 
-/// A decimal number in Q2.23.
+/// A decimal number, rounded to the fixed-point format Q2.23.
 impl WordArgument for Q2_23 {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&"a number from -2 to 2");
@@ -56,7 +56,7 @@ impl WordArgument for Q2_23 {
     }
 }
 
-/// A decimal number in U4.28.
+/// A decimal number, rounded to the fixed-point format U4.28.
 impl WordArgument for U4_28 {
     type Value<'a> = Self;
     const KIND: Kind = Kind::Text(&"a number from 0 to below 16");

@@ -2,11 +2,11 @@
 
 use crate::fixed::Q32_32;
 
-/// The largest coordinate along an axis that a bounded field may reach.
+/// The largest magnitude, in world units, of a coordinate that a bounded field may reach.
 pub const MAX_EXTENT: Q32_32 = Q32_32::lit("12");
-/// Smallest and largest accepted period of a periodic field.
+/// Smallest and largest accepted period of a periodic field, in world units.
 pub const PERIOD: [Q32_32; 2] = [Q32_32::lit("0.25"), Q32_32::lit("16")];
-/// The smallest accepted radius, half side or other length of a solid.
+/// The smallest accepted radius, half side or other length of a solid, in world units.
 pub const SMALLEST: Q32_32 = Q32_32::lit("0.01");
 /// The largest number of spheres of a field.
 pub const MAX_SPHERES: usize = 8;
