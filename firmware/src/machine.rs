@@ -40,7 +40,7 @@ pub struct Devices {
     pub switches: InputPort<u16>,
     /// The sixteen LEDs.
     pub leds: OutputPort<u16>,
-    /// The I2C bus of the sensor; `None` after the sensor's stream has taken it.
+    /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
     pub i2c: Option<I2c>,
 }
 

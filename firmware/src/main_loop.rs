@@ -244,7 +244,7 @@ impl MainLoop {
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
-        // Polls the sensor's stream, so that a transfer whose interrupt is missing times out.
+        // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
         sensor::advance(cpu::cycles_low());
         if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();

@@ -75,7 +75,7 @@ impl Renderer {
     }
 
     /// Draws a frame by the gateware. `None` means that the frame is not drawn yet, `Err` that the CPU must draw the frame.
-    /// The error contains no reason if the backend is the CPU or the SoC has no engine.
+    /// The error contains no reason if the backend is the CPU or the SoC has no triangle engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,
@@ -122,7 +122,8 @@ impl Renderer {
         }))
     }
 
-    /// Draws the frame of `scene` by the gateware `count` times, back to back, without showing it.
+    /// Draws the frame of `scene` by the gateware `count` times, back to back, without showing it. Returns `None` if the
+    /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn repeat(
         &mut self,
         mesh: &Mesh,

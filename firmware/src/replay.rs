@@ -16,7 +16,7 @@ pub struct Replay {
     done: usize,
     /// Number of samples processed at the last report.
     reported: usize,
-    /// Clock cycles of the tracker, including interrupts during its work.
+    /// Clock cycles that the tracker took to compute the attitudes, including interrupts during this work.
     cycles: u64,
 }
 

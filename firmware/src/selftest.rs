@@ -6,7 +6,7 @@ use litex_pac::cpu;
 
 use crate::machine::Machine;
 
-/// Number of bytes in the memory test: four times the data cache.
+/// Number of bytes in the memory test: four times the size of the data cache.
 const TESTED: usize = 16 << 10;
 
 /// Runs all tests and returns the name of each test and whether it passed.

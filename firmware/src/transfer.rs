@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The sender of downloads. Each transfer gets the session number after that of the transfer before.
+/// The sender of downloads. Each transfer has a session number, one more than that of the transfer before, modulo 256.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,

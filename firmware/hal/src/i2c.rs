@@ -49,7 +49,7 @@ pub struct I2c {
 /// Periodic reads that are in progress.
 #[derive(Clone, Copy)]
 struct Periodic {
-    /// Time in clock cycles at which the read starts whose bytes the driver takes next.
+    /// Start time, in clock cycles, of the read whose bytes the driver takes next.
     next: u64,
     /// Number of clock cycles between the starts of two reads.
     period: u64,

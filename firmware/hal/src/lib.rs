@@ -4,12 +4,12 @@
 //! |---|---|---|
 //! | [`timer`] | the uptime counter of `timer0` | [`DelayNs`](embedded_hal::delay::DelayNs) |
 //! | [`uart`] | `uart`, by interrupts and queues | [`Read`](embedded_io::Read), [`Write`](embedded_io::Write), both with time-outs |
-//! | [`i2c`] | `i2c`, by a queue of commands | [`I2c`](embedded_hal::i2c::I2c), blocking, and [`I2c`](embedded_hal_async::i2c::I2c) |
+//! | [`i2c`] | `i2c`, by queued commands | [`I2c`](embedded_hal::i2c::I2c), blocking, and [`I2c`](embedded_hal_async::i2c::I2c), async |
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`scanout`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
-//! | [`raymarch`] | `raymarch`, which draws distance fields into its frames | |
+//! | [`raymarch`] | `raymarch`, which draws distance fields into the frames of `triangle` | |
 //!
 //! Drivers access registers only through `litex-pac`. On a host a model replaces the bus, so tests run the same drivers.
 

@@ -22,9 +22,9 @@ use crate::Absent;
 pub struct Capabilities {
     /// Number of lanes, each of which evaluates the field once a clock.
     pub lanes: u8,
-    /// Largest depth of a sponge; 0 without sponges.
+    /// Largest number of levels of a sponge that this build draws; 0 if it draws no sponges.
     pub levels: u8,
-    /// Kinds of flat fields that this build draws: bit k stands for kind k.
+    /// Kinds of flat fields that this build draws: bit k is 1 if it draws the kind with the value k in `Kind`.
     pub flat: u8,
     /// Whether this build draws two eyes.
     pub stereo: bool,
@@ -32,7 +32,7 @@ pub struct Capabilities {
     pub round: bool,
     /// Whether this build draws fillets between spheres and flat fields.
     pub blend: bool,
-    /// Whether this build has the prepass.
+    /// Whether this build has the prepass, which marches one cone for each block of pixels before the rays.
     pub prepass: bool,
 }
 
@@ -65,7 +65,7 @@ impl fmt::Display for Missing {
             Self::Flat(kind) => write!(f, "raymarcher: this gateware has no {}", kind.text()),
             Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
             Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
-            Self::Stereo => f.write_str("raymarcher: this gateware has one eye"),
+            Self::Stereo => f.write_str("raymarcher: this gateware has no stereo"),
             Self::Prepass => f.write_str("raymarcher: this gateware has no prepass"),
         }
     }
@@ -73,7 +73,7 @@ impl fmt::Display for Missing {
 
 impl core::error::Error for Missing {}
 
-/// Converts the block's counters to the model's statistics of rays.
+/// Converts the raymarcher's counters to the model's statistics of rays.
 #[must_use]
 pub fn ray_counts(counters: &Counters) -> FieldStats {
     FieldStats {
@@ -89,7 +89,7 @@ pub fn ray_counts(counters: &Counters) -> FieldStats {
 pub struct Raymarcher {
     registers: raymarch::Raymarch,
     capabilities: Capabilities,
-    /// The contents last written to the tables of fog and light; `None` before the first write.
+    /// The contents last written to the tables of fog and occlusion; `None` before the first write.
     tables: Option<[[u8; 256]; 2]>,
 }
 
@@ -345,7 +345,7 @@ impl Raymarcher {
         }
     }
 
-    /// Whether the raymarcher's tables of fog and light equal the tables of `palette`. This comparison takes longer than
+    /// Whether the raymarcher's tables of fog and occlusion equal the tables of `palette`. This comparison takes longer than
     /// writing the registers of a frame.
     #[must_use]
     pub fn has_tables(&self, palette: &Palette) -> bool {

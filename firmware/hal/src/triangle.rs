@@ -32,7 +32,7 @@ pub enum EngineError {
     Timeout,
     /// This gateware is built without smooth shading.
     Shading,
-    /// The eye is farther from the origin than the engine's number formats allow.
+    /// The eye is farther from the origin than the number formats of the triangle engine allow.
     Eye,
 }
 
@@ -322,14 +322,14 @@ impl TriangleEngine {
         }
     }
 
-    /// The free-running counters of the engine.
+    /// The free-running counters of the triangle engine.
     #[must_use]
     pub fn counters(&self) -> Counters {
         Counters::read(&self.registers)
     }
 }
 
-/// Clears the engine's interrupt, for the interrupt handler.
+/// Clears the triangle engine's interrupt, for the interrupt handler.
 pub fn acknowledge() {
     // SAFETY: only this function writes the pending register. Both events may be cleared, because `status` keeps the
     // states of the passes.

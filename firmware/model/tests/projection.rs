@@ -8,7 +8,7 @@ use glint_vectors::{Camera, Random, math::world};
 /// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
 
-/// Largest errors of positions in 1/256 pixel.
+/// Largest errors of positions in 1/256 pixel, and a count of positions.
 #[derive(Clone, Copy, Default)]
 struct Worst {
     /// Largest error of a position on the screen.
@@ -303,8 +303,8 @@ fn steps_as_written() {
     }
 }
 
-/// The scale shift is the largest for which the rows U and V fit 25 bits, tested with the longest basis that a camera may
-/// have.
+/// The scale shift is the largest for which the components of the scaled camera axes `u` and `v` fit 25 bits. This is
+/// tested with the longest axes that a camera may have.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);

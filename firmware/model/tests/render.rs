@@ -51,7 +51,8 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Culling removes only hidden faces: without culling the outline and the picture are the same, except at equal depths.
+/// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws
+/// the sphere turned inside out, with culling: it shows its far side.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);

@@ -49,7 +49,7 @@ fn equal_light_is_a_flat_colour() {
     assert!(covered > 100_000, "{covered}");
 }
 
-/// All accumulators give a colour without a panic, and the table is monotonic and fits 17 bits.
+/// Random accumulators of light and depth give a colour without a panic. The table `INVERSE` is monotonic and fits 17 bits.
 #[test]
 fn quotients_of_anything() {
     assert!(INVERSE.is_sorted_by(|a, b| a > b));

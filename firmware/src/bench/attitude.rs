@@ -18,7 +18,7 @@ const RUN: u32 = 64;
 /// Number of measurements.
 const RUNS: usize = 16;
 
-/// Measures the clock cycles of each method, and reports them under the method's name in `cargo xtask report imu`.
+/// Measures the clock cycles of each method, and reports them under the name that `cargo xtask report imu` gives the method.
 pub fn attitude(report: Report) {
     let angles = RefCell::new([0_u32; 3]);
     measure(report, "angles", rate, |rate: [i32; 3]| {

@@ -8,18 +8,18 @@ use crate::machine::Machine;
 /// Names of the kernels that `bench` accepts.
 #[cfg(not(feature = "peers"))]
 const KERNELS: &[&str] = &["sine", "triangle", "field"];
-/// Names of the kernels that `bench` accepts.
+/// Names of the kernels that `bench` accepts in a build with the feature `peers`.
 #[cfg(feature = "peers")]
 const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
 
-/// Number of frames that the engine draws back to back for a measurement.
+/// Number of frames that the gateware draws back to back for a measurement.
 const FRAMES: u32 = 8;
 
 /// Measures the kernel with the name `kernel` and prints its cycles. Without a name, measures sine and cosine, and the
-/// drawing of frames if the machine has an engine.
+/// drawing of frames if the SoC has a triangle engine.
 ///
 /// # Errors
-/// The name is unknown, or the kernel needs an engine or a scene that the machine does not have.
+/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene.
 pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), CommandError<'l>> {
     let has_engine = machine.renderer.gateware.is_some();
     let mut print = |name: &str, cycles: Cycles| {
@@ -64,7 +64,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         renderer,
         ..
     } = machine;
-    // A frame cannot be drawn while a flip is pending, so this loop waits for its end.
+    // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
             break rendered.map_err(CommandError::Engine)?;

@@ -88,7 +88,7 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    // The engine writes to memory and not to the CPU's data cache, which may hold older data.
+    // The triangle engine writes to memory and not to the CPU's data cache, which may hold older data.
     cpu::flush_data_cache();
     let bytes = if depth {
         bytemuck::cast_slice(renderer.depths(scene))

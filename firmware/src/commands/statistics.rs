@@ -64,7 +64,7 @@ fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16>
             ("pixels_tested", mesh.pixels_tested),
             ("pixels_covered", mesh.pixels_covered),
         ]);
-        // The engine's count of drawn pixels includes the pixels of a field, so it is printed only without a field.
+        // The triangle engine's count of drawn pixels includes the pixels of a field, so it is printed only without a field.
         if stats.field.is_none() {
             let _ = values.push(("pixels_drawn", mesh.pixels_drawn));
         }

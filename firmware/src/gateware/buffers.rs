@@ -7,8 +7,8 @@ use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
 use glint_model::triangle::descriptor;
 
-/// Largest number of exceptions of a frame, and of descriptors without smooth shading in a set. The CPU draws frames that
-/// need more.
+/// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a set.
+/// The CPU draws frames that need more.
 const DESCRIPTORS: usize = 1 << 16;
 /// Number of 32-bit words for the descriptors of a set. A descriptor with smooth shading is twice as long as one without,
 /// so there is room for half as many of them.

@@ -30,11 +30,11 @@ pub struct Rendered {
     pub cycles: u64,
     /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
-    /// Growth of the engine's counters during the frame.
+    /// Growth of the triangle engine's counters during the frame.
     pub counters: Counters,
 }
 
-/// The pass of the engine that is running, or `Idle`.
+/// The pass of the triangle engine that is running, or `Idle`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -188,7 +188,7 @@ impl GatewareRenderer {
         Some(self.raymarcher.as_ref()?.counters())
     }
 
-    /// The results of the measurement since `start_measurement`, with the triangle counts in the buffers at `place`.
+    /// The results of the measurement since `start_measurement`, with the triangle counts in `self.buffers[place]`.
     pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
         let counters = self.engine.counters().since(&self.start.engine);
@@ -223,7 +223,7 @@ impl GatewareRenderer {
         Ok(self.constants[place].update(frame)?)
     }
 
-    /// Writes the raymarcher's registers for the field whose constants are at `place`, or switches the raymarcher off if
+    /// Writes the raymarcher's registers for the field of `self.constants[place]`, or switches the raymarcher off if
     /// there is no field. With `has_tables`, the raymarcher is known to hold the right tables, so they are not compared.
     pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
@@ -240,13 +240,13 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Whether the raymarcher holds the tables of the field whose constants are at `place`.
+    /// Whether the raymarcher holds the tables of the field of `self.constants[place]`.
     pub(super) fn has_tables(&self, place: usize) -> bool {
         let both = self.raymarcher.as_ref().zip(self.constants[place].field());
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
     }
 
-    /// Writes the registers of a geometry pass into the buffers at `place`, from the constants at `place`.
+    /// Writes the registers of a geometry pass from `self.constants[place]`. The pass will write to `self.buffers[place]`.
     pub(super) fn prepare_geometry(
         &mut self,
         subject: &MeshSubject,
@@ -296,7 +296,7 @@ impl GatewareRenderer {
         unsafe { self.engine.start_raster(&pass) };
     }
 
-    /// Clips the exceptions of the geometry pass that wrote the buffers at `place`.
+    /// Clips the exceptions, the triangles that need it, of the geometry pass that wrote `self.buffers[place]`.
     pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), EngineError> {
         let setup = self.constants[place].mesh().ok_or(Error::Size)?;
         let buffers = &mut self.buffers[place];
@@ -334,7 +334,7 @@ impl GatewareRenderer {
         Ok(())
     }
 
-    /// Cancels the frame and fails if the engine has made no progress for too long.
+    /// Cancels the frame and fails if the triangle engine has made no progress for too long.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.give_up(output, EngineError::Timeout));
@@ -350,7 +350,7 @@ impl GatewareRenderer {
         error.into()
     }
 
-    /// The sets of lists in the buffers at `place`.
+    /// The sets of lists in `self.buffers[place]`.
     pub(super) fn sets(&self, place: usize) -> [Option<Set>; 2] {
         self.buffers[place].sets
     }

@@ -91,7 +91,7 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, 0))
     }
 
-    /// Waits for the end of the pass whose result is `result`.
+    /// Waits for the end of the pass whose result the function `result` reads.
     fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,

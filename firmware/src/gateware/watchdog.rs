@@ -7,7 +7,8 @@ use litex_pac::cpu;
 /// Number of clock cycles without progress after which a pass is cancelled.
 const LIMIT: u64 = timer::cycles(TIMEOUT);
 
-/// Watchdog of the engine. It compares the sum of some of the engine's counters, which grow while the engine works.
+/// Watchdog of the triangle engine. It checks that the sum of some of the engine's counters changes, because these counters
+/// grow while the engine works.
 #[derive(Default)]
 pub struct Watchdog {
     progress: u32,
@@ -15,7 +16,8 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Whether the engine has made no progress for longer than `LIMIT`. The first call starts the measurement of this time.
+    /// Whether the triangle engine has made no progress for longer than `LIMIT`. The first call starts the measurement of
+    /// this time.
     pub fn is_stuck(&mut self, counters: &Counters) -> bool {
         let progress = counters
             .items_in

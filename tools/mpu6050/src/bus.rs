@@ -99,7 +99,7 @@ impl Shared {
         result
     }
 
-    /// Checks that SDA is not held low, as a master does before a start. Tries to free the bus by clocks.
+    /// Checks that SDA is not held low, as a master does before a start. Tries to free the bus by sending clocks.
     fn require_free(&mut self) -> Result<(), Error> {
         match self.chip.fault {
             Some(Fault::StuckData(clocks @ 1..=RECOVERY_CLOCKS)) => {

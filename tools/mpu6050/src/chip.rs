@@ -106,13 +106,13 @@ pub struct Imperfections {
     pub bias: [f64; 3],
     /// Temperature coefficient of the gyroscope's bias, in °/s per °C.
     pub drift: [f64; 3],
-    /// Scale factor of the gyroscope.
+    /// Scale factor of the gyroscope for each axis: measured rate per true rate, without bias.
     pub scale: [f64; 3],
     /// Noise density of the gyroscope in °/s per √Hz.
     pub noise: f64,
     /// Bias of the accelerometer in g.
     pub accel_bias: [f64; 3],
-    /// Scale factor of the accelerometer.
+    /// Scale factor of the accelerometer for each axis: measured force per true force, without bias.
     pub accel_scale: [f64; 3],
     /// Noise density of the accelerometer in g per √Hz.
     pub accel_noise: f64,

@@ -6,7 +6,7 @@ use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use crate::math::{cross, dot, normalised};
 use crate::random::Random;
 
-/// A camera before it is rounded to the formats of the engine.
+/// A camera before it is rounded to the fixed-point formats of a `View`.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     /// Position in the world.
@@ -40,7 +40,7 @@ impl Camera {
         };
         let world = frame(normalised(towards), random.direction());
         let camera = frame(normalised([a, b, 1.0]), [0.6, -0.64, 0.48]);
-        // Rotates the camera's axes by the rotation from one frame to the other.
+        // Applies the rotation that turns the vectors of `camera` into those of `world` to the three unit vectors.
         let [u, v, n] = [0, 1, 2]
             .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| world[k][i] * camera[k][axis]).sum()));
         Self {
@@ -76,10 +76,10 @@ impl Camera {
         }
     }
 
-    /// Rounds the camera to the engine's formats.
+    /// Rounds the camera to the fixed-point formats of a `View`.
     ///
     /// # Panics
-    /// If the engine's formats cannot represent the camera.
+    /// If a `View` cannot represent the camera.
     #[must_use]
     pub fn rounded(&self) -> View {
         let basis = |row: [f64; 3]| row.map(|x| Q2_23::from_num(x));
@@ -94,7 +94,7 @@ impl Camera {
         .unwrap()
     }
 
-    /// Converts a view in the engine's formats to a camera.
+    /// Converts a view, which has fixed-point coordinates, to a camera.
     #[must_use]
     pub fn of(view: &View) -> Self {
         let basis = |row: [Q2_23; 3]| row.map(|x| x.to_num::<f64>());

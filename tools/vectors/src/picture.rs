@@ -19,7 +19,7 @@ pub struct Picture {
     pub depth: Vec<u32>,
     /// The model's counts of triangles and pixels.
     pub stats: Stats,
-    /// The triangles that reached the walker, in the order of drawing.
+    /// The triangles that reached the walker (the stage that finds pixels), in the order of drawing.
     pub drawn: Vec<DrawnTriangle>,
 }
 

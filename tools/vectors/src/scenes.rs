@@ -1,4 +1,4 @@
-//! Scenes for the tests of the engine and of the whole SoC.
+//! Scenes for the tests of the triangle engine and of the whole SoC.
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};

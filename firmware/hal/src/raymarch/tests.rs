@@ -26,9 +26,10 @@ fn probe(ident: u32, caps: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block
     (Raymarcher::probe(registers()), block)
 }
 
-/// Register `caps` of a build with two lanes, six levels, boxes and two eyes.
+/// Register `caps` of a build with two lanes that draws sponges of up to six levels, boxes, spheres, fillets and two eyes,
+/// and has the prepass.
 const EVERYTHING: u32 = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;
-/// Register `caps` of a build with four lanes for sponges of depth 4.
+/// Register `caps` of a build with four lanes that draws only sponges, of up to four levels.
 const SPONGES: u32 = 4 | 4 << 4 | 1 << 16;
 
 fn setup(field: &str, options: &FieldOptions) -> (FieldSetup, Palette) {
@@ -249,7 +250,7 @@ fn tables_are_written_where_they_change() {
     let (raymarcher, block) = probe(IDENT, EVERYTHING);
     let mut raymarcher = raymarcher.unwrap();
     let address = registers().table().address();
-    // Draws a field, and returns index and value of each table entry written through the register `table`, with the palette.
+    // Calls `set_field`. Returns index and value of each entry written through the register `table`, and the palette.
     let mut written = |options: &FieldOptions| {
         block.borrow_mut().writes.clear();
         let (setup, palette) = setup("menger:4", options);

@@ -12,14 +12,16 @@ pub(super) struct Directions {
     pub across: [i64; 3],
     /// Change of the direction per pixel down.
     pub down: [i64; 3],
-    /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1. This makes D shorter than 1.
+    /// The exponent e, 0 to 3: D is 2^−e times the direction whose component along the camera's forward axis n is 1. This
+    /// makes D shorter than 1.
     pub exponent: u32,
 }
 
 impl Directions {
     /// Computes the directions for a view. For two eyes, `parallax`·u is added to the directions of the left eye and
-    /// subtracted from those of the right eye; `parallax` is at most 1 and has 28 fraction bits. With `round` the
-    /// directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
+    /// subtracted from those of the right eye, where u is the camera's right axis; `parallax` is at most 1 and has 28
+    /// fraction bits. With `round` the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum
+    /// norm.
     pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
         let half_width = i64::from(view.half_width().to_bits());
         // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
@@ -45,7 +47,8 @@ impl Directions {
                 })
             })
         });
-        // Limits of a length and of a squared length. They are slightly below 1, because the steps are rounded.
+        // Limits of a length (51 fraction bits) and of a squared length (50 fraction bits). They are slightly below 1,
+        // because the steps are rounded.
         const ONE: i64 = (1 << 51) - (1 << 36);
         const SQUARE: i64 = (1 << 50) - (1 << 40);
         let exponent = if round {

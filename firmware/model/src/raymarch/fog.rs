@@ -22,9 +22,9 @@ impl FieldOptions {
 }
 
 impl Palette {
-    /// Adds fog to the palette, of transmittance e^(−density·z) for a surface at depth z along n, in world units. An
-    /// entry of the table `fog` is the share of hidden colour at the middle of its range of depths, in 255ths and within
-    /// 0.51 of the exact value. The last entry is also used for all larger depths.
+    /// Adds fog to the palette, of transmittance e^(−density·z) for a surface at depth z along the camera's forward axis,
+    /// in world units. An entry of the table `fog` is the share of hidden colour at the middle of its range of depths, in
+    /// 255ths and within 0.51 of the exact value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
         // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or the largest available step.
@@ -56,7 +56,8 @@ fn product(a: u64, b: u64) -> u64 {
     ((u128::from(a) * u128::from(b)) >> 62) as u64
 }
 
-/// The product density·z for the depth z of one field unit times 2^e: 32 fraction bits, rounded down, below 2^35.
+/// The product density·z for the depth z of one field unit times 2^e, where e is `setup.exponent`: 32 fraction bits, rounded
+/// down, below 2^35.
 fn fog_of_unit(setup: &FieldSetup, density: U4_28) -> u64 {
     let units = setup.scale.to_bits().max(1) as u128;
     // The dividend has 28 + 36 fraction bits, the divisor and the result have 32.

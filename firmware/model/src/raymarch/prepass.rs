@@ -41,8 +41,8 @@ impl Cones {
         }
     }
 
-    /// Amount by which the length index of a cone is larger than the length index of the ray through its middle, so that
-    /// every direction in the block has length 1 or less.
+    /// Amount by which the length index of a cone (see `Ray::length`) is larger than the length index of the ray through its
+    /// middle, so that every direction in the block has length 1 or less.
     pub(super) const fn margin(&self, round: bool) -> u32 {
         if round {
             // With s for the spread, (|D| + s)² − |D|² is at most 2·s + s², and s is at most 2^−4.

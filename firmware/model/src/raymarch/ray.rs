@@ -66,7 +66,7 @@ pub enum State {
 /// The end of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RayResult {
-    /// The result.
+    /// Whether the ray hit a surface, missed or ended undecided.
     pub state: State,
     /// Parameter t of the last evaluated point; for a hit on a sphere or fillet, of the point one step farther. u11.12.
     pub t: u32,
@@ -146,7 +146,8 @@ impl FieldSetup {
         direction.map(|d| ((i64::from(d) * inverse + (1 << 15)) >> 16) as i32)
     }
 
-    /// Parameter t at the given depth along n, or slightly less, of a ray with length index `length`.
+    /// Parameter t at the given depth along the camera's forward axis n, or slightly less, of a ray with length index
+    /// `length`.
     pub(super) fn at_depth(&self, depth: u32, length: u32) -> u32 {
         // A lower bound of the reciprocal of `inverse`, with 10 fraction bits.
         let part = if self.is_round() {
@@ -261,7 +262,8 @@ impl FieldSetup {
         })
     }
 
-    /// Depth along n of a ray's point at t, in field units times 2^e, 21 fraction bits.
+    /// Depth along the camera's forward axis n of a ray's point at t, in field units times 2^e with the exponent e of this
+    /// setup, 21 fraction bits.
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }

@@ -48,16 +48,16 @@ pub struct FieldSetup {
     pub eyes: [Eye; 2],
     /// Change of the unscaled ray direction D per pixel to the right and per pixel down, 30 fraction bits.
     pub steps: [[i32; 3]; 2],
-    /// Exponent e, 0 to 3: D is 2^−e times the direction whose component along n is 1.
+    /// Exponent e, 0 to 3: D is 2^−e times the direction whose component along the camera's forward axis n is 1.
     pub exponent: u32,
     /// Depth of the near plane, or of the nearest corner of the bounding box if larger, in field
     /// units times 2^e, u11.12.
     pub near: u32,
     /// The cones of the prepass, if any.
     pub cones: Option<Cones>,
-    /// Scale K of depth codes for depths in field units times 2^e.
+    /// Scale K of depth codes (a code is K/depth), for depths in field units times 2^e.
     pub depth: DepthScale,
-    /// Scale K of depth codes for depths in world units, for the host.
+    /// Scale K of depth codes (a code is K/depth), for depths in world units, for the host.
     pub world_depth: DepthScale,
     /// Precision of the march.
     pub tuning: Tuning,
@@ -215,8 +215,8 @@ fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     (Placed { extent, ..flat }, beside)
 }
 
-/// Depth along n of the nearest corner of the bounding box, 37 fraction bits, rounded down; negative for a corner
-/// behind the eye, and 0 for an unbounded field.
+/// Depth along the camera's forward axis n of the nearest corner of the bounding box, 37 fraction bits, rounded down;
+/// negative for a corner behind the eye, and 0 for an unbounded field.
 fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
     extent.map_or(0, |half| -> i64 {
         (0..3)

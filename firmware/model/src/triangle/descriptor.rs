@@ -146,8 +146,8 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Starts an empty set in two regions of memory, for a picture of this width and gateware whose best shading is
-    /// `capability`.
+    /// Starts an empty set of descriptors and band lists in two regions of memory, for a picture of this width and
+    /// gateware whose best shading is `capability`.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],

@@ -47,8 +47,8 @@ impl MeshSetup {
         let (scale_shift, scale) = Scale::new(width, view);
         let (u, v) = (scale.row(view.u()), scale.row(view.v()));
         let n = view.n().map(Q2_23::to_bits);
-        // The eye C is within 8 of the origin, 2^35 with its 32 fraction bits, and a row is shorter than 2^24.5:
-        // |C·row| < 2^60.
+        // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
+        // than 2^24.5: |C·row| < 2^60.
         let eye = view.eye().map(Q32_32::to_bits);
         let translation = [u, v, n].map(|row| {
             let product: i64 = core::iter::zip(eye, row)

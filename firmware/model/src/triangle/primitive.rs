@@ -32,7 +32,7 @@ impl Default for Options {
     }
 }
 
-/// A triangle on the screen that reaches the walker.
+/// A triangle on the screen that reaches the walker, the stage that finds its pixels.
 pub struct Placed {
     /// Vertices in clockwise order, and the visible side.
     pub oriented: Oriented,

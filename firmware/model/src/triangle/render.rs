@@ -18,8 +18,8 @@ use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 pub struct Stats {
     /// Triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker: back faces, triangles without area, behind the near plane or off the
-    /// picture, and triangles without a pixel centre in their bounds.
+    /// Triangles that did not reach the walker, the stage that finds pixels: back faces, triangles without area, behind
+    /// the near plane or off the picture, and triangles without a pixel centre in their bounds.
     pub culled: u32,
     /// Triangles that went through the clipper, with or without a visible part.
     pub clipped: u32,
@@ -33,7 +33,7 @@ pub struct Stats {
     pub pixels_drawn: u64,
 }
 
-/// A triangle that reached the walker, or a part of a clipped triangle.
+/// A triangle that reached the walker (the stage that finds pixels), or a part of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnTriangle {
     /// Number of the triangle in the mesh, across all chunks.

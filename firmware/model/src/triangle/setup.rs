@@ -92,7 +92,7 @@ fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
 /// An edge function E': its value at the start pixel and its steps. A pixel is inside the edge where E' ≥ 0.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Edge {
-    /// E' = floor((E − bias)/256), s34.
+    /// Value at the start pixel: E' = floor((E − bias)/256), s34. The bias is 0 for a top or left edge, otherwise 1.
     pub start: i64,
     /// Step of one pixel to the right, −dy, s21: positive on the left side of a triangle, negative on its right side.
     pub step_x: i32,
@@ -181,7 +181,7 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     }
 }
 
-/// The input of the walker for one triangle.
+/// The input of the walker, which finds the pixels of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
     /// Bounding rows and columns.
