@@ -2,7 +2,8 @@
 
     python gateware/formal/run.py              runs all proofs, one line each; ends with 1 if any failed
     python gateware/formal/run.py NAME...      runs the named proofs only
-    python gateware/formal/run.py --mutations  breaks the modules on purpose instead: each property has to fail in one
+    python gateware/formal/run.py --mutations  instead checks copies of the modules with one fault each: every property has to
+                                               fail for at least one of these faults
 """
 
 import argparse

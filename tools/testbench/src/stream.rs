@@ -89,7 +89,7 @@ pub struct Source {
     ports: Ports,
     items: VecDeque<Vec<Bits>>,
     stalls: Stalls,
-    /// Whether the first item is valid on the ports; it then stays valid until it is taken.
+    /// Whether the first of `items` is valid on the ports; it then stays valid until it is taken.
     shown: bool,
 }
 

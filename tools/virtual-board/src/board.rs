@@ -14,7 +14,7 @@ use crate::{Error, Monitor, Picture, TimingError, boot};
 /// Cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
 
-/// Cycles of two video frames; a frame takes 1650 × 750 ticks of the pixel clock.
+/// Cycles of two video frames and one slice (`SLICE`); a frame takes 1650 × 750 ticks of the pixel clock.
 const TWO_FRAMES: u64 = 2 * 1650 * 750 * 325 / 297 + SLICE;
 
 /// How a board starts.

@@ -246,7 +246,7 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
-/// Measures the cost of lights in clocks, with a sphere that fills most of the picture.
+/// Draws a sphere with one light and with four lights: each further light may take one clock more for each pixel of the sphere.
 #[test]
 fn round_pixels_take_a_clock_a_light() {
     let mut random = Random(13);

@@ -78,7 +78,7 @@ pub struct Bench {
     driven: Settings,
     /// Settings that the module latched at the last vertical blanking.
     in_force: Settings,
-    /// Settings of the frame whose source line is being fetched.
+    /// Settings of the frame of which the module is fetching a line, or fetched one last.
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,

@@ -199,7 +199,7 @@ fn a_fetch_may_outlive_its_request() {
     bench.run_cycles(20);
     bench.reset_pix(false);
     bench.run_to_vblank();
-    // Line 0 of the next frame is requested while the fetch of the old line is still under way.
+    // Line 0 of the next frame is requested while the fetch of a line from before the reset is still under way.
     bench.run_lines(2);
     bench.memory.stopped = false;
     bench.run_frames(2);

@@ -22,13 +22,13 @@ pub struct Monitor {
     line: Vec<u32>,
     /// Whether not to check the current line, because a reset disturbed it.
     pub line_unchecked: bool,
-    /// Source line that was shown last in this frame.
+    /// Source line (line of the frame in memory) that was shown last in this video frame.
     pub line_shown: Option<u64>,
-    /// Whether late lines are accepted.
+    /// Whether late source lines are accepted.
     pub may_be_late: bool,
     /// Number of frames that were shown up to their last line.
     pub frames: u64,
-    /// Number of late source lines.
+    /// Number of late source lines: those that the first of their output lines does not show.
     pub late: u64,
     /// Number of late source lines that still appeared in one of their later output lines (a source line has `scale` of them).
     pub late_again: u64,

@@ -313,7 +313,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // Draws frames one after the other, without waiting for the monitor to show them.
+    // The command `bench` draws eight frames one after the other, without waiting for the monitor to show them.
     let replies = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],

@@ -100,8 +100,8 @@ impl Bench {
     }
 }
 
-/// Makes descriptors with random rows and random other bits. Returns for each the first row, the row past the last, and all
-/// bits.
+/// Makes descriptors with random rows (lines of the picture) and random other bits. Returns for each descriptor the first row,
+/// the row past the last, and all bits.
 fn descriptors(
     random: &mut Pcg64Mcg,
     layout: &Layout,

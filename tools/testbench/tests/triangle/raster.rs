@@ -296,7 +296,7 @@ fn whole_pictures() {
     }
 }
 
-/// The rasterizer drops a triangle without a row in the band, and draws the next one.
+/// The rasterizer drops a triangle without a line in the band, and draws the next one.
 #[test]
 fn triangles_outside_of_the_band() {
     let mut bench = Bench::new(15, 0.0, 0.0);
