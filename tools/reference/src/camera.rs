@@ -65,7 +65,8 @@ pub enum Side {
     Right,
 }
 
-/// Parameters of two parallel eyes whose pictures are shifted (off-axis projection).
+/// Parameters of a stereo picture: two eyes beside each other look in the same direction, and their pictures are shifted
+/// horizontally (off-axis projection).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
     /// Distance of each of the two eyes from the camera's `eye`, along the camera's direction `u`, in world units.
@@ -173,8 +174,8 @@ impl Camera {
         )
     }
 
-    /// Returns the ray from the eye through a point of the picture. `pixel` is a column and a row, counted from 0. Whole
-    /// numbers are the centres of pixels, and fractions lie between the centres.
+    /// Returns the ray from the eye through a point of the picture. `x` is the column and `y` the row of the point, counted
+    /// from 0. Whole numbers are the centres of pixels, and fractions lie between the centres.
     ///
     /// The ray's direction has a component of 1 along n, so the parameter t of a point of the ray is the point's depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
@@ -188,7 +189,8 @@ impl Camera {
         }
     }
 
-    /// Returns the ray from one eye of a stereo pair through a point of the picture. `pixel` is as in [`Self::ray`].
+    /// Returns the ray from one eye of a stereo pair through a point of the picture. `pixel` is the column and
+    /// the row of the point, as in [`Self::ray`].
     pub fn stereo_ray(&self, side: Side, stereo: Stereo, pixel: [f64; 2], size: Size) -> Ray {
         let offset = match side {
             Side::Left => -stereo.offset,

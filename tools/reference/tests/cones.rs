@@ -22,11 +22,12 @@ struct Seen {
     behind: f64,
     /// Number of rays whose kind of result (hit, miss or undecided) is different with the prepass.
     changed: usize,
-    /// Mean number of evaluations per ray, first without and then with a prepass.
+    /// Mean number of evaluations per ray, first without and then with a prepass, whose evaluations are included.
     cost: [f64; 2],
 }
 
-/// Compares the rays of a picture in one of every `stride` × `stride` pixels.
+/// Marches the rays of one pixel in each `stride` × `stride` block of a picture, with and without the prepass. Checks that no ray
+/// starts behind the surface that it hits, by more than the rounding error `STEPS`.
 fn see(scene: &str, setup: &FieldSetup, stride: u32) -> Seen {
     let field = Field::of(&Scene::parse(scene).expect("a field"));
     let size = (setup.width, setup.height);
@@ -95,8 +96,8 @@ fn no_ray_of_the_views_starts_behind_a_surface() {
     }
 }
 
-/// Draws frames of random cameras with any width of view, for one eye and for two
-/// eyes, in every kind of field. There are 39 frames, or as many as `GLINT_CONES` says.
+/// Draws frames of random cameras with any width of view, for one eye and for two eyes, in every kind of field, and checks the
+/// start of their rays (see `see`). There are 39 frames, or as many as the environment variable `GLINT_CONES` says.
 #[test]
 fn no_ray_of_random_cameras_starts_behind_a_surface() {
     let mut state = 7_u64;

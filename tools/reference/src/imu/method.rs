@@ -21,7 +21,8 @@ pub enum Method {
     Parabola,
     /// Integrates the cubic through the last four samples, with the coning term of the firmware.
     Cubic,
-    /// As `Cubic`, but with the coning term that follows from the cubic.
+    /// As `Cubic`, but the coning term has the coefficient that follows from the cubic. The firmware has another coefficient,
+    /// with which the error is smaller.
     PlainCubic,
 }
 

@@ -1,9 +1,9 @@
 //! Signed distances of points from solids. A signed distance is negative inside the solid, and outside it is not larger than
 //! the true distance to the surface.
 //!
-//! Distances from flat solids are in the maximum norm, distances from round solids in the Euclidean norm. Between two points,
-//! the signed distance differs by at most the Euclidean distance of the points. So the ball about a point, with the point's
-//! signed distance as radius, contains no part of the solid.
+//! Distances from flat solids (with plane faces) are in the maximum norm, distances from balls in the Euclidean norm. Between
+//! two points, the signed distance differs by at most the Euclidean distance of the points. So the ball about a point, with the
+//! point's signed distance as radius, contains no part of the solid.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};

@@ -15,8 +15,8 @@ pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
     /// Whether the rays 0.05 pixels to the left, to the right, above and below have the same result as the ray through the
-    /// centre. The result is the same if all hit the same face of the same member, at a depth that differs by at most a
-    /// thousandth, or if all miss. At an unstable pixel a correct picture may differ from the reference.
+    /// centre. The result is the same if all hit the same face of the same part of the field (`Hit::member`), at a depth that
+    /// differs by at most a thousandth, or if all miss. At an unstable pixel a correct picture may differ from the reference.
     pub stable: bool,
 }
 

@@ -287,8 +287,8 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Returns subjects that show the flat fields other than the sponge, seen from the side. Except for the box, these fields
-/// extend to the horizon.
+/// Returns subjects that show the flat fields (with plane faces) other than the sponge, seen from the side. Except for the box,
+/// these fields extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
     [
@@ -302,7 +302,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// Returns subjects that show round fields and unions, each field from the side and from within.
+/// Returns subjects that show round fields (with spheres) and unions, each field from the side and from within.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",

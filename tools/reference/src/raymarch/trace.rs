@@ -71,7 +71,7 @@ impl Field {
         Err(Unconverged { t })
     }
 
-    /// Returns the face, the outward normal and the number of the member at a point of the surface.
+    /// Returns the face, the outward normal and the number of the solid's part (`Hit::member`) at a point of the surface.
     pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
             Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {

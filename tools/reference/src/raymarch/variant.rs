@@ -29,7 +29,7 @@ impl Norm {
 pub struct Method {
     /// Norm in which the distance to the sponge is computed.
     pub distance: Norm,
-    /// Norm in which the length of a step is equal to the distance. If it is the norm of `distance`, steps are as long as the
+    /// Norm of a step: in this norm, a step is as long as the distance. If it is the norm of `distance`, steps are as long as the
     /// distance allows. With distances in the maximum norm, steps of the Euclidean norm are shorter than the distance allows.
     /// Euclidean distances require the Euclidean norm here.
     pub rays: Norm,

@@ -9,7 +9,7 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Cycles of the calls of a kernel, in clocks of the soft core.
+/// Cycles of the calls of a kernel (a measured function of the firmware), in clocks of the soft core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
     /// Cycles of the fastest call.

@@ -8,7 +8,7 @@
 /// Number of steps per pixel in the grid to which vertices are snapped.
 pub const SUBPIXELS: i64 = 256;
 
-/// Number of steps of a vertex's depth per depth code.
+/// Number of steps of a vertex's depth per depth code. Depth codes are the integer depths of pixels.
 pub const DEPTH_STEPS: i64 = 64;
 
 /// A vertex whose position is snapped to the grid of the screen.

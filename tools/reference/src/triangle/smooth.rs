@@ -81,7 +81,7 @@ pub struct Measured {
     pub back: u64,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
-    /// The smallest depth code of a covered pixel.
+    /// The smallest depth code of a covered pixel. It belongs to the farthest pixel.
     pub farthest: u32,
     /// Errors of the colours that the model draws.
     pub model: Errors,
@@ -220,7 +220,7 @@ fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }
 
-/// Smallest depth code that a camera and a mesh can give.
+/// Smallest depth code (code of the farthest depth) that a camera and a mesh can give.
 const FARTHEST: f64 = 228.0;
 /// Largest depth of a vertex, in steps of 1/64 depth code.
 const LARGEST: u32 = ((1 << 18) - 4) * 64;

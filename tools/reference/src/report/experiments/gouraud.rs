@@ -14,9 +14,9 @@ use crate::triangle::smooth::{Measured, scenes};
 pub struct Row {
     /// Description of the scene.
     pub scene: String,
-    /// Number of drawn triangles.
+    /// Number of drawn triangles: whole triangles, and those that the clipper made.
     pub triangles: u64,
-    /// Number of triangles that the clipper cut.
+    /// Number of drawn triangles that the clipper made.
     pub clipped: u64,
     /// Number of drawn triangles that show their back face.
     pub back_faces: u64,

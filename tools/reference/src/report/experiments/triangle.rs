@@ -130,7 +130,7 @@ fn ahead(half_width: f64) -> Result<View> {
     view::parse(json.as_bytes()).map_err(|error| anyhow::anyhow!("{error}"))
 }
 
-/// Speed of the engine in a scene: a line of `triangle.csv`. Cycles are clocks of the SoC for one frame.
+/// Speed of the triangle engine in a scene: a line of `triangle.csv`. Cycles are clocks of the SoC for one frame.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
     /// Name of the scene.
@@ -143,7 +143,7 @@ pub struct Row {
     pub triangles: u32,
     /// Number of triangles that were drawn.
     pub drawn: u32,
-    /// Number of triangles that the clipper cut.
+    /// Number of triangles that went through the clipper.
     pub clipped: u32,
     /// Number of covered pixels, counted by the model.
     pub pixels: u64,
