@@ -53,8 +53,8 @@ class MemoryBridge(LiteXModule):
             bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * word:][:_BUS_BITS] for word in range(_WORDS))[beat]),
         ]
 
-        # Word address of the second half of the line, kept because the bus access may have ended before
-        # memory takes its command.
+        # Word address of the second half of the cache line, kept because the bus access may have ended before memory takes its
+        # command.
         second = Signal.like(port.cmd.addr)
 
         # Number of 16-byte words that were requested and not yet taken out of `reads`.

@@ -195,9 +195,9 @@ class Raymarcher(LiteXModule):
         colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
             "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
-        # Control of the gated clock. It runs while the block is enabled and the engine's clock runs, and after writes to tables and
-        # spheres. Then it runs for 31 clocks more, because the last events come some clocks after the end of a pass, and all events
-        # must be 0 when it stops.
+        # Control of this block's gated clock. The clock runs while the block is enabled and the triangle engine's clock runs,
+        # and after writes to tables and spheres. Then it runs for 31 clocks more, because the last events come some clocks
+        # after the end of a pass, and all events must be 0 when it stops.
         lingers, working = Signal(5), Signal()
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(

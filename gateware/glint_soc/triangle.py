@@ -177,7 +177,7 @@ class TriangleEngine(LiteXModule):
 
         # # #
 
-        # Control of the gated clock: the engine is clocked while `working` is high and for 31 clocks after that.
+        # Control of the gated clock: the triangle engine is clocked while `working` is high and for 31 clocks after that.
         self.clk = Signal()
         self.clock_enable = Signal()
         recovering, linger = Signal(), Signal(5)
@@ -190,7 +190,7 @@ class TriangleEngine(LiteXModule):
         # The clock runs on after a pass, because the last events reach the counters some clocks later.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
-        # Signals between the engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
+        # Signals between the triangle engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
         self.field = field = Record([
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])

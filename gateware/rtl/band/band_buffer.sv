@@ -87,7 +87,8 @@ module band_buffer #(
 );
     localparam int unsigned ROW_BITS = 11;
 
-    // Number of the colour bank that is drawn; the other bank is flushed.
+    // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the drawn band
+    // waits for its end, and `swap` in the clock in which the banks change places.
     logic drawn, closing, swap;
 
     // State of band_pipe, which draws, and its signals to and from the memories.

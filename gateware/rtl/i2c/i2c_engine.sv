@@ -190,7 +190,7 @@ module i2c_engine #(
                         scl_out <= 1'b0;
                         state   <= LOW;
                         shift   <= {shift[7:0], sda};
-                        // SDA is low although this bit is a 1: another device pulls SDA low.
+                        // SDA differs from the bit that is sent: another device pulls SDA low during a 1.
                         if (!ninth && command.operation == WRITE && sda != shift[8]) begin
                             error   <= DATA;
                             scl_out <= 1'b1;

@@ -12,7 +12,8 @@
 `default_nettype none
 
 module field_unit #(
-    // Number of levels of the Menger sponge, 0 for a build without it.
+    // LEVELS: levels of the Menger sponge, 0 for a build without it. FIELDS: a bit for each flat field of the build, by its
+    // number. ROUND: spheres. BLEND: fillets.
     parameter int unsigned LEVELS = 4,
     parameter int unsigned FIELDS = 1,
     parameter bit          ROUND  = 1'b0,

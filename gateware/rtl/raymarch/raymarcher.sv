@@ -55,7 +55,7 @@ module raymarcher #(
     input  wire  [2:0][23:0]          bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
-    // Spheres of the field, used with ROUND and written between frames.
+    // Spheres of the field, written one by one between frames, and lights on them. Used with ROUND.
     input  wire                       sphere_write,
     input  wire  [2:0]                sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,

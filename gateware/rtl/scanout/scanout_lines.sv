@@ -53,8 +53,8 @@ module scanout_lines #(
         next_exists = next < (Y_BITS'(V_ACTIVE) >> shift);
     end
 
-    // `hidden_asked` is high if a fetch into the hidden slot was requested in this frame, `hidden_ready` if it has also ended
-    // with the needed line.
+    // `frame_open` is high from `frame_begun` to the next vertical blanking. `hidden_asked` is high if a fetch into the hidden
+    // slot was requested in this frame, `hidden_ready` if it has also ended with the needed line.
     logic frame_open, hidden_asked, hidden_ready;
     assign hidden_ready = hidden_asked && !fetch_busy && fetch_line == needed && in_picture;
 

@@ -58,8 +58,8 @@ module list_reader #(
 
     assign lists = list_base;
 
-    // Requests the lengths of the lists, one read for each list. A word of the table has the lengths of four bands, and is read
-    // again for each of them, because the lists of the two sets alternate.
+    // Requests the lengths of the lists, one read for each list. A word of the table of lengths has the lengths of four bands,
+    // and is read again for each of them, because the lists of the two sets alternate.
     logic       asks_lengths, length_set;
     logic [5:0] length_band;
 

@@ -1,8 +1,8 @@
 // Evaluates a plane of light (the linear function of one colour channel, see triangle_pkg) at the row where the triangle enters
 // the band: start + step_y * offset, modulo 2^32, with `offset` the number of rows from the triangle's first row to that row.
 //
-// The module `band_entry` drives the control inputs and counts the passes: the low 24 bits of step_y are multiplied in pass 5,
-// its high 8 bits in pass 7.
+// The module `band_entry` drives the control inputs and counts the passes, steps 0 to 7 of a triangle: the low 24 bits of
+// step_y are multiplied in pass 5, its high 8 bits in pass 7.
 
 `default_nettype none
 

@@ -25,8 +25,8 @@ module setup_normal (
     logic signed [45:0] c, p;
     logic        [20:0] factor;
 
-    // The factors follow from count = 4·k + 2·low + term: k is 0 for Nx and 1 for Ny, low is 1 for the low bits, term is 0 or
-    // 1. The addend `c` comes two clocks after the factors of its product.
+    // The factors follow from count = 4·k + 2·low + term: k is 0 for Nx and 1 for Ny, low is 1 for the low bits, term is 0 or 1
+    // for the first or second product of the formula. The addend `c` comes two clocks after the factors of its product.
     always_comb begin
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);

@@ -36,7 +36,7 @@ module triangle_engine #(
     input  wire  raster_start,
     input  wire triangle_registers_pkg::raster_flags_t raster_flags,
     input  wire triangle_registers_pkg::raster_t raster,
-    // Link to an optional raymarcher outside of the engine, explained in raster_unit.
+    // Link to an optional raymarcher outside of the triangle engine, explained in raster_unit.
     input  wire triangle_registers_pkg::field_source_t field_source,
     output triangle_registers_pkg::field_sink_t field_sink,
     // Memory.

@@ -1,5 +1,5 @@
-// Step 5 of the vertex stage: y = recip(m), about 2^47/m (docs/formats.md, "The reciprocal"), one result every 6 clocks. Up to
-// three vertices share one multiplier.
+// Step 5 of the vertex stage: y = recip(m), about 2^47/m, one result every 6 clocks. Up to three vertices share one multiplier.
+// docs/formats.md, "The reciprocal", defines y0, y1, e0' and e1'.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //

@@ -29,9 +29,9 @@ module vertex_snap (
     input  wire  [23:0]       inverse,
     output triangle_pkg::projected_t vertex
 );
-    // w is the product km·y divided by 2^(16 + depth_shift), and saturates for a negative depth_shift. `lead` of
-    // docs/formats.md is 40 − zeros. Both registers shift every 6 clocks, so that their five places follow the vertices through
-    // the stage: `depth_shifts` from clock 8 of a vertex on, `behinds` from clock 9 on.
+    // w is the product km·y divided by 2^(16 + depth_shift), with km = `depth_mantissa`; it saturates for a negative
+    // depth_shift. `lead` of docs/formats.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so
+    // that their five places follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;
     logic signed [4:0] depth_shift;
