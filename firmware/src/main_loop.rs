@@ -180,7 +180,7 @@ impl MainLoop {
         }
     }
 
-    /// Continues the job, if there is one, and ends the reply of its command when the job has ended.
+    /// Continues the job that a command has left, if there is one, and ends the reply of this command when the job has ended.
     fn poll_job(&mut self) {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };

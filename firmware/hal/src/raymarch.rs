@@ -24,7 +24,8 @@ pub struct Capabilities {
     pub lanes: u8,
     /// Largest number of levels of a sponge that this build draws; 0 if it draws no sponges.
     pub levels: u8,
-    /// Kinds of flat fields that this build draws: bit k is 1 if it draws the kind with the value k in `Kind`.
+    /// Kinds of flat fields (fields with plane faces) that this build draws: bit k is 1 if it draws the kind with the value k
+    /// in `Kind`.
     pub flat: u8,
     /// Whether this build draws two eyes.
     pub stereo: bool,
@@ -41,7 +42,7 @@ pub struct Capabilities {
 pub enum Missing {
     /// Sponges deeper than this number of levels, which is the limit of this build; 0 if the build has no sponges.
     Levels(u8),
-    /// Flat fields of this kind.
+    /// Flat fields (fields with plane faces) of this kind.
     Flat(Kind),
     /// Spheres.
     Round,

@@ -7,7 +7,7 @@ use glint_vectors::{Camera, Model, Picture, Random, math::world};
 
 const SIZE: (u32, u32) = SIZES[0];
 
-/// Radius of a mesh that may have vertices at all positions, 14 fraction bits.
+/// Radius of a mesh that may have vertices at all positions of the mesh format, 14 fraction bits.
 const RADIUS: u32 = 56_756;
 
 fn random_frame(random: &mut Random) -> MeshSetup {

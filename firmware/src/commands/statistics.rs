@@ -50,8 +50,8 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     Ok(())
 }
 
-/// Statistics of a frame that both backends report, as names and values. The capacity of the list suffices for all
-/// statistics.
+/// Statistics of a frame that both backends (CPU and gateware) report, as names and values. The capacity of the list suffices
+/// for all statistics.
 fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16> {
     let mut values = Vec::new();
     let _ = values.push(("cycles", cycles));

@@ -1,4 +1,4 @@
-//! Unions of a flat and a round solid, sharp or with a fillet.
+//! Unions of a flat solid, which has plane faces, and a round solid, which has spheres: sharp or with a fillet.
 //!
 //! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
 //! "smooth minimum"): min(a, b) − h²/4k with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both

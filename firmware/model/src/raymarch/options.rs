@@ -64,7 +64,7 @@ impl Tuning {
 pub struct FieldOptions {
     /// Two eyes for a stereo picture, or `None` for one eye.
     pub stereo: Option<Stereo>,
-    /// Precision of the march.
+    /// Precision of the march of rays.
     pub tuning: Tuning,
     /// Colours, without fog.
     pub palette: Palette,

@@ -14,7 +14,7 @@ pub struct Palette {
     pub faces: [[u8; 3]; 8],
     /// Lights and materials of the spheres.
     pub lights: Lights,
-    /// Colour of an undecided ray.
+    /// Colour of an undecided ray, which has reached its step limit.
     pub undecided: [u8; 3],
     /// Colour of the sky at the zenith.
     pub zenith: [u8; 3],

@@ -22,7 +22,7 @@ pub struct FieldStats {
     pub hits: u32,
     /// Rays that missed.
     pub misses: u32,
-    /// Rays that ended undecided.
+    /// Rays that ended undecided, at the step limit.
     pub undecided: u32,
 }
 

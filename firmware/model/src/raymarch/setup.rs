@@ -59,7 +59,7 @@ pub struct FieldSetup {
     pub depth: DepthScale,
     /// Scale K of depth codes (a code is K/depth), for depths in world units, for the host.
     pub world_depth: DepthScale,
-    /// Precision of the march.
+    /// Precision of the march of rays.
     pub tuning: Tuning,
     /// Colours in which the two eyes are shown in stereo; `None` for one eye.
     pub stereo: Option<Tint>,

@@ -75,7 +75,7 @@ impl Light {
         }
     }
 
-    /// Combines two lights channel by channel.
+    /// Combines two lights by `operation`, channel by channel and separately for front and back faces.
     pub fn zip_with(self, other: Self, operation: impl Fn(u16, u16) -> u16) -> Self {
         let both = |Lit(a): Lit, Lit(b): Lit| {
             Lit([0, 1, 2].map(|channel| operation(a[channel], b[channel])))
