@@ -1,4 +1,4 @@
-//! Counters of an accelerator, identified by name, so that a new counter in the gateware needs no change here.
+//! Counters of an accelerator, identified by name, so that a new counter in the gateware needs no change of the host program.
 
 use std::fmt;
 

@@ -63,7 +63,7 @@ enum Task {
     },
     /// Build everything and run every test
     Test,
-    /// Check the sources: no circles between modules, no `#[path]`, no file above 500 lines
+    /// Check the sources: no circular dependencies between modules, no `#[path]`, no file above 500 lines
     Modules,
     /// Measure the FPGA resources of the gateware; fail above the limits of gateware/budget.toml
     Resources {
@@ -76,11 +76,11 @@ enum Task {
         #[arg(long, conflicts_with = "blocks")]
         write: bool,
     },
-    /// Measure error against run time and write docs/report
+    /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
         /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`; or `pages`: rebuild all pages from their tables
         page: String,
-        /// Arguments of the report
+        /// Arguments for the report program
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },

@@ -204,7 +204,8 @@ impl DemoArguments {
         let mut cycles = 0;
         let mut images = Vec::new();
         for number in 0..self.orbit {
-            // The text of `camera` is shorter than that of `view`, and the serial line takes most of a frame's time.
+            // The command `camera` has a shorter text than the command `view`, and most of a frame's time goes into the transfer
+            // of text over the serial line.
             let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
             let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
             renderer.console().command(&command)?;

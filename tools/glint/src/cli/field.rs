@@ -16,8 +16,9 @@ use std::fmt::Display;
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
     field: Option<String>,
-    /// Stereo for a field without a mesh: two eyes at a distance of E (0 to 1) to the left and right of the camera, with zero
-    /// parallax at the distance ZERO. The left eye is red, the right one blue or cyan [default tint: red-blue].
+    /// Stereo for a field without a mesh: one eye E to the left of the camera and one E to the right (0 to 1), with zero
+    /// parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default
+    /// tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
     /// Material of a field; `normal` colours each face by its normal [default: normal].
@@ -40,7 +41,7 @@ pub struct FieldArguments {
     /// Ambient occlusion: darken a field's surface where other surfaces are close.
     #[arg(long)]
     occlusion: bool,
-    /// Before the rays, march a cone for each block of pixels; the block's rays start where the cone ends. This
+    /// Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This
     /// saves evaluations of the field.
     #[arg(long)]
     prepass: bool,

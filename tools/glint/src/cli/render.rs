@@ -61,7 +61,7 @@ pub struct RenderArguments {
     /// surface is.
     #[arg(long, value_name = "DEPTH.f32")]
     depth: Option<PathBuf>,
-    /// Write cycles, counts of triangles, pixels and rays, and the clock as JSON.
+    /// Write as JSON: clock cycles, the clock's frequency in Hz, and counts of triangles, pixels and rays.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Draw back faces too.

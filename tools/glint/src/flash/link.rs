@@ -180,8 +180,8 @@ impl<'b> Link<'b> {
         Ok(rest)
     }
 
-    /// Makes the next frames longer, or the next batches if frames have their full length. The batch before had `frames` frames
-    /// and arrived in `milliseconds`.
+    /// Makes the next frames longer after a batch of `frames` frames has arrived in `milliseconds`. If frames have their full
+    /// length already, the next batches get longer instead, but only where answers are slow (`PROMPT_MS`).
     pub fn grow(&mut self, frames: usize, milliseconds: u64) {
         self.failures = 0;
         if self.data < MAX_DATA {

@@ -32,7 +32,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
     }
 
-    /// Sets the backend of all frames from now on; `None` leaves the choice to the board.
+    /// Sets the backend of all frames from now on, the soft core or the gateware; `None` leaves the choice to the board.
     #[must_use]
     pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
         let backend = backend.into();
@@ -45,7 +45,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { route, ..self }
     }
 
-    /// Sets the backend of all frames from now on; `None` leaves the choice to the board.
+    /// Sets the backend of all frames from now on, the soft core or the gateware; `None` leaves the choice to the board.
     pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
         self.backend = backend.into();
     }

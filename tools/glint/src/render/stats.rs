@@ -27,7 +27,7 @@ pub struct Stats {
     pub engine: Counters,
 }
 
-/// Counts of a mesh.
+/// Counts of triangles and pixels of a frame with a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TriangleCounts {
     /// Triangles in the mesh.
@@ -47,7 +47,7 @@ pub struct TriangleCounts {
     pub pixels_drawn: Option<u64>,
 }
 
-/// Counts of a field.
+/// Counts of rays and evaluations of a frame with a field.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RayCounts {
     /// Rays, one for each pixel and eye.

@@ -9,7 +9,7 @@ use glint::{generate, view};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 
-/// Board time without output after which the firmware counts as failed.
+/// Milliseconds of board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
 
 /// A board that starts with the built firmware in its memory.
