@@ -1,5 +1,5 @@
 // Stand-in for the module stepper in proofs. Edge functions and depths are arbitrary, but constant while the walker stalls. Only
-// the number of a group is computed as in the real stepper.
+// the number of a group (eight neighbouring pixels of a line) is computed as in the real stepper.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // Proof of band_extents, which computes for each line of a band the span of words that the flush of the band writes. The size is
-// small: bands of one to four lines with one to three columns, and two frame buffers of four lines. Groups and bands are
-// arbitrary, and so is the time at which a span is taken.
+// small: bands of one to four lines with one to three columns (words of eight pixels), and two frame buffers of four lines.
+// Groups, each of which draws one column of a line, and bands are arbitrary, and so is the time at which a span is taken.
 //
 // The proof keeps two sets of columns: for each line of the current band the columns drawn so far, and for each line of a frame
 // buffer the columns drawn in the last band that was flushed there. The expected span of a line goes from the first to the last

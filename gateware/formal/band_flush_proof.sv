@@ -1,5 +1,5 @@
 // Proof of band_flush, which writes the rows of a band from a bank of the band buffer to memory and clears them. The size is
-// small: any of four rows in any spans, and four words in flight. Back-pressure and restarts come at any time.
+// small: any of four rows in any spans (ranges of rows), and four words in flight. Back-pressure and restarts come at any time.
 //
 // Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. So the expected words are
 // known: first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. Afterwards

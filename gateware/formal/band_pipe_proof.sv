@@ -1,8 +1,9 @@
 // Proof that band_pipe handles its read-modify-write hazard: the result equals that of a memory without latency.
 //
-// The pipe works on two rows of a depth memory and its written bits, with the latencies of band_bank; any groups come at any
-// time. The proof follows one pixel, an arbitrary lane of an arbitrary row: each accepted group updates a copy of this pixel at
-// once. When the pipe is empty, the copy and the memory must agree.
+// The pipe works on two rows of a depth memory, with a bit per pixel that tells whether it was written, and with the latencies
+// of band_bank; any groups (eight pixels for one row) come at any time. The proof follows one pixel, an arbitrary lane of an
+// arbitrary row: each accepted group updates a copy of this pixel at once. When the pipe is empty, the copy and the memory must
+// agree.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
-// Proof of `lanes`, which computes which pixels of a group are covered, with the skid buffer at its output, for any pattern of
-// valid and ready on both sides. Groups are numbered, and cover all of their pixels or none. Each group with coverage comes out
-// once, in order, with all its fields; a group without coverage never comes out. A group becomes valid at the output even if the
-// consumer is not ready.
+// Proof of `lanes`, which computes which of the eight pixels (lanes) of a group a triangle covers, with the skid buffer at its
+// output, for any pattern of valid and ready on both sides. Groups are numbered, and all of their pixels are covered or none.
+// Each group with covered pixels comes out once, in order, with all its fields; a group without them never comes out. A group
+// becomes valid at the output even if the consumer is not ready.
 
 `default_nettype none
 
@@ -31,8 +31,8 @@ module lanes_proof (
     logic [BITS-1:0]        kept = '0, went = '0, number;
     logic [2:0]             unseen = '0, refused = '0;
 
-    // Groups without coverage carry the number `'1`, which the proof never expects at the output. One of their edges passes only
-    // in lane 7 and another only in lane 0, so no lane passes all edges.
+    // Groups without covered pixels carry the number `'1`, which the proof never expects at the output. One of their edges passes
+    // only in lane 7 and another only in lane 0, so no lane passes all edges.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

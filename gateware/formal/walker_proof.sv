@@ -1,5 +1,6 @@
-// Proof that the walker visits the right groups of each triangle, with any edge functions and any pattern of valid and ready on
-// both sides. Triangles are numbered in their colour; their bounds are up to three groups wide and two lines high.
+// Proof that the walker visits the right groups (eight neighbouring pixels of a line) of each triangle, with any edge functions
+// and any pattern of valid and ready on both sides. Triangles are numbered in their colour; their bounds are up to three groups
+// wide and two lines high.
 //
 // Groups come out in the order of the accepted triangles, within the lines and bounds of their triangle, none twice. If no edge
 // fails anywhere, every group of the bounds comes out. The walk over each triangle ends within a fixed number of clocks.

@@ -9,7 +9,7 @@ use glint_model::raymarch::{
 /// Place of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// Whether the number of the band is odd.
+    /// Whether the number of the pixel's band is odd.
     pub odd: bool,
     /// Line in the band.
     pub line: u32,
@@ -322,8 +322,8 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Drives the constants of cones: on the port `offset`, the offset of a block's middle from its first pixel; on the port
-/// `spread`, the spread of a cone.
+/// Drives the constants of cones, of which each stands for a block of pixels: on the port `offset`, the change of the ray
+/// direction from a block's first pixel to its middle; on the port `spread`, its largest change from the middle to a pixel.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();

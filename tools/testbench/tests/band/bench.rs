@@ -1,4 +1,4 @@
-//! Test bench of the band buffer, with a source of groups and bands, and a memory.
+//! Test bench of the band buffer, with sources of groups of pixels and of ends of bands, and a memory.
 
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
@@ -220,7 +220,7 @@ impl Bench {
 
 impl Bench {
     /// Restarts the band buffer while memory takes no words, and checks that the buffer nevertheless clears its banks.
-    /// Then memory takes words again, and only words of the FIFO may follow.
+    /// Then memory takes words again, and no more words may follow than the buffer's FIFO holds.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 

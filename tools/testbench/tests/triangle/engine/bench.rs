@@ -363,8 +363,8 @@ impl Bench {
         }
     }
 
-    /// Draws a frame from any descriptors and lists, valid or not. All bands have the entries `list` as their list; each
-    /// band's length of the list is in `lengths`.
+    /// Draws a frame from any descriptors and lists, valid or not. The list of every band has the entries `list`; `lengths`
+    /// is the table of the lists' lengths, one for each band.
     ///
     /// # Panics
     /// When the frame does not end, or a word behind the picture changes.
