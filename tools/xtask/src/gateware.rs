@@ -51,7 +51,7 @@ pub enum Fields {
 }
 
 impl Fields {
-    /// Name on the command line of `glint_soc`.
+    /// Name of the set of fields on the command line of the program `glint_soc`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::All => "all",

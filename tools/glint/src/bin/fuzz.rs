@@ -16,10 +16,10 @@ use std::time::{Duration, Instant};
 /// number runs it again.
 #[derive(Parser)]
 struct Arguments {
-    /// Targets [default: all].
+    /// Fuzz targets to run [default: all].
     #[arg(value_enum)]
     targets: Vec<Target>,
-    /// Inputs per target.
+    /// Number of inputs that each target runs.
     #[arg(long, default_value_t = 100_000)]
     inputs: u64,
     /// Seed of the inputs.

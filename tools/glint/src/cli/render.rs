@@ -54,7 +54,7 @@ pub struct RenderArguments {
     /// Size of the picture: 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "320x180")]
     size: String,
-    /// The picture to write.
+    /// Picture file to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
     /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 a pixel, +inf where no

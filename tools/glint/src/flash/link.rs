@@ -72,12 +72,12 @@ pub enum FlashError {
 
 /// The outcome of sending a batch of frames.
 pub enum Delivery {
-    /// Every frame was acknowledged.
+    /// Every frame was answered by `K`, which confirms it.
     Arrived {
         /// The board's time from the first frame to the last answer.
         milliseconds: u64,
     },
-    /// An answer was missing or negative.
+    /// The answers were not exactly one `K` per frame.
     Failed {
         /// The received answers.
         found: String,
@@ -133,7 +133,7 @@ impl<'b> Link<'b> {
             .collect()
     }
 
-    /// Sends a batch of frames, and waits for one positive answer to each.
+    /// Sends a batch of frames, and waits for one positive answer, `K`, to each.
     pub fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
         let start = self.board.now_ms();
         for frame in frames {

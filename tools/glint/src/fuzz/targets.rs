@@ -17,17 +17,17 @@ pub enum Target {
     Upload,
     /// The line editor and the grammar of commands.
     Console,
-    /// OBJ and its material files.
+    /// OBJ files and their material files.
     Obj,
-    /// STL.
+    /// STL files.
     Stl,
-    /// PLY.
+    /// PLY files.
     Ply,
     /// Meshes in a board's memory layout.
     Glm,
-    /// Logs of a gyroscope and an accelerometer.
+    /// Logs of a gyroscope and an accelerometer, as CSV text.
     Imu,
-    /// Logs in a board's format.
+    /// Logs of a gyroscope and an accelerometer, in the binary format that boards replay.
     Replay,
 }
 

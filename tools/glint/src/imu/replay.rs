@@ -15,7 +15,7 @@ use glint_core::orientation::{Counts, LONGEST_STEP, Quaternion, Sample};
 /// Options of a replay.
 #[derive(Clone, Copy, Debug)]
 pub struct Options {
-    /// Scales of the raw counts.
+    /// Scales of the raw counts: LSB per °/s and LSB per g.
     pub units: Units,
     /// Fixed sample period in µs, used instead of the time stamps.
     pub period: Option<u32>,

@@ -116,7 +116,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Moves the camera, and waits until the frame from there is drawn.
     ///
     /// # Errors
-    /// The firmware refuses.
+    /// The firmware refuses the command, or does not answer.
     pub fn look(&mut self, view: &View) -> Result<Stats, Error> {
         self.console.command(&view_command(view))?;
         self.redraw()
@@ -192,7 +192,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Draws the frame again and reads its statistics.
     ///
     /// # Errors
-    /// The firmware refuses.
+    /// The firmware refuses the command, or does not answer.
     pub fn redraw(&mut self) -> Result<Stats, Error> {
         let lines = self.console.command("render")?;
         Ok(stats_of(&lines)?)
@@ -201,7 +201,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// Sends a command that changes the scene, draws one frame, and reads its statistics.
     ///
     /// # Errors
-    /// The firmware refuses.
+    /// The firmware refuses the command, or does not answer.
     pub fn render_after(&mut self, command: &str) -> Result<Stats, Error> {
         // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
         let text = format!("{command}\rrender\r");

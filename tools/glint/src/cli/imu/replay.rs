@@ -35,7 +35,7 @@ pub struct ReplayArguments {
     /// same attitudes.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
-    /// File to write.
+    /// File to write the attitudes to.
     #[arg(long, value_name = "ORIENTATION.csv")]
     out: PathBuf,
     /// Fixed sample period in microseconds, instead of the time stamps; ORIENTATION.csv keeps the stamps.

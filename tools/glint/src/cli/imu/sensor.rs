@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them.
 #[derive(Args)]
 pub struct StreamArguments {
-    /// Number of samples.
+    /// Number of samples to stream.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
@@ -51,7 +51,7 @@ fn line(entry: &Entry) -> String {
 /// Measure the gyroscope's bias at rest; the board stores it and tracks it from then on.
 #[derive(Args)]
 pub struct CalibrateArguments {
-    /// Number of samples.
+    /// Number of samples to average.
     #[arg(long, value_name = "N", default_value_t = SAMPLES, value_parser = clap::value_parser!(u32).range(i64::from(MOST_SAMPLES[0])..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
@@ -95,7 +95,7 @@ pub struct RecordArguments {
     /// Log to write.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Number of samples.
+    /// Number of samples to record.
     #[arg(long, value_name = "N", default_value_t = 1_000, value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST_SAMPLES[1])))]
     samples: u32,
     #[command(flatten)]
