@@ -32,7 +32,7 @@ SEEDS = (1, 2, 3)
 """Seeds of the placer. The rate of a block is the median of their rates."""
 
 _FOLDER = BUILD.parent / "route"
-_VEXRISCV = Path(pythondata_cpu_vexriscv.data_location) / "verilog" / "VexRiscv_Full.v"
+_VEXRISCV = Path(pythondata_cpu_vexriscv.data_location) / "VexRiscv_Full.v"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6", "--freq", "100", "--timing-allow-fail", "--lpf-allow-unconstrained"]
 _CLOCK = re.compile(r"(\w+_)?clk(_\w+)?")
 _BLOCK = "block." # the module's instance in the wrapper
