@@ -7,4 +7,5 @@ mod common;
 mod fields;
 mod meshes;
 mod sensor;
+mod serial_boot;
 mod uploads;

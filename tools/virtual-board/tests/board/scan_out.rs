@@ -1,7 +1,6 @@
 //! Tests of scan-out to the monitor through the whole SoC: all scales, a flip to another frame, and memory traffic of the CPU.
 
-mod program;
-
+use crate::program;
 use litex_pac::{leds, scanout};
 use virtual_board::{HEIGHT, WIDTH};
 

@@ -1,10 +1,8 @@
 //! Tests of the firmware's console: its output, word for word, and its behaviour on noise and long input.
 
-mod firmware;
-
 use std::path::Path;
 
-use firmware::{PROMPT, command, image, started};
+use crate::firmware::{LIMIT, PROMPT, command, image, started};
 use litex_pac::triangle::Counters;
 
 /// Keys of output lines whose values depend on time.
@@ -51,7 +49,7 @@ fn lasting(text: &str) -> String {
 /// environment it rewrites the transcript.
 #[test]
 fn console_output_matches_the_transcript() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/firmware/console.txt");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/board/console.txt");
     let expected = std::fs::read_to_string(&path).expect("the transcript");
     let (mut board, mut transcript) = started(&image());
     for line in expected
@@ -97,7 +95,7 @@ fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
     // The zero byte clears the noise from the input line.
     board.uart_write(b"\0leds 7\r");
     board
-        .read_until("leds 7\r\nok\r\nglint> ", firmware::LIMIT)
+        .read_until("leds 7\r\nok\r\nglint> ", LIMIT)
         .expect("an answer");
     assert_eq!(board.leds(), 7);
     board.uart_write(&[b'x'; 720]);
@@ -109,9 +107,7 @@ fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
     // Twenty commands in one write are all answered.
     board.uart_write(b"buttons\r".repeat(20).as_slice());
     for _ in 0..20 {
-        let answer = board
-            .read_until(PROMPT, firmware::LIMIT)
-            .expect("an answer");
+        let answer = board.read_until(PROMPT, LIMIT).expect("an answer");
         assert!(
             answer.ends_with("buttons 0x0\r\nswitches 0x0000\r\nok\r\nglint> "),
             "{answer}"

@@ -1,9 +1,7 @@
 //! Tests of the SoC's I2C master, and of the firmware's attitude, with a virtual MPU-6050 on the SoC's pins.
 
-mod firmware;
-mod program;
-
-use firmware::{PROMPT, command, image};
+use crate::firmware::{LIMIT, PROMPT, command, image};
+use crate::program;
 use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 use virtual_board::{Start, VirtualBoard};
@@ -106,7 +104,7 @@ fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualB
         sensor.chip.write(register, value);
     }
     board.plug(sensor);
-    board.read_until(PROMPT, firmware::LIMIT).expect("a prompt");
+    board.read_until(PROMPT, LIMIT).expect("a prompt");
     board
 }
 

@@ -1,8 +1,6 @@
 //! Tests of the firmware on gateware of another build, and of its report of traps.
 
-mod firmware;
-
-use firmware::{LIMIT, address, command, image, patch, started};
+use crate::firmware::{LIMIT, PROMPT, address, command, image, patch, started};
 use litex_pac::BUILD_ID;
 
 #[test]
@@ -78,5 +76,5 @@ fn reboot_starts_again() {
     board.uart_write(b"reboot\r");
     board.read_until("ok\r\n", LIMIT).expect("an answer");
     board.read_until("Glint ", LIMIT).expect("a banner");
-    board.read_until(firmware::PROMPT, LIMIT).expect("a prompt");
+    board.read_until(PROMPT, LIMIT).expect("a prompt");
 }

@@ -9,7 +9,7 @@ use virtual_board::{Start, VirtualBoard};
 /// Lock on the assembled files: tests run in parallel, and some assemble the same program.
 static FILES: Mutex<()> = Mutex::new(());
 
-/// Starts a board that runs `tests/programs/NAME.S` from the start of main RAM; `symbols` are constants for the assembler.
+/// Starts a board that runs `tests/board/programs/NAME.S` from the start of main RAM; `symbols` are constants for the assembler.
 pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
     let start = Start::Fast {
         firmware: &assemble(name, symbols),
@@ -24,7 +24,7 @@ pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
 fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
     let _files = FILES.lock().expect("no other test fails here");
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/programs")
+        .join("tests/board/programs")
         .join(name)
         .with_extension("S");
     let output = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));

@@ -1,7 +1,6 @@
 //! Tests of the preloaded start, the pins, and the back door against a program whose data are in the CPU's caches.
 
-mod program;
-
+use crate::program;
 use litex_pac::{buttons, leds, switches};
 use virtual_board::VirtualBoard;
 

@@ -1,7 +1,5 @@
 //! Helpers for tests of the firmware: its image, and boards that run it.
 
-#![allow(dead_code)] // Each test program uses only some of the helpers.
-
 use std::path::{Path, PathBuf};
 
 use litex_pac::memories::MAIN_RAM;
