@@ -185,7 +185,7 @@ impl Quaternion {
     fn renormalised(self) -> Self {
         let parts = self.parts.map(i64::from);
         let excess = (1 << 60) - parts.iter().map(|x| x * x).sum::<i64>();
-        // For an error of the length within 2^−15, |excess| is below 2^46, so the products stay below 2^62.
+        // For an error of the length within 2^−15, |excess| is about 2^46 at most, so x·(excess >> 29) is below 2^48.
         let parts = parts.map(|x| (x + ((x * (excess >> 29) + (1 << 31)) >> 32)) as i32);
         Self { parts }
     }

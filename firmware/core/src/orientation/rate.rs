@@ -107,7 +107,8 @@ impl Weights {
             return Self::EVEN;
         }
         let g = Divisor::new(h1).ratio(step);
-        // Without two earlier steps D is unknown, because it needs S of the previous step; the weights of D are then 0.
+        // D of the cubic (see the head of this file) needs S of the previous step. Without two earlier steps it is unknown, and its
+        // weights are 0.
         let (mut near, mut far) = (0, 0);
         if steps == 2 && ORDER >= 4 {
             let all = Divisor::new(step + h1 + h2);
