@@ -15,7 +15,7 @@ SLICE_LUTS, SLICE_FLIP_FLOPS = 4, 8
 _FLIP_FLOP = re.compile(r"(FD[RSCP]|LD[CP])E(_1)?")
 _RESETS = ("R", "S", "CLR", "PRE")
 
-# Pads and clock buffers: a net without a name on one side has the name of the other side.
+# Pads and clock buffers: the nets on both sides share their names.
 _BUFFERS = {"IBUF", "OBUF", "BUFG"}
 
 # Names that Yosys derives from the cells around a net without a name (`autoname`).
@@ -38,7 +38,7 @@ class Netlist:
         for cell in self.cells.values():
             if cell["type"] in _BUFFERS:
                 (out,), (into,) = cell["connections"]["O"], cell["connections"]["I"]
-                self._names[out], self._names[into] = self._names[out] or self._names[into], self._names[into] or self._names[out]
+                self._names[out] = self._names[into] = self._names[out] + self._names[into]
         self._drivers, self._loads = {}, defaultdict(list)
         for name, cell in self.cells.items():
             for pin in cell["connections"]:

@@ -4,6 +4,7 @@ import json
 import os
 import re
 
+import netlist
 import urbana
 from modules import MODULES
 from tools import BUILD, TESTS, ToolError, run_yosys
@@ -31,6 +32,7 @@ _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 # kind would cut a path, so none is allowed.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten;
 tee -q -o {folder}/cells.json stat -json;
+select {top}; write_json -selected {folder}/netlist.json; select -clear;
 techmap -map {reads}; opt_clean;
 select -assert-none t:RAM32* t:RAM64* t:RAM128* t:RAM256* t:RAM512*;
 delete t:* t:LUT* %d t:INV %d t:CARRY4 %d t:MUXF* %d t:$lut %d;
@@ -38,7 +40,8 @@ tee -q -o {folder}/path.txt ltp"""
 
 
 def measure(name):
-    """Returns the resources of a block, a variant of one, or the SoC, and its longest path in cells, as a dictionary.
+    """Returns the resources of a block, a variant of one, or the SoC, its longest path in cells, and what its flip-flops and
+    nets mean for placement (see `netlist.placement`), as a dictionary.
 
     The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
     """
@@ -60,15 +63,17 @@ def build(name):
 def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
-    cells, path, log = (folder / file for file in ("cells.json", "path.txt", "yosys.log"))
-    for result in (cells, path, log):
+    cells, mapped, path, log = (folder / file for file in ("cells.json", "netlist.json", "path.txt", "yosys.log"))
+    for result in (cells, mapped, path, log):
         result.unlink(missing_ok=True)
     script = set_parameters(top, parameters or {}) + _SCRIPT.format(top=top, folder=os.path.relpath(folder, cwd),
                             reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
     run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
-    return {"yosys": stat["creator"].split(" (")[0], **sort_cells(stat["design"]["num_cells_by_type"], ignored),
-            "path": longest_path(path.read_text())}
+    resources = sort_cells(stat["design"]["num_cells_by_type"], ignored)
+    luts = sum(resources[kind] for kind in ("logic", "srl", "lutram"))
+    return {"yosys": stat["creator"].split(" (")[0], **resources, "path": longest_path(path.read_text()),
+            **netlist.placement(netlist.Netlist.read(mapped, top), luts, resources["carry4"])}
 
 
 def set_parameters(top, parameters):
@@ -133,7 +138,7 @@ def _differences(expected, measured):
 
 # Expected numbers for `size_sample.sv`, which explains them.
 _SAMPLE = {"logic": 38, "srl": 1, "lutram": 4, "ff": 101, "dsp48": 1, "ramb36": 1, "ramb18": 1, "carry4": 16, "others": {},
-           "path": 10}
+           "path": 10, "control_sets": 1, "small_set_ff": 0, "slices": 16}
 
 CHECKS = {
     "a module of known cells": check_sample,

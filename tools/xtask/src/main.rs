@@ -65,14 +65,18 @@ enum Task {
     Test,
     /// Check the sources: no circular dependencies between modules, no `#[path]`, no file above 500 lines
     Modules,
-    /// Measure the FPGA resources of the gateware; fail above the limits of gateware/budget.toml
+    /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
     Resources {
-        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all]
+        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`,
+        /// the own blocks]
         blocks: Vec<String>,
+        /// Place and route on an ECP5 instead: clock rates of the blocks beside VexRiscv's
+        #[arg(long)]
+        route: bool,
         /// Print JSON; progress goes to standard error
         #[arg(long)]
         json: bool,
-        /// Write docs/resources.md
+        /// Write docs/resources.md; with `--route`, both cells and clock rates
         #[arg(long, conflicts_with = "blocks")]
         write: bool,
     },
@@ -118,10 +122,12 @@ fn main() -> Result<()> {
         Task::Modules => modules::check(),
         Task::Resources {
             blocks,
+            route,
             json,
             write,
         } => resources::resources(&resources::Options {
             blocks,
+            route,
             json,
             write,
         }),

@@ -1,41 +1,45 @@
-//! `cargo xtask resources`: FPGA resources of the gateware, against `gateware/budget.toml`.
+//! `cargo xtask resources`: FPGA resources of the gateware and its clock rates, against `gateware/budget.toml`.
 //!
-//! `gateware/tests/run.py --size` measures one block with Yosys; two blocks are measured at a time. [`size::Size`] has the
-//! result, [`budget::Budget`] the limits; [`table`] prints both.
+//! `gateware/tests/size.py` measures one block with Yosys, `gateware/tests/route.py` places and routes one; two blocks are
+//! measured at a time. [`size::Size`] and [`route::Rates`] have the results, [`budget::Budget`] the limits; [`table`] prints
+//! them, [`page`] is `docs/resources.md`.
 
 mod blocks;
 mod budget;
+mod measure;
+mod page;
+mod route;
 mod size;
 mod table;
 
 use std::collections::VecDeque;
 use std::fs;
-use std::process::Command;
-use std::sync::Mutex;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 
 use crate::gateware::{self, Board};
 use crate::{bootstrap, paths, run};
-use blocks::{BUILDS, FLAT, FLAT_PARTS, OWN, ROWS, SOC};
-use budget::{Budget, Excess};
+use blocks::{BUILDS, ENGINES, FLAT, FLAT_PARTS, OWN, SOC, sort_by_row};
+use budget::Budget;
+use measure::{measured_line, two_at_a_time};
 use size::Size;
-
-/// Parallel runs of Yosys; each needs one core and about a gigabyte.
-const AT_ONCE: usize = 2;
+use table::Measured;
 
 /// Options of the command line.
 pub struct Options {
-    /// Blocks to measure; empty: all.
+    /// Blocks to measure; empty: all blocks, or with `route` the own blocks.
     pub blocks: Vec<String>,
+    /// Measure clock rates by place and route instead of sizes.
+    pub route: bool,
     /// Print only JSON to standard output.
     pub json: bool,
     /// Write `docs/resources.md`.
     pub write: bool,
 }
 
-/// Measures the selected blocks, prints their sizes, and compares them with the budget.
+/// Measures the selected blocks, prints the results, and compares them with the budget. The results are clock rates with
+/// [`Options::route`], otherwise sizes, and both for the page.
 ///
 /// # Errors
 /// A block exceeds its budget, or cannot be measured.
@@ -46,52 +50,92 @@ pub fn resources(options: &Options) -> Result<()> {
     let start = Instant::now();
     let budget = Budget::read()?;
     bootstrap::bootstrap()?;
-    let sizes = measure(selection(&options.blocks)?)?;
-    let excesses = budget.excesses(&sizes);
+    let mut measured = Measured::default();
+    if !options.route || options.write {
+        measured.sizes = measure_sizes(selection(&options.blocks, all()?))?;
+    }
+    if options.route {
+        let engines = if options.write { &ENGINES[..] } else { &[] };
+        let routed = strings(&[&OWN[..], engines].concat());
+        measured.rates = Some(route::measure(selection(&options.blocks, routed))?);
+    }
     if options.json {
-        println!("{:#}", table::json(&sizes, &excesses));
+        println!("{:#}", table::json(&measured, &budget));
     } else {
-        print!("\n{}", table::text(&sizes, &budget));
+        print!("\n{}", table::text(&measured, &budget));
         println!("{:.0} s", start.elapsed().as_secs_f64());
     }
     if options.write {
         let path = paths::root().join("docs/resources.md");
-        fs::write(&path, table::page(&sizes, &budget))
+        fs::write(&path, page::page(&measured, &budget))
             .with_context(|| format!("writing {}", path.display()))?;
         run::print_progress("wrote docs/resources.md");
     }
-    within(&excesses)
+    within(&budget, &measured)
 }
 
-/// Measures this project's own blocks and compares them with the budget. The SoC is left out, because it takes too long to
-/// measure in every test.
+/// Checks the cells of this project's own blocks against the budget. The SoC takes too long to measure in every test.
 ///
 /// # Errors
 /// As [`resources`].
 pub fn check_own_blocks() -> Result<()> {
+    let measured = Measured {
+        sizes: measure_sizes(strings(&OWN).into())?,
+        rates: None,
+    };
+    within(&Budget::read()?, &measured)
+}
+
+/// Measures the blocks that have a least clock rate in the budget, and compares them with it.
+///
+/// # Errors
+/// As [`resources`].
+pub fn check_clock_rates() -> Result<()> {
     let budget = Budget::read()?;
-    within(&budget.excesses(&measure(OWN.map(String::from).into())?))
+    let routed = budget.routed();
+    if routed.is_empty() {
+        return Ok(());
+    }
+    let measured = Measured {
+        sizes: vec![],
+        rates: Some(route::measure(routed)?),
+    };
+    within(&budget, &measured)
 }
 
 /// Fails if there is an excess; the error has one line for each excess.
-fn within(excesses: &[Excess]) -> Result<()> {
-    if excesses.is_empty() {
+fn within(budget: &Budget, measured: &Measured) -> Result<()> {
+    let excesses = budget.excesses(&measured.sizes);
+    let mut lines: Vec<String> = excesses.iter().map(ToString::to_string).collect();
+    if let Some(rates) = &measured.rates {
+        let shortfalls = budget.shortfalls(rates);
+        lines.extend(shortfalls.iter().map(ToString::to_string));
+    }
+    if lines.is_empty() {
         return Ok(());
     }
-    let lines: Vec<String> = excesses.iter().map(ToString::to_string).collect();
     bail!(
-        "above the limits of gateware/budget.toml:\n{}",
+        "beyond the limits of gateware/budget.toml:\n{}",
         lines.join("\n")
     )
 }
 
-/// Returns the blocks to measure, without repeats. If `blocks` is empty, these are all blocks, the slowest to measure first.
-fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
+fn strings(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// Names of all blocks, the slowest to measure first.
+fn all() -> Result<Vec<String>> {
+    let mut names = strings(&[&[SOC], &BUILDS[..], &OWN[..]].concat());
+    names.extend(blocks::fields()?);
+    Ok(names)
+}
+
+/// Returns the blocks to measure, without repeats: `blocks`, or `all` if it is empty.
+fn selection(blocks: &[String], all: Vec<String>) -> VecDeque<String> {
     let mut names = VecDeque::new();
     let wanted = if blocks.is_empty() {
-        let named = [&[SOC], &BUILDS[..], &OWN[..]].concat();
-        let named = named.into_iter().map(String::from);
-        named.chain(blocks::fields()?).collect()
+        all
     } else {
         blocks.to_vec()
     };
@@ -107,65 +151,20 @@ fn selection(blocks: &[String]) -> Result<VecDeque<String>> {
             }
         }
     }
-    Ok(names)
+    names
 }
 
-/// Measures blocks in parallel, and adds the sum `flat_build` if all its parts are among them.
-fn measure(names: VecDeque<String>) -> Result<Vec<Size>> {
+/// Measures the sizes of blocks in parallel, and adds the sum `flat_build` if all its parts are among them.
+fn measure_sizes(names: VecDeque<String>) -> Result<Vec<Size>> {
     if names.iter().any(|name| name == SOC) {
         gateware::build(Board::Urbana)?;
     }
-    let queue = Mutex::new(names);
-    let work = || -> Result<Vec<Size>> {
-        let mut sizes = Vec::new();
-        loop {
-            let next = queue.lock().expect("no worker panics").pop_front();
-            let Some(name) = next else {
-                return Ok(sizes);
-            };
-            let size = measure_one(&name);
-            if size.is_err() {
-                queue.lock().expect("no worker panics").clear();
-            }
-            sizes.push(size?);
-        }
-    };
-    let outcomes: Vec<Result<Vec<Size>>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..AT_ONCE).map(|_| scope.spawn(work)).collect();
-        workers
-            .into_iter()
-            .map(|worker| worker.join().expect("a measuring thread does not panic"))
-            .collect()
-    });
-    let mut sizes = outcomes
-        .into_iter()
-        .collect::<Result<Vec<_>>>()?
-        .into_iter()
-        .flatten()
-        .collect();
+    let mut sizes = two_at_a_time(names, |name| {
+        Size::parse(&measured_line("size", "--size", name)?)
+    })?;
     add_flat_build(&mut sizes);
-    sizes.sort_by_key(|size| {
-        ROWS.iter()
-            .position(|row| *row == size.name)
-            .unwrap_or(ROWS.len())
-    });
+    sort_by_row(&mut sizes, |size| &size.name);
     Ok(sizes)
-}
-
-fn measure_one(name: &str) -> Result<Size> {
-    let mut line_of_size = String::new();
-    run::watched_step(
-        &format!("size of {name}"),
-        Command::new(paths::venv_program("python"))
-            .args(["gateware/tests/run.py", "--size", name])
-            .current_dir(paths::root()),
-        |line| {
-            if line.starts_with('{') {
-                line.clone_into(&mut line_of_size);
-            }
-        },
-    )?;
-    Size::parse(&line_of_size).with_context(|| format!("reading the size of {name}"))
 }
 
 /// Adds the block `flat_build`, the sum of `FLAT_PARTS`, if all of these are in `sizes`.
@@ -186,10 +185,7 @@ mod tests {
 
     #[test]
     fn measures_each_block_once_and_the_flat_build_by_its_parts() {
-        let select = |blocks: &[&str]| {
-            let blocks: Vec<_> = blocks.iter().map(|b| (*b).to_owned()).collect();
-            selection(&blocks).expect("the folder of the raymarcher")
-        };
+        let select = |blocks: &[&str]| selection(&strings(blocks), all().unwrap());
         assert_eq!(
             select(&[]).len(),
             OWN.len() + BUILDS.len() + blocks::fields().unwrap().len() + 1
@@ -215,17 +211,18 @@ mod tests {
 
     #[test]
     fn fails_beyond_the_budget_only() {
-        assert!(within(&[]).is_ok());
-        let excess = Excess {
-            block: "setup".to_owned(),
-            resource: size::Resource::Lut,
-            budget: 2400,
-            measured: 2401.0,
+        let budget: Budget = toml::from_str(budget::tests::BUDGET).unwrap();
+        let mut measured = Measured {
+            sizes: vec![size::tests::size("setup")],
+            rates: Some(route::tests::rates()),
         };
-        let message = within(&[excess]).unwrap_err().to_string();
+        assert!(within(&budget, &measured).is_ok());
+        measured.sizes[0].logic += 1;
+        measured.rates.as_mut().unwrap().blocks[0].mhz = 99.0;
         assert_eq!(
-            message,
-            "above the limits of gateware/budget.toml:\nsetup: LUT: budget 2,400, measured 2,401"
+            within(&budget, &measured).unwrap_err().to_string(),
+            "beyond the limits of gateware/budget.toml:\nsetup: LUT: budget 1,234, measured 1,235\n\
+             setup: ratio to vexriscv: at least 1.25, measured 1.24"
         );
     }
 }

@@ -33,6 +33,7 @@ pub fn test() -> Result<()> {
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", "gateware/formal/run.py"));
             results.add(resources::check_own_blocks().map(|()| 1));
+            results.add(resources::check_clock_rates().map(|()| 1));
         });
         firmware::build(&[])?;
         firmware::build(&["peers"])?;

@@ -32,6 +32,9 @@ pub const BUILDS: [&str; 10] = [
     "round_light",
 ];
 
+/// Engines of the Urbana's default build, which the page shows placed and routed besides [`OWN`].
+pub const ENGINES: [&str; 2] = ["triangle_engine", "raymarcher_faces"];
+
 /// The modules of the raymarcher's fields: the files `field_*.sv`, except `field_unit.sv`, which contains all of them.
 ///
 /// # Errors
@@ -84,3 +87,11 @@ pub const ROWS: [&str; 22] = [
     "raymarcher_sponge",
     SOC,
 ];
+
+/// Sorts results of blocks into the order of the tables.
+pub fn sort_by_row<T>(results: &mut [T], name: impl Fn(&T) -> &str) {
+    results.sort_by_key(|result| {
+        let row = ROWS.iter().position(|row| *row == name(result));
+        row.unwrap_or(ROWS.len())
+    });
+}

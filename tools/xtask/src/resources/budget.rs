@@ -1,6 +1,6 @@
 //! Limits of the gateware's resources: `gateware/budget.toml`.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::fs;
 
@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use super::blocks::{ROWS, SOC};
+use super::route::{REFERENCE, Rates};
 use super::size::{Resource, Size, number};
 use crate::paths;
 
@@ -23,7 +24,17 @@ pub struct Budget {
     /// Default limits for every block except the SoC.
     own: Limits,
     /// Limits of single blocks, by the block's name.
-    block: BTreeMap<String, Limits>,
+    block: BTreeMap<String, BlockLimits>,
+}
+
+/// Limits of a single block.
+#[derive(Debug, Deserialize)]
+struct BlockLimits {
+    /// Least ratio of its clock rate to the soft core's.
+    ratio: Option<f64>,
+    /// Maximum of each limited resource.
+    #[serde(flatten)]
+    resources: Limits,
 }
 
 /// A resource of a block that is above its limit.
@@ -37,6 +48,27 @@ pub struct Excess {
     pub budget: u32,
     /// Measured amount of the resource.
     pub measured: f64,
+}
+
+/// A block with a clock rate below its limit.
+#[derive(Debug, PartialEq, Serialize)]
+pub struct Shortfall {
+    /// Name of the block.
+    pub block: String,
+    /// The least ratio of its clock rate to the soft core's.
+    pub minimum: f64,
+    /// The measured ratio.
+    pub measured: f64,
+}
+
+impl fmt::Display for Shortfall {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: ratio to {REFERENCE}: at least {:.2}, measured {:.2}",
+            self.block, self.minimum, self.measured
+        )
+    }
 }
 
 impl fmt::Display for Excess {
@@ -84,8 +116,40 @@ impl Budget {
             &self.own
         };
         let mut limits = common.clone();
-        limits.extend(self.block.get(block).into_iter().flatten());
+        if let Some(own) = self.block.get(block) {
+            limits.extend(&own.resources);
+        }
         limits
+    }
+
+    /// Returns the least ratio of a block's clock rate to the soft core's, if it has one.
+    pub fn ratio(&self, block: &str) -> Option<f64> {
+        self.block.get(block)?.ratio
+    }
+
+    /// Lists the blocks that have a least ratio.
+    pub fn routed(&self) -> VecDeque<String> {
+        let names = self.block.keys();
+        names
+            .filter(|name| self.ratio(name).is_some())
+            .cloned()
+            .collect()
+    }
+
+    /// Lists the blocks below their least ratios.
+    pub fn shortfalls(&self, rates: &Rates) -> Vec<Shortfall> {
+        let blocks = rates.blocks.iter();
+        blocks
+            .filter_map(|rate| {
+                let (minimum, measured) = (self.ratio(&rate.name)?, rates.ratio(rate));
+                let block = rate.name.clone();
+                (measured < minimum).then_some(Shortfall {
+                    block,
+                    minimum,
+                    measured,
+                })
+            })
+            .collect()
     }
 
     /// Lists every resource of every block that is above its limit.
@@ -110,17 +174,19 @@ impl Budget {
 
 #[cfg(test)]
 pub mod tests {
+    use super::super::route::tests::{rate, rates};
     use super::super::size::tests::size;
     use super::*;
 
     /// A budget with different limits for three names. The block of [`size`] is within those of `setup`, and exceeds those of
     /// `band_buffer` and `soc`.
-    pub const BUDGET: &str = "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75 }
+    pub const BUDGET: &str =
+        "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75, slices = 8150 }
         own = { path = 9 }
         [block]
-        setup = { lut = 1234, ramb36 = 3 }
+        setup = { lut = 1234, ramb36 = 3, ratio = 1.25 }
         band_buffer = { path = 8 }
-        soc = { ramb36 = 2 }";
+        soc = { ramb36 = 2, control_sets = 21 }";
 
     fn excesses(budget: &str, name: &str) -> Vec<String> {
         let budget = Budget::parse(budget).unwrap();
@@ -135,6 +201,19 @@ pub mod tests {
         assert_eq!(
             excesses(&less, "setup"),
             ["setup: LUT: budget 1,233, measured 1,234"]
+        );
+    }
+
+    #[test]
+    fn only_named_blocks_have_a_least_clock_rate() {
+        let budget = |ratio: &str| Budget::parse(&BUDGET.replace("1.25", ratio)).unwrap();
+        let mut rates = rates();
+        rates.blocks.push(rate("scanout", 1.0));
+        assert_eq!(budget("1.25").routed(), ["setup"]);
+        assert_eq!(budget("1.25").shortfalls(&rates), []);
+        assert_eq!(
+            budget("1.26").shortfalls(&rates)[0].to_string(),
+            "setup: ratio to vexriscv: at least 1.26, measured 1.25"
         );
     }
 
@@ -182,6 +261,7 @@ pub mod tests {
             ("lut = 1234", "luts = 1234", "unknown variant `luts`"),
             ("own =", "owned =", "unknown field `owned`"),
             ("lut = 1234", "lut = -1", "invalid value"),
+            ("ratio = 1.25", "ratios = 1", "unknown variant `ratios`"),
         ] {
             let error = format!(
                 "{:#}",
@@ -203,6 +283,6 @@ pub mod tests {
         for (resource, limit) in &budget.device {
             assert!(budget.limits(SOC)[resource] <= *limit, "{resource:?}");
         }
-        assert_eq!(budget.device.len(), 4);
+        assert_eq!(budget.device.len(), 5);
     }
 }

