@@ -65,7 +65,7 @@ fn divide(
     [a, b, c]: [Vector; 3],
     frequency: u32,
 ) -> Result<(), FormatError> {
-    // Returns a point of the sphere. The arguments are the weights of `b` and `c`; the weight of `a` is what is left of
+    // Returns a point of the sphere. The arguments are the weights of `b` and `c`; the weight of `a` is the rest of
     // `frequency`. On an edge one of the three weights is zero and the sum of the other two does not depend on their order, so
     // both triangles at the edge get the same bits.
     let point = |to_b: u32, to_c: u32| -> Vector {
