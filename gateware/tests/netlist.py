@@ -83,6 +83,35 @@ class Netlist:
                    if not any(_is_clock(pin, self.cells[cell]) for pin, cell in loads)}
         return [(self.described(bit), numbers[bit]) for bit in sorted(numbers, key=lambda bit: (-numbers[bit], bit))[:count]]
 
+    def instances(self, is_flat_source=False):
+        """The kinds of cells of each instance, counted, by its path: a tuple of names.
+
+        A cell with a name in the source code belongs to the instance around it; any other cell to the instance of the net that
+        it drives. Where that net has no name, as between LUTs, the cell belongs to the instance of most of its loads, so what
+        several instances share is counted at one. In a flat source, the words of the names stand for instances.
+        """
+        def path(name):
+            *instance, name = name.split(".")
+            return tuple(instance) if instance or not is_flat_source else tuple(name.split("_")[:-1])
+        owners = {}
+        for name, cell in self.cells.items():
+            named = [re.sub(r"(\.\d+)+$", "", name)] if not name.startswith("$") else map(self.name, _bits(cell, "output"))
+            if own := next(filter(None, named), None):
+                owners[name] = path(own)
+        waiting = self.cells.keys() - owners.keys()
+        while waiting:
+            found = {name: votes.most_common(1)[0][0] for name in waiting if (votes := self._load_owners(name, owners))}
+            owners |= found or dict.fromkeys(waiting, ())
+            waiting -= owners.keys()
+        counts = defaultdict(Counter)
+        for name, owner in owners.items():
+            counts[owner][self.cells[name]["type"]] += 1
+        return counts
+
+    def _load_owners(self, name, owners):
+        loads = (load for bit in _bits(self.cells[name], "output") for _, load in self._loads[bit])
+        return Counter(sorted(owners[load] for load in loads if load in owners))
+
 
 def placement(netlist, luts, carries):
     """Control sets, slices and fan-outs of a netlist with so many LUTs and CARRY4, as a dictionary."""
@@ -143,6 +172,29 @@ def check_placement():
     return [f"{what}: expected {wanted}, got {found}" for what, found, wanted in expected if found != wanted]
 
 
+def check_instances():
+    """Cells of a netlist by instance: flip-flops, a memory, and LUTs between them."""
+    def cell(kind, source, **pins):
+        return {"type": kind, "attributes": {"src": source}, "connections": {pin: [bit] for pin, bit in pins.items()},
+                "port_directions": {pin: "output" if pin in "OQ" else "input" for pin in pins}}
+    def net(source, *bits):
+        return {"hide_name": 0, "bits": list(bits), "attributes": {"src": source}}
+    part, top = "rtl/part.sv:3.1-4.5|/share/xilinx/ff_map.v:1", "rtl/top.sv:7.1-9.2"
+    found = Netlist({
+        "cells": {
+            "$ff1": cell("FDRE", part, D=2, Q=3), "$ff2": cell("FDRE", part, D=2, Q=4), "$ff3": cell("FDRE", top, D=2, Q=5),
+            "$near": cell("LUT2", "", I0=6, O=2), "$far": cell("LUT1", "", I0=5, O=6), "$end": cell("LUT3", "", I0=5, O=7),
+            "core.words.0.1": cell("RAM32M", "", D=3, O=8)},
+        "netnames": {
+            "core.part.q": net("part.sv:2.3-2.4", 3, 4), "core.from_part": net("core.sv:5.6-5.7", 3), "main_bus_q": net(top, 5)},
+    })
+    counts = {False: {("core", "part"): {"FDRE": 2, "LUT2": 1, "LUT1": 1}, (): {"FDRE": 1, "LUT3": 1}, ("core",): {"RAM32M": 1}}}
+    counts[True] = {**counts[False], ("main", "bus"): {"FDRE": 1}, (): {"LUT3": 1}}
+    return [f"flat source {is_flat}: expected {wanted}, got {got}" for is_flat, wanted in counts.items()
+            if (got := found.instances(is_flat)) != wanted]
+
+
 CHECKS = {
     "placement of a module of known flip-flops": check_placement,
+    "cells by instance": check_instances,
 }

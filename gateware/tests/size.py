@@ -71,9 +71,21 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
     run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
     resources = sort_cells(stat["design"]["num_cells_by_type"], ignored)
-    luts = sum(resources[kind] for kind in ("logic", "srl", "lutram"))
+    design = netlist.Netlist.read(mapped, top)
     return {"yosys": stat["creator"].split(" (")[0], **resources, "path": longest_path(path.read_text()),
-            **netlist.placement(netlist.Netlist.read(mapped, top), luts, resources["carry4"])}
+            **netlist.placement(design, _luts(resources), resources["carry4"]),
+            "instances": [_instance(path, kinds) for path, kinds in sorted(design.instances(is_flat_source=name == SOC).items())]}
+
+
+def _instance(path, kinds):
+    """Returns the resources of an instance that has these kinds of cells."""
+    resources = sort_cells(kinds)
+    return {"path": path, "lut": _luts(resources), "ff": resources["ff"], "dsp48": resources["dsp48"],
+            "ramb36": resources["ramb36"] + resources["ramb18"] / 2}
+
+
+def _luts(resources):
+    return sum(resources[kind] for kind in ("logic", "srl", "lutram"))
 
 
 def set_parameters(top, parameters):

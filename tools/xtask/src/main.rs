@@ -73,11 +73,17 @@ enum Task {
         /// Place and route on an ECP5 instead: clock rates of the blocks beside VexRiscv's
         #[arg(long)]
         route: bool,
+        /// Print the sizes of the instances in the blocks [default: soc] instead, the largest first
+        #[arg(long, conflicts_with = "route")]
+        tree: bool,
+        /// Depth of the tree
+        #[arg(long, requires = "tree", default_value_t = 3)]
+        depth: usize,
         /// Print JSON; progress goes to standard error
         #[arg(long)]
         json: bool,
         /// Write docs/resources.md; with `--route`, both cells and clock rates
-        #[arg(long, conflicts_with = "blocks")]
+        #[arg(long, conflicts_with_all = ["blocks", "tree"])]
         write: bool,
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
@@ -123,11 +129,14 @@ fn main() -> Result<()> {
         Task::Resources {
             blocks,
             route,
+            tree,
+            depth,
             json,
             write,
         } => resources::resources(&resources::Options {
             blocks,
             route,
+            tree: tree.then_some(depth),
             json,
             write,
         }),

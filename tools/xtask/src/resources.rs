@@ -6,7 +6,9 @@
 
 mod blocks;
 mod budget;
+mod instances;
 mod measure;
+mod number;
 mod page;
 mod route;
 mod size;
@@ -32,6 +34,8 @@ pub struct Options {
     pub blocks: Vec<String>,
     /// Measure clock rates by place and route instead of sizes.
     pub route: bool,
+    /// Print the sizes of the instances in the blocks, or in the SoC if none is named, down to this depth instead.
+    pub tree: Option<usize>,
     /// Print only JSON to standard output.
     pub json: bool,
     /// Write `docs/resources.md`.
@@ -50,6 +54,9 @@ pub fn resources(options: &Options) -> Result<()> {
     let start = Instant::now();
     let budget = Budget::read()?;
     bootstrap::bootstrap()?;
+    if let Some(depth) = options.tree {
+        return tree(options, depth);
+    }
     let mut measured = Measured::default();
     if !options.route || options.write {
         measured.sizes = measure_sizes(selection(&options.blocks, all()?))?;
@@ -74,7 +81,25 @@ pub fn resources(options: &Options) -> Result<()> {
     within(&budget, &measured)
 }
 
-/// Checks the cells of this project's own blocks against the budget. The SoC takes too long to measure in every test.
+/// Measures blocks and prints their instances.
+fn tree(options: &Options, depth: usize) -> Result<()> {
+    let sizes = measure_sizes(selection(&options.blocks, strings(&[SOC])))?;
+    let sizes = sizes.iter().filter(|size| size.name != FLAT);
+    if options.json {
+        let trees: Vec<_> = sizes
+            .map(|size| instances::json(&size.name, &size.instances, depth))
+            .collect();
+        println!("{:#}", serde_json::Value::from(trees));
+    } else {
+        for size in sizes {
+            print!("\n{}", instances::text(&size.name, &size.instances, depth));
+        }
+    }
+    Ok(())
+}
+
+/// Measures this project's own blocks and compares their sizes with the budget. The SoC is left out, because it takes too long
+/// to measure in every test.
 ///
 /// # Errors
 /// As [`resources`].

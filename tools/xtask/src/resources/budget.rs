@@ -8,8 +8,9 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 
 use super::blocks::{ROWS, SOC};
+use super::number::number;
 use super::route::{REFERENCE, Rates};
-use super::size::{Resource, Size, number};
+use super::size::{Resource, Size};
 use crate::paths;
 
 /// Maximum of each limited resource.

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
 
+use super::instances::Instance;
+
 /// Limited resources, in the order of the tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -94,6 +96,8 @@ pub struct Size {
     pub slices: u32,
     /// The nets with the most loads, each with its number of loads.
     pub fan_outs: Vec<(String, u32)>,
+    /// Its cells by instance.
+    pub instances: Vec<Instance>,
 }
 
 impl Size {
@@ -141,6 +145,7 @@ impl Size {
             small_set_ff: total(|part| part.small_set_ff),
             slices: total(|part| part.slices),
             fan_outs,
+            instances: vec![],
         }
     }
 
@@ -159,23 +164,6 @@ impl Size {
     }
 }
 
-/// Formats a count with commas between its thousands, and a half as `.5`.
-pub fn number(count: f64) -> String {
-    let digits = format!("{:.0}", count.trunc());
-    let mut grouped = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    if count.fract() == 0.0 {
-        grouped
-    } else {
-        grouped + ".5"
-    }
-}
-
 #[cfg(test)]
 pub mod tests {
     use super::*;
@@ -184,7 +172,8 @@ pub mod tests {
     pub fn size(name: &str) -> Size {
         let line = r#"{"name": "NAME", "yosys": "Yosys 0.70", "logic": 1200, "srl": 30, "lutram": 4, "ff": 2000, "dsp48": 7,
             "ramb36": 2, "ramb18": 1, "carry4": 50, "path": 9, "others": {"MUXF7": 3},
-            "control_sets": 21, "small_set_ff": 17, "slices": 400, "fan_outs": [["enable", 348], ["first[0]", 99]]}"#;
+            "control_sets": 21, "small_set_ff": 17, "slices": 400, "fan_outs": [["enable", 348], ["first[0]", 99]],
+            "instances": []}"#;
         Size::parse(&line.replace("NAME", name)).unwrap()
     }
 
@@ -221,11 +210,5 @@ pub mod tests {
         let fan_outs = [("b.enable".to_owned(), 350), ("a.enable".to_owned(), 348)];
         assert_eq!(sum.fan_outs, fan_outs);
         assert_eq!((sum.others["MUXF7"], sum.others["BUFG"]), (6, 1));
-    }
-
-    #[test]
-    fn groups_thousands_and_shows_halves() {
-        let shown = [0.0, 60.5, 999.0, 1000.0, 32600.0, 1234567.0].map(number);
-        assert_eq!(shown, ["0", "60.5", "999", "1,000", "32,600", "1,234,567"]);
     }
 }

@@ -6,8 +6,9 @@ use serde_json::{Value, json};
 
 use super::blocks::SOC;
 use super::budget::Budget;
+use super::number::number;
 use super::route::Rates;
-use super::size::{Resource, Size, number};
+use super::size::{Resource, Size};
 
 /// The results of a measurement.
 #[derive(Default)]
