@@ -7,6 +7,7 @@ use glint_core::console::{LINE_MAX, ParseError};
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
+use glint_core::picture::Size;
 use glint_core::wire::Failure;
 use glint_model::RenderError;
 
@@ -27,6 +28,8 @@ pub enum CommandError<'l> {
     Key(&'l str),
     /// The name is not a model or a named field.
     Scene(&'l str),
+    /// The board has no memory or no screen for this picture size.
+    Size(Size),
     /// No mesh was uploaded.
     NoUpload,
     /// The SoC has no triangle engine.
@@ -96,6 +99,10 @@ impl Display for CommandError<'_> {
                     write!(f, "{} {name}", if i == 0 { "" } else { " or" })
                 })
             }
+            Self::Size(size) => write!(
+                f,
+                "size: {size} not available on this board, expected a smaller size"
+            ),
             Self::NoUpload => f.write_str("scene model: no mesh uploaded, expected `load` first"),
             Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
             Self::StereoOfMesh => f.write_str(

@@ -1,7 +1,7 @@
 //! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
 
 use glint_core::mesh::Mesh;
-use glint_core::picture::Backend;
+use glint_core::picture::{Backend, Size};
 use glint_hal::scanout::Display;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
 use litex_pac::cpu;
@@ -47,9 +47,14 @@ impl Renderer {
             Err(fallback) => self.draw_by_cpu(&frame, fallback, progress)?,
         };
         if drawn.is_ok() {
-            self.display.show(scene.size().into());
+            self.display.show(scene.size());
         }
         Some(drawn)
+    }
+
+    /// Whether this board draws and shows pictures of this size.
+    pub fn has_size(&self, size: Size) -> bool {
+        self.display.has_size(size) && size.pixel_count() <= self.depth.len()
     }
 
     /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.

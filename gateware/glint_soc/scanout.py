@@ -1,11 +1,10 @@
-"""Register block of the scan-out (rtl/scanout): shows a frame in DDR3 as 1280x720 video."""
+"""Register block of the scan-out (rtl/scanout): shows a frame in memory as video."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
 from migen import ClockSignal, Instance, Record, ResetSignal, Signal
 
-from .constants import SIZES
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"SCAN", "big")
@@ -19,20 +18,20 @@ _WORD_ADDRESS_BITS = 28
 class Scanout(LiteXModule):
     """Reads the front RGB565 frame through `port`, a native 128-bit LiteDRAM read port in the domain `sys`.
 
-    `video` (`VIDEO_LAYOUT`) is the output, one pixel a clock of the domain `pix`, CEA-861 1280x720, both syncs active high. It
-    runs as soon as that domain leaves reset, and is black until the scan-out is enabled.
+    `video` (`VIDEO_LAYOUT`) is the output, one pixel a clock of the domain `pix`, with the timing of `mode` (a `VideoMode`), both
+    syncs active high. It runs as soon as that domain leaves reset, and is black until the scan-out is enabled.
     """
 
-    def __init__(self, platform, port):
+    def __init__(self, platform, port, mode):
         if port.data_width != 128:
             raise ValueError(f"scan-out needs a memory port of 128 bits, got {port.data_width}")
         self.video = Record(VIDEO_LAYOUT)
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`SCAN` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("width", size=12, offset=0, reset=SIZES[-1].width, description="Pixels of an output line."),
-            CSRField("height", size=12, offset=12, reset=SIZES[-1].height, description="Lines of an output frame."),
-            CSRField("scales", size=3, offset=24, reset=0b111,
+            CSRField("width", size=12, offset=0, reset=mode.width, description="Pixels of an output line."),
+            CSRField("height", size=12, offset=12, reset=mode.height, description="Lines of an output frame."),
+            CSRField("scales", size=3, offset=24, reset=mode.scales,
                      description="Bit k: the scale 2^k is supported."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -53,10 +52,10 @@ class Scanout(LiteXModule):
             name="vblank", description="Start of vertical blanking: `fb_next`, `scale` and `control` are latched.")
         self.ev.finalize()
         self._fb_next = CSRStorage(32, name="fb_next", description="Byte address of the frame to show next, a multiple of "
-            "16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Latched at "
+            "16 (the low four bits are ignored): (width/scale) x (height/scale) pixels of RGB565, row by row. Latched at "
             "vblank for the whole next frame.")
         self._scale = CSRStorage(3, reset=4, name="scale", description="Enlargement: a pixel of the frame is shown as a square of "
-            "scale x scale pixels. 4 for 320x180, 2 for 640x360, 1 for 1280x720. Latched at vblank.")
+            "scale x scale pixels: `width` of `caps` divided by the width of the frame. Latched at vblank.")
         self._fb_current = CSRStatus(32, name="fb_current", description="Byte address of the frame that is shown, in "
             "vertical blanking the next one. A frame buffer that is neither this nor `fb_next` is free for drawing.")
         self._frame_count = CSRStatus(32, name="frame_count", description="Vertical blankings since reset, modulo 2^32.")
@@ -85,6 +84,7 @@ class Scanout(LiteXModule):
         ]
         self.specials += Instance("scanout", name="scanout_core",
             p_ADDRESS_BITS    = _WORD_ADDRESS_BITS,
+            **mode.parameters(),
             i_sys_clk         = ClockSignal("sys"),
             i_sys_rst         = ResetSignal("sys"),
             i_pix_clk         = ClockSignal("pix"),

@@ -1,15 +1,15 @@
-"""The SoC that both boards share: CPU, memory controller, peripherals and accelerators.
+"""The SoC that all boards share: CPU, memory controller, peripherals and accelerators.
 
-A board adds its platform, its clocks (domains `sys` and `pix`), its DDR3 PHY and its video output. All other parts, which
-firmware can see, are here.
+A board adds its platform, its clocks (domains `sys` and `pix`), its memory with a PHY, and its video output. All other parts,
+which firmware can see, are here.
 """
 
 from litedram.core.controller import ControllerSettings
-from litedram.modules import MT41K64M16
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import wishbone
+from migen import Cat, Constant, Signal
 
 from .i2c import I2CMaster
 from .identity import Identity
@@ -18,34 +18,34 @@ from .memory_bridge import MemoryBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
 from .triangle import TriangleEngine
+from .video import CEA_1280X720
 
 SYS_CLK_FREQ = 81.25e6
 """System clock in Hz. With it DDR3-650 and the fabric meet the specification of the -1 speed grade."""
 
-PIXEL_CLK_FREQ = 74.25e6
-"""Pixel clock in Hz, of CEA-861 1280x720 at 60 Hz."""
-
-MAIN_RAM_SIZE = 128 * 1024 * 1024
-"""Size of the DDR3 memory in bytes: one MT41K64M16, 16 bits wide, with 8 banks of 8192 rows of 1024 columns."""
+_PORT_BITS = 128
+"""Width of the memory ports of the accelerators."""
 
 
 class GlintSoC(SoCCore):
-    """VexRiscv `full` with BIOS in ROM, 128 MB of DDR3 without a second cache level, and Glint's peripherals.
+    """VexRiscv `full` with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
 
     `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. `build_id` is the checksum of the
     register map of the full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine.
-    `fields` are the build options of the raymarcher.
+    `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
     csr_map = CSR_MAP
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ,
+                 mode=CEA_1280X720):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
         self.blocks = frozenset(blocks)
         if "raymarch" in self.blocks and "triangle" not in self.blocks:
             raise ValueError("the raymarcher draws into the triangle engine's band buffer: expected the block triangle too")
+        self.mode = mode
         self.smooth = smooth
         self.fields = fields or Fields()
         # Set before SoCCore adds `uart` and `timer0`, because SoCCore keeps an interrupt number that is already set.
@@ -71,27 +71,45 @@ class GlintSoC(SoCCore):
 
         self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in self.blocks))
         self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
-        self.buttons = GPIOIn(platform.request("buttons"), with_irq=True)
-        self.switches = GPIOIn(platform.request("switches"))
-        self.leds = GPIOOut(platform.request("leds"))
+        self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
+        self.switches = GPIOIn(self._inputs("switches", 16))
+        self.leds = GPIOOut(self._outputs("leds", 16))
 
-    def add_dram(self, phy):
-        """Adds the DDR3 controller over the board's PHY, then the blocks that access memory."""
-        module = MT41K64M16(self.sys_clk_freq, "1:4")
+    def _inputs(self, name, bits):
+        """The input pins `name` with `bits` bits: those that the board lacks are 0."""
+        pads = self.platform.request(name)
+        return Cat(pads, Constant(0, bits - len(pads))) if len(pads) < bits else pads
+
+    def _outputs(self, name, bits):
+        """`bits` bits that drive the output pins `name`: those that the board lacks have no effect."""
+        pads = self.platform.request(name)
+        if len(pads) == bits:
+            return pads
+        driven = Signal(bits)
+        self.comb += pads.eq(driven)
+        return driven
+
+    def add_dram(self, phy, module):
+        """Adds the controller of the memory `module` over the board's PHY, then the blocks that access memory."""
         # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory turns less often between reads and writes, which
         # takes a dozen clocks each time. A port changes to another bank only when its commands are done, so a shorter queue of
         # commands shortens that wait.
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
                        controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=4))
-        main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=MAIN_RAM_SIZE, mode="rwx")
+        size = module.nbanks * module.nrows * module.ncols * phy.settings.databits // 8
+        main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=size, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-        self.memory_bridge = MemoryBridge(bus, self.sdram.crossbar.get_port(), main_ram.origin)
+        # LiteDRAM puts a converter between a port and a narrower memory.
+        width = self.sdram.crossbar.controller.data_width
+        port = self.sdram.crossbar.get_port("both", max(width, bus.data_width))
+        self.memory_bridge = MemoryBridge(bus, port, main_ram.origin, early=width < bus.data_width)
         self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:
-            self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port(mode="read"))
+            self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port("read", _PORT_BITS), self.mode)
         if "triangle" in self.blocks:
-            readers = [self.sdram.crossbar.get_port(mode="read") for _ in range(3)]
-            writers = [self.sdram.crossbar.get_port(mode="write") for _ in range(4)]
-            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.smooth, "raymarch" in self.blocks)
+            readers = [self.sdram.crossbar.get_port("read", _PORT_BITS) for _ in range(3)]
+            writers = [self.sdram.crossbar.get_port("write", _PORT_BITS) for _ in range(4)]
+            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.mode.sizes, self.smooth,
+                                           "raymarch" in self.blocks)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)

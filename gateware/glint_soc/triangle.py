@@ -1,9 +1,9 @@
-"""Register block of the triangle engine (rtl/triangle): draws a mesh in DDR3 to a frame in DDR3."""
+"""Register block of the triangle engine (rtl/triangle): draws a mesh in memory to a frame in memory."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal
+from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal, log2_int
 
 from . import constants
 from .constants import DESCRIPTOR_BYTES
@@ -22,7 +22,7 @@ _COUNT_BITS = 20
 
 ERRORS = Enumeration("error", "Results of a pass.", {
     "none": "no error",
-    "size": "`size` was 3",
+    "size": "`size` is not supported by this build",
     "address": "a region was not aligned to 16 bytes or not within main memory; memory is unchanged",
     "busy": "started while the same pass was running; that pass continued",
     "mesh": "a chunk without vertices or beyond `mesh_bytes`; the chunks before it were drawn",
@@ -39,21 +39,23 @@ class TriangleEngine(LiteXModule):
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
-    `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `smooth` builds smooth
-    shading, `fields` builds the input `field` for a raymarcher.
+    `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
+    sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
+    raymarcher.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, smooth=False, fields=False):
+    def __init__(self, platform, readers, writers, main_ram, sizes, smooth=False, fields=False):
+        memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
-            if port.data_width != 128 or port.address_width != _ADDRESS_BITS:
-                raise ValueError(f"the triangle engine needs memory ports of 128 bits and {_ADDRESS_BITS} address bits, "
+            if port.data_width != 128 or port.address_width != memory_bits:
+                raise ValueError(f"the triangle engine needs memory ports of 128 bits and {memory_bits} address bits, "
                                  f"got {port.data_width} and {port.address_width}")
-        if main_ram.size != 16 << _ADDRESS_BITS or main_ram.origin % main_ram.size:
-            raise ValueError(f"the triangle engine needs {16 << _ADDRESS_BITS} bytes of main memory, got {main_ram}")
+        if memory_bits > _ADDRESS_BITS or main_ram.origin % main_ram.size:
+            raise ValueError(f"the triangle engine needs at most {16 << _ADDRESS_BITS} bytes of main memory, got {main_ram}")
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`TRIA` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[
-            CSRField("sizes", size=3, offset=0, reset=0b111, description="Bit k: `size` k is supported."),
+            CSRField("sizes", size=3, offset=0, reset=sizes, description="Bit k: `size` k is supported."),
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
                      f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, "
                      f"{DESCRIPTOR_BYTES['flat']} without."),
@@ -254,6 +256,8 @@ class TriangleEngine(LiteXModule):
         ]
         self.specials += Instance("triangle_control", name="triangle_control",
             p_BASE            = main_ram.origin,
+            p_MEMORY_BITS     = memory_bits,
+            p_SIZES           = sizes,
             p_SMOOTH          = int(smooth),
             i_clk             = ClockSignal("sys"),
             i_rst             = ResetSignal("sys"),
@@ -305,17 +309,23 @@ def _read_port(port):
     """Returns the connections of a native read port of the memory, in both directions."""
     return {
         "request": Struct("read_request_t", "A read port of the memory: to the memory.", {
-            "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr}),
+            "cmd_valid": port.cmd.valid, "cmd_addr": _address(port)}),
         "answer": Struct("read_answer_t", "A read port of the memory: from the memory.", {
             "cmd_ready": port.cmd.ready, "rdata_valid": port.rdata.valid, "rdata": port.rdata.data}),
     }
+
+
+def _address(port):
+    """The address of a port, as wide as in the RTL. A smaller memory lacks the top bits, which are 0 there: the regions of a pass
+    are checked to lie in memory."""
+    return Cat(port.cmd.addr, Signal(_ADDRESS_BITS - len(port.cmd.addr))) if len(port.cmd.addr) < _ADDRESS_BITS else port.cmd.addr
 
 
 def _write_port(port):
     """Returns the connections of a native write port of the memory, in both directions."""
     return {
         "request": Struct("write_request_t", "A write port of the memory: to the memory.", {
-            "cmd_valid": port.cmd.valid, "cmd_addr": port.cmd.addr,
+            "cmd_valid": port.cmd.valid, "cmd_addr": _address(port),
             "wdata_valid": port.wdata.valid, "wdata": port.wdata.data, "wdata_strobe": port.wdata.we}),
         "answer": Struct("write_answer_t", "A write port of the memory: from the memory.", {
             "cmd_ready": port.cmd.ready, "wdata_ready": port.wdata.ready}),

@@ -1,5 +1,6 @@
 """The RealDigital Urbana: Spartan-7 clocks, DDR3 at 650 MT/s, HDMI from the scan-out."""
 
+from litedram.modules import MT41K64M16
 from litedram.phy.s7ddrphy import A7DDRPHY
 from litex.gen import LiteXModule
 from litex.soc.cores.clock import S7IDELAYCTRL, S7MMCM, S7PLL
@@ -7,8 +8,9 @@ from litex.soc.cores.video import VideoS7HDMIPHY
 from migen import ClockDomain, Signal
 
 from .scanout import VIDEO_LAYOUT
-from .soc import PIXEL_CLK_FREQ, SYS_CLK_FREQ, GlintSoC
+from .soc import SYS_CLK_FREQ, GlintSoC
 from .urbana_platform import Platform
+from .video import CEA_1280X720
 
 _SPEED_GRADE = -1
 _CLK100_FREQ = 100e6
@@ -69,8 +71,8 @@ class CRG(LiteXModule):
 
         self.pixel_mmcm = pixel_mmcm = _PixelMMCM(speedgrade=_SPEED_GRADE)
         pixel_mmcm.register_clkin(clk100, _CLK100_FREQ)
-        pixel_mmcm.create_clkout(self.cd_pix, PIXEL_CLK_FREQ)
-        pixel_mmcm.create_clkout(self.cd_pix5x, 5 * PIXEL_CLK_FREQ)
+        pixel_mmcm.create_clkout(self.cd_pix, CEA_1280X720.clk_freq)
+        pixel_mmcm.create_clkout(self.cd_pix5x, 5 * CEA_1280X720.clk_freq)
 
         # Every path between these two clocks goes through a crossing of rtl/common, or through two flip-flops that LiteX adds.
         platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
@@ -89,7 +91,7 @@ class UrbanaSoC(GlintSoC):
         # The termination is set directly, because `add_electrical_settings` stores the value under a name that the initialisation
         # of the memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
-        self.add_dram(self.ddrphy)
+        self.add_dram(self.ddrphy, MT41K64M16(SYS_CLK_FREQ, "1:4"))
         for name in {"triangle", "raymarch"} & self.blocks:
             self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
         if "scanout" in self.blocks:

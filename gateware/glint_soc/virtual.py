@@ -88,13 +88,13 @@ class VirtualSoC(GlintSoC):
     def __init__(self, build_id, blocks, smooth=False, fields=None):
         platform = Platform()
         GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, fields=fields)
-        self.ddrphy = SDRAMPHYModel(
-            module=MT41K64M16(SYS_CLK_FREQ, "1:4"), data_width=16, clk_freq=SYS_CLK_FREQ)
+        module = MT41K64M16(SYS_CLK_FREQ, "1:4")
+        self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=SYS_CLK_FREQ)
         self._name_banks()
         # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
         self.rom.mem.init = None
         self.sram.mem.init = None
-        self.add_dram(self.ddrphy)
+        self.add_dram(self.ddrphy, module)
         # A gated clock saves the simulation time of idle blocks, half of the total.
         add_sources(platform, "clock_gate")
         for name in sorted({"triangle", "raymarch"} & self.blocks):

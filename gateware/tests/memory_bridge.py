@@ -2,10 +2,12 @@
 
 import random
 from collections import deque
+from functools import partial
 
 from litedram.common import LiteDRAMNativePort
+from litedram.frontend.adapter import LiteDRAMNativePortConverter
 from litex.soc.interconnect import wishbone
-from migen import run_simulation, passive
+from migen import Module, run_simulation, passive
 
 from glint_soc.memory_bridge import MemoryBridge
 
@@ -23,7 +25,8 @@ class Memory:
         self.bus = bus
         self.port = port
         self.rng = rng
-        self.words = [rng.getrandbits(32) for _ in range(WORDS)]
+        self.bytes = bytearray(rng.randbytes(4 * WORDS))
+        self.width = port.data_width // 8
         self.changed = set()
         self.commands = 0
 
@@ -65,15 +68,18 @@ class Memory:
             cycle += 1
             yield
 
+    @property
+    def words(self):
+        """The words of 32 bits."""
+        return [int.from_bytes(self.bytes[n:n + 4], "little") for n in range(0, len(self.bytes), 4)]
+
     def read(self, address):
-        words = self.words[4 * address:4 * address + 4]
-        return sum(word << 32 * n for n, word in enumerate(words))
+        return int.from_bytes(self.bytes[self.width * address:self.width * (address + 1)], "little")
 
     def write(self, address, data, strobes):
-        for byte in range(16):
+        for byte in range(self.width):
             if strobes >> byte & 1:
-                word, shift = 4 * address + byte // 4, byte % 4 * 8
-                self.words[word] = self.words[word] & ~(0xff << shift) | (data >> 8 * byte & 0xff) << shift
+                self.bytes[self.width * address + byte] = data >> 8 * byte & 0xff
 
 
 def merged(old, new, sel):
@@ -148,13 +154,23 @@ def master(bus, memory, rng, errors, counts):
         errors.append("the memory does not hold what was written")
 
 
-def random_traffic():
+def bench(data_width, rng):
+    """Returns a bus, the bridge behind it, and a memory with a port of `data_width` bits. A port of 16 bits gets a converter."""
+    bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+    port = LiteDRAMNativePort(mode="both", address_width=23, data_width=data_width)
+    memory = Memory(bus, port, rng)
+    if data_width < 32:
+        wide = LiteDRAMNativePort(mode="both", address_width=22, data_width=32)
+        both = Module()
+        both.submodules += LiteDRAMNativePortConverter(wide, port), MemoryBridge(bus, wide, BASE, early=True)
+        return bus, both, memory
+    return bus, MemoryBridge(bus, port, BASE), memory
+
+
+def random_traffic(data_width):
     """Checks that reads see all earlier writes, commands stay unchanged until taken, and write data are valid when requested."""
     rng = random.Random(1)
-    bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-    port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
-    bridge = MemoryBridge(bus, port, BASE)
-    memory = Memory(bus, port, rng)
+    bus, bridge, memory = bench(data_width, rng)
     errors, counts = [], {}
     try:
         run_simulation(bridge, [master(bus, memory, rng, errors, counts), memory.run()])
@@ -163,13 +179,10 @@ def random_traffic():
     return errors
 
 
-def a_line_takes_two_accesses():
-    """Checks that the fill of a cache line of 8 words sends two commands to the memory, and a write sends one."""
+def accesses_of_a_line(data_width):
+    """Checks that the fill of a cache line of 32 bytes reads each word of the memory once."""
     rng = random.Random(2)
-    bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-    port = LiteDRAMNativePort(mode="both", address_width=23, data_width=128)
-    bridge = MemoryBridge(bus, port, BASE)
-    memory = Memory(bus, port, rng)
+    bus, bridge, memory = bench(data_width, rng)
 
     def line():
         yield bus.cyc.eq(1)
@@ -186,10 +199,10 @@ def a_line_takes_two_accesses():
             yield
 
     run_simulation(bridge, [line(), memory.run()])
-    return [] if memory.commands == 2 else [f"expected 2 commands for a line, got {memory.commands}"]
+    expected = 256 // data_width
+    return [] if memory.commands == expected else [f"expected {expected} commands for a line, got {memory.commands}"]
 
 
-CHECKS = {
-    "random traffic": random_traffic,
-    "a line takes two accesses": a_line_takes_two_accesses,
-}
+CHECKS = {f"{name}, port of {data_width} bits": partial(check, data_width)
+          for data_width in (128, 32, 16)
+          for name, check in (("random traffic", random_traffic), ("accesses of a line", accesses_of_a_line))}

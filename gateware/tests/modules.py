@@ -39,7 +39,7 @@ _PREPASS = {"PREPASS": 1}
 MODULES = [
     Module(
         top="scanout",
-        variants={"scanout_small": _SMALL_RASTER},
+        variants={"scanout_small": _SMALL_RASTER, "scanout_border": _SMALL_RASTER | {"V_FRONT": 5, "V_BACK": 7, "V_BORDER": 3}},
     ),
     Module(top="skid_buffer"),
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}}),
@@ -63,5 +63,8 @@ MODULES = [
     Module(top="raymarcher",
            variants={f"raymarcher_{name}": fields.parameters() for name, fields in BUILDS.items() if name != "all"},
            measured=("raymarcher_round", "raymarcher_faces")),
-    Module(top="triangle_control", variants={"triangle_control_smooth": _SMOOTH}),
+    Module(
+        top="triangle_control",
+        variants={"triangle_control_smooth": _SMOOTH, "triangle_control_32_mb": {"MEMORY_BITS": 21, "SIZES": 3}},
+    ),
 ]

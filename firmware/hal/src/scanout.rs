@@ -22,28 +22,28 @@ use crate::Absent;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
-    /// For frames of 1280×720 pixels.
+    /// For frames as wide as the screen.
     One = 1,
-    /// For frames of 640×360 pixels.
+    /// For frames of half the width of the screen.
     Two = 2,
-    /// For frames of 320×180 pixels.
+    /// For frames of a quarter of the width of the screen.
     Four = 4,
 }
 
-/// The scale at which a frame of this size fills the screen.
-impl From<Size> for Scale {
-    fn from(size: Size) -> Self {
-        match size {
-            Size::W320 => Self::Four,
-            Size::W640 => Self::Two,
-            Size::W1280 => Self::One,
-        }
+impl Scale {
+    /// The scale at which a frame of this size fills a screen of `width` pixels a line; `None` if there is none.
+    fn new(size: Size, width: u32) -> Option<Self> {
+        [Self::One, Self::Two, Self::Four]
+            .into_iter()
+            .find(|&scale| scale as u32 * size.width() == width)
     }
 }
 
 /// The registers of the scan-out block, whose presence in this SoC has been checked.
 pub struct Scanout {
     registers: scanout::Scanout,
+    /// Pixels of a line of the screen.
+    width: u32,
 }
 
 impl Scanout {
@@ -56,7 +56,8 @@ impl Scanout {
         registers
             .ev_enable()
             .write(EvEnable::default().with_vblank(true));
-        Ok(Self { registers })
+        let width = registers.caps().read().width().into();
+        Ok(Self { registers, width })
     }
 
     /// Keeps the frame at the address `shown` on the screen if the frame at the address `next`, which should replace it,
@@ -122,7 +123,7 @@ pub struct Display {
 }
 
 impl Display {
-    /// A display of two frames, each with room for 1280×720 pixels of RGB565 and aligned to 16 bytes.
+    /// A display of two frames of RGB565 pixels, aligned to 16 bytes. The sizes that fit a frame are available.
     #[must_use]
     pub fn new(scanout: Option<Scanout>, frames: [&'static mut [u16]; 2]) -> Self {
         let [front, back] = frames;
@@ -161,12 +162,25 @@ impl Display {
         self.front
     }
 
-    /// Shows the frame that [`back`](Self::back) lent, from the next vertical blanking on.
-    pub fn show(&mut self, scale: Scale) {
+    /// Whether frames of this size fit the memory and the screen.
+    #[must_use]
+    pub fn has_size(&self, size: Size) -> bool {
+        let fits_screen = match &self.scanout {
+            Some(scanout) => Scale::new(size, scanout.width).is_some(),
+            None => true,
+        };
+        fits_screen && size.pixel_count() <= self.front.len().min(self.back.len())
+    }
+
+    /// Shows the frame that [`back`](Self::back) lent, of one of the [available sizes](Self::has_size), from the next vertical
+    /// blanking on.
+    pub fn show(&mut self, size: Size) {
         core::mem::swap(&mut self.front, &mut self.back);
         // The writes of the frame's pixels must precede the write of its address to scan-out.
         compiler_fence(Ordering::SeqCst);
-        if let Some(scanout) = &self.scanout {
+        if let Some(scanout) = &self.scanout
+            && let Some(scale) = Scale::new(size, scanout.width)
+        {
             scanout.show(address(self.front), scale);
         }
     }
@@ -197,6 +211,7 @@ mod tests {
     use std::boxed::Box;
     use std::cell::RefCell;
     use std::rc::Rc;
+    use std::vec;
 
     use litex_pac::Peripherals;
     use litex_pac::bus::{self, Bus};
@@ -210,6 +225,7 @@ mod tests {
     #[derive(Default)]
     struct Video {
         ident: u32,
+        width: u32,
         control: u32,
         next: u32,
         scale: u32,
@@ -231,6 +247,7 @@ mod tests {
             let video = self.0.borrow();
             match address - scanout::Scanout::BASE {
                 0x00 => video.ident,
+                0x04 => video.width,
                 0x08 => video.control,
                 // Register `status`: the scale of the shown frame is in the bits from 4 on.
                 0x0c => video.current[2] << 4,
@@ -258,8 +275,13 @@ mod tests {
     }
 
     fn probe(ident: u32) -> (Result<Scanout, Absent>, Rc<RefCell<Video>>) {
+        probe_with_width(ident, 1280)
+    }
+
+    fn probe_with_width(ident: u32, width: u32) -> (Result<Scanout, Absent>, Rc<RefCell<Video>>) {
         let video = Rc::new(RefCell::new(Video {
             ident,
+            width,
             scale: 4,
             ..Video::default()
         }));
@@ -280,11 +302,11 @@ mod tests {
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
         display.back().unwrap()[0] = 1;
-        display.show(Scale::Four);
+        display.show(Size::W320);
         display.back().unwrap()[0] = 2;
         video.borrow_mut().blank();
         assert_eq!(display.front()[0], 1);
-        display.show(Scale::Four);
+        display.show(Size::W320);
         // The second frame waits for the vertical blanking, and the first frame is still on the screen.
         assert!(display.back().is_none());
         video.borrow_mut().blank();
@@ -300,7 +322,7 @@ mod tests {
             let mut display = Display::new(Some(scanout.unwrap()), frames());
             for mark in [1, 2] {
                 display.back().unwrap()[0] = mark;
-                display.show(Scale::Four);
+                display.show(Size::W320);
                 if mark == 1 {
                     video.borrow_mut().blank();
                 }
@@ -320,9 +342,9 @@ mod tests {
         // A waiting frame with another scale than the shown one is not withdrawn.
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
-        display.show(Scale::Four);
+        display.show(Size::W320);
         video.borrow_mut().blank();
-        display.show(Scale::Two);
+        display.show(Size::W640);
         display.withdraw();
         assert!(display.back().is_none());
     }
@@ -332,12 +354,12 @@ mod tests {
         for moment in 0..6 {
             let (scanout, video) = probe(IDENT);
             let mut display = Display::new(Some(scanout.unwrap()), frames());
-            display.show(Scale::Four);
+            display.show(Size::W320);
             let small = [1, video.borrow().next, 4];
             video.borrow_mut().blank();
             assert_eq!(video.borrow().current, small);
             video.borrow_mut().blank_before = Some(moment);
-            display.show(Scale::Two);
+            display.show(Size::W640);
             let large = [1, video.borrow().next, 2];
             let seen = video.borrow().current;
             assert!(seen[0] == 0 || seen == small || seen == large, "{seen:?}");
@@ -352,19 +374,34 @@ mod tests {
         assert_eq!(scanout.map(|_| ()).map_err(|absent| absent.found), Err(0));
         let mut display = Display::new(None, frames());
         display.back().unwrap()[0] = 1;
-        display.show(Scale::One);
+        display.show(Size::W1280);
         assert!(display.back().is_some() && !display.is_visible());
         assert_eq!(display.front()[0], 1);
     }
 
     #[test]
-    fn every_size_fills_the_screen() {
-        for size in Size::ALL {
-            let scale = Scale::from(size) as u32;
-            assert_eq!(
-                size.pixels().map(|pixels| scale * pixels),
-                Size::W1280.pixels()
-            );
+    fn a_size_must_fit_screen_and_memory() {
+        let scales = |width| Size::ALL.map(|size| Scale::new(size, width));
+        let [one, two, four] = [Scale::One, Scale::Two, Scale::Four].map(Some);
+        assert_eq!(scales(1280), [four, two, one]);
+        assert_eq!(scales(640), [two, one, None]);
+
+        let all = Size::W1280.pixel_count();
+        for (width, pixels, expected) in [
+            (None, all, [true; 3]),
+            (None, all - 1, [true, true, false]),
+            (Some(1280), all, [true; 3]),
+            (Some(1280), all - 1, [true, true, false]),
+            (Some(640), all, [true, true, false]),
+        ] {
+            let scanout = width.and_then(|width| {
+                let (scanout, _) = probe_with_width(IDENT, width);
+                scanout.ok()
+            });
+            let frames = [(); 2].map(|()| vec![0; pixels].leak());
+            let display = Display::new(scanout, frames);
+            let sizes = Size::ALL.map(|size| display.has_size(size));
+            assert_eq!(sizes, expected, "width {width:?}, {pixels} pixels");
         }
     }
 }

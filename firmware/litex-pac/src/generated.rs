@@ -2382,7 +2382,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_4818) }
         }
 
-        /// `fb_next`, 32 bits: Byte address of the frame to show next, a multiple of 16 (the low four bits are ignored): (1280/scale) x (720/scale) pixels of RGB565, row by row. Latched at vblank for the whole next frame.
+        /// `fb_next`, 32 bits: Byte address of the frame to show next, a multiple of 16 (the low four bits are ignored): (width/scale) x (height/scale) pixels of RGB565, row by row. Latched at vblank for the whole next frame.
         #[inline]
         #[must_use]
         pub const fn fb_next(&self) -> Register<u32, ReadWrite> {
@@ -2390,7 +2390,7 @@ pub mod scanout {
             unsafe { Register::at(0xf000_481c) }
         }
 
-        /// `scale`, 3 bits: Enlargement: a pixel of the frame is shown as a square of scale x scale pixels. 4 for 320x180, 2 for 640x360, 1 for 1280x720. Latched at vblank.
+        /// `scale`, 3 bits: Enlargement: a pixel of the frame is shown as a square of scale x scale pixels: `width` of `caps` divided by the width of the frame. Latched at vblank.
         #[inline]
         #[must_use]
         pub const fn scale(&self) -> Register<u8, ReadWrite> {
@@ -3792,7 +3792,7 @@ pub mod triangle {
     pub enum Error {
         /// No error.
         None = 0,
-        /// `size` was 3.
+        /// `size` is not supported by this build.
         Size = 1,
         /// A region was not aligned to 16 bytes or not within main memory; memory is unchanged.
         Address = 2,
@@ -3848,7 +3848,7 @@ pub mod triangle {
         pub const fn text(self) -> &'static str {
             match self {
                 Self::None => "no error",
-                Self::Size => "`size` was 3",
+                Self::Size => "`size` is not supported by this build",
                 Self::Address => "a region was not aligned to 16 bytes or not within main memory; memory is unchanged",
                 Self::Busy => "started while the same pass was running; that pass continued",
                 Self::Mesh => "a chunk without vertices or beyond `mesh_bytes`; the chunks before it were drawn",

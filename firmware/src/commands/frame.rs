@@ -12,6 +12,9 @@ use crate::machine::Machine;
 
 impl<'l> FrameCommands<'l> for Machine {
     fn size(&mut self, size: Size) -> Outcome<'l> {
+        if !self.renderer.has_size(size) {
+            return Err(CommandError::Size(size));
+        }
         self.scene.set_size(size);
         Ok(Reply::Done)
     }

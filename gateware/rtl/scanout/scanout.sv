@@ -1,4 +1,5 @@
-// Scan-out: shows an RGB565 frame in memory as 1280x720 video, enlarged 4, 2 or 1 times by repeating pixels and lines.
+// Scan-out: shows an RGB565 frame in memory as video (by default 1280x720), enlarged 4, 2 or 1 times by repeating pixels and
+// lines.
 //
 //            sys_clk                                             pix_clk
 //   memory ─▶ scanout_fetch ─▶ line ring, 2 slots of 160 words ─▶ pixel ─▶ 565 to 888 ─▶ video
@@ -25,7 +26,8 @@ module scanout #(
     parameter int unsigned V_ACTIVE     = 720,  // a multiple of 4
     parameter int unsigned V_FRONT      = 5,
     parameter int unsigned V_SYNC       = 5,
-    parameter int unsigned V_BACK       = 20
+    parameter int unsigned V_BACK       = 20,
+    parameter int unsigned V_BORDER     = 0     // visible black lines at the inner ends of V_BACK and V_FRONT
 ) (
     input  wire                     sys_clk,
     input  wire                     sys_rst,
@@ -178,7 +180,7 @@ module scanout #(
 
     scanout_timing #(
         .H_ACTIVE(H_ACTIVE), .H_FRONT(H_FRONT), .H_SYNC(H_SYNC), .H_BACK(H_BACK),
-        .V_ACTIVE(V_ACTIVE), .V_FRONT(V_FRONT), .V_SYNC(V_SYNC), .V_BACK(V_BACK)
+        .V_ACTIVE(V_ACTIVE), .V_FRONT(V_FRONT), .V_SYNC(V_SYNC), .V_BACK(V_BACK), .V_BORDER(V_BORDER)
     ) timing (.clk(pix_clk), .rst(pix_rst), .x, .active, .hsync, .vsync, .tick, .tick_line);
 
     logic [1:0] pix_shift;

@@ -1,7 +1,8 @@
 // Generates the video timing: counters of pixels and lines, both syncs, and a tick in each line.
 //
 // A line consists of active pixels, front porch, sync and back porch, and a frame likewise of lines. Both syncs are active
-// high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset.
+// high, and vsync changes with the leading edge of hsync, as in CEA-861. The only inputs are clock and reset. The last
+// V_BORDER lines of the back porch and the first V_BORDER lines of the front porch are visible lines around the picture.
 //
 // `tick` is the first clock of hsync. `tick_line` is then the number of the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE
 // and more in the vertical blanking; the tick with V_ACTIVE begins the blanking. Throughput one pixel a clock; the outputs are
@@ -18,6 +19,7 @@ module scanout_timing #(
     parameter int unsigned V_FRONT  = 5,
     parameter int unsigned V_SYNC   = 5,
     parameter int unsigned V_BACK   = 20,
+    parameter int unsigned V_BORDER = 0,
     localparam int unsigned H_TOTAL = H_ACTIVE + H_FRONT + H_SYNC + H_BACK,
     localparam int unsigned V_TOTAL = V_ACTIVE + V_FRONT + V_SYNC + V_BACK,
     localparam int unsigned X_BITS  = $clog2(H_TOTAL),
@@ -59,8 +61,8 @@ module scanout_timing #(
                 hsync     <= 1'b1;
                 tick      <= 1'b1;
                 tick_line <= (y == Y_BITS'(V_TOTAL - 1)) ? '0 : y + 1'b1;
-                if (y == Y_BITS'(V_TOTAL - 1))                       in_lines <= 1'b1;
-                if (y == Y_BITS'(V_ACTIVE - 1))                      in_lines <= 1'b0;
+                if (y == Y_BITS'(V_TOTAL - 1 - V_BORDER))            in_lines <= 1'b1;
+                if (y == Y_BITS'(V_ACTIVE - 1 + V_BORDER))           in_lines <= 1'b0;
                 if (y == Y_BITS'(V_ACTIVE + V_FRONT - 1))            vsync    <= 1'b1;
                 if (y == Y_BITS'(V_ACTIVE + V_FRONT + V_SYNC - 1))   vsync    <= 1'b0;
             end

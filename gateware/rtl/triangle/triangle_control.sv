@@ -4,7 +4,7 @@
 //                                     └── refused ─────────────────────────────▲
 //
 // The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
-// 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^ADDRESS_BITS words from
+// 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^MEMORY_BITS words from
 // BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A pass is requested by one clock of `ask`.
 // `ended` (one clock) answers each request when its pass is refused, done or cancelled; `error` then holds until the next
 // request of this pass.
@@ -21,7 +21,8 @@
 module triangle_control #(
     parameter  logic [31:0] BASE         = 32'h4000_0000,
     parameter  bit          SMOOTH       = 1'b0,
-    localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
+    parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
+    parameter  int unsigned SIZES        = 7, // picture sizes of this build: bit k for the size of code k
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
     input  wire                    clk,
@@ -56,7 +57,7 @@ module triangle_control #(
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
 
     // Bits of a region's length in words; a length may exceed the size of memory.
-    localparam int unsigned WORD_BITS  = ADDRESS_BITS + 2;
+    localparam int unsigned WORD_BITS  = triangle_registers_pkg::ADDRESS_BITS + 2;
     // Largest valid `list_shift`, the log2 of the words of a list: longer lists would exceed the counter of entries.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);
 
@@ -74,6 +75,9 @@ module triangle_control #(
     assign raster_active   = raster_pending || raster_start || engine.raster_busy || engine.raster_done;
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
+
+    // The code 3 is no size in any build.
+    localparam logic [3:0] SUPPORTED = {1'b0, 3'(SIZES)};
 
     assign bands = band_pkg::bands(size);
 
@@ -119,7 +123,7 @@ module triangle_control #(
     logic [WORD_BITS-1:0] was_words;
     logic [WORD_BITS:0]   past;
 
-    assign past = {{(WORD_BITS + 1 - ADDRESS_BITS){1'b0}}, was_first[4 +: ADDRESS_BITS]} + {1'b0, was_words};
+    assign past = {{(WORD_BITS + 1 - MEMORY_BITS){1'b0}}, was_first[4 +: MEMORY_BITS]} + {1'b0, was_words};
 
     always_ff @(posedge clk) begin
         looked    <= state == CHECK;
@@ -127,8 +131,8 @@ module triangle_control #(
         was_first <= first;
         was_words <= words;
 
-        if (looked && was_used && (was_first[3:0] != '0 || was_first[31:4+ADDRESS_BITS] != BASE[31:4+ADDRESS_BITS]
-                                   || past > (WORD_BITS+1)'(1) << ADDRESS_BITS))
+        if (looked && was_used && (was_first[3:0] != '0 || was_first[31:4+MEMORY_BITS] != BASE[31:4+MEMORY_BITS]
+                                   || past > (WORD_BITS+1)'(1) << MEMORY_BITS))
             misplaced <= 1'b1;
         if (state == IDLE) misplaced <= 1'b0;
     end
@@ -174,13 +178,13 @@ module triangle_control #(
             // Waits until the end address of the last region is checked.
             SETTLE: state <= JUDGE;
             JUDGE: begin
-                if (size == 2'd3 || misplaced) begin
+                if (!SUPPORTED[size] || misplaced) begin
                     if (rastering) begin
                         {raster_pending, raster_ended} <= 2'b01;
-                        raster_error <= size == 2'd3 ? ERROR_SIZE : ERROR_ADDRESS;
+                        raster_error <= !SUPPORTED[size] ? ERROR_SIZE : ERROR_ADDRESS;
                     end else begin
                         {geometry_pending, geometry_ended} <= 2'b01;
-                        geometry_error <= size == 2'd3 ? ERROR_SIZE : ERROR_ADDRESS;
+                        geometry_error <= !SUPPORTED[size] ? ERROR_SIZE : ERROR_ADDRESS;
                     end
                     state <= IDLE;
                 end else begin

@@ -74,6 +74,15 @@ fn flips_and_switches_at_any_time_with_seven_clock_ratios() {
 }
 
 #[test]
+fn lines_above_and_below_the_picture_are_black() {
+    let mut bench = Bench::new("scanout_border", Raster::BORDER, Clocks::SLOW, 150);
+    bench.memory.manners = Manners::SHARED;
+    bench.software = Some(restless);
+    bench.run_frames(60);
+    assert_eq!(bench.monitor.late, 0);
+}
+
+#[test]
 fn a_late_line_is_replaced_by_the_one_before() {
     for scale in [1, 2, 4] {
         let mut bench = Bench::small(Clocks::SLOW, 200 + scale);

@@ -77,8 +77,9 @@ impl Monitor {
         let raster = &self.raster;
         let (x, y) = (position % raster.h_total(), position / raster.h_total());
         let (left, top) = (raster.h_sync + raster.h_back, raster.v_sync + raster.v_back);
-        let de = (top..top + raster.v_active).contains(&y)
-            && (left..left + raster.h_active).contains(&x);
+        let picture = top..top + raster.v_active;
+        let visible = top - raster.border..picture.end + raster.border;
+        let de = visible.contains(&y) && (left..left + raster.h_active).contains(&x);
         let hsync = module.is_high(self.hsync);
         assert_eq!(hsync, x < raster.h_sync, "hsync at x {x}, y {y}");
         assert_eq!(vsync, y < raster.v_sync, "vsync at x {x}, y {y}");
@@ -92,6 +93,11 @@ impl Monitor {
         }
         self.line.push(rgb);
         if self.line.len() as u64 == raster.h_active {
+            if !picture.contains(&y) {
+                assert!(self.line_is_black(), "line {y} of the border is not black");
+                self.line.clear();
+                return false;
+            }
             self.check_line(y - top, in_force);
             self.line.clear();
             return y - top == self.raster.v_active - 1;

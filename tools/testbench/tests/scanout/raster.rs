@@ -11,6 +11,8 @@ pub struct Raster {
     pub v_front: u64,
     pub v_sync: u64,
     pub v_back: u64,
+    /// Number of visible black lines above and below the picture, which are part of back and front porch.
+    pub border: u64,
 }
 
 impl Raster {
@@ -24,6 +26,7 @@ impl Raster {
         v_front: 5,
         v_sync: 5,
         v_back: 20,
+        border: 0,
     };
 
     /// The timing of the module `scanout_small`: a frame takes about 1/200 of the time of one of `scanout`, but in the active
@@ -37,6 +40,15 @@ impl Raster {
         v_front: 2,
         v_sync: 2,
         v_back: 4,
+        border: 0,
+    };
+
+    /// The timing of the module `scanout_border`: as [`SMALL`](Self::SMALL), with black lines above and below the picture.
+    pub const BORDER: Self = Self {
+        v_front: 5,
+        v_back: 7,
+        border: 3,
+        ..Self::SMALL
     };
 
     /// Number of pixel clocks of a line.

@@ -9,8 +9,8 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::control::bench::{Bench, Events};
 use crate::control::passes::{
-    ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES, NONE, Pass,
-    RASTER, refusal, regions,
+    ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, Limits, MEMORY, MESH, NAMES,
+    NONE, Pass, RASTER, SIZE, refusal, regions,
 };
 
 /// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
@@ -69,6 +69,47 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
+/// A build for 32 MB of memory and two sizes refuses what lies beyond.
+#[test]
+fn a_build_has_less_memory_and_fewer_sizes() {
+    const MEMORY: u64 = 32 << 20;
+    let mut bench = Bench::of("triangle_control_32_mb", 48, 3);
+    bench.limits = Limits {
+        memory: MEMORY,
+        sizes: 2,
+    };
+    for which in [GEOMETRY, RASTER] {
+        bench.passes = Pass::good();
+        let flags = &mut bench.passes[which].flags;
+        flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
+        let ask = [which == GEOMETRY, which == RASTER];
+        for size in 0..4 {
+            bench.passes[which].flags.size = size;
+            let (list_shift, descriptor) = (bench.list_shift, bench.descriptor);
+            let regions = regions(which, &bench.passes[which], list_shift, descriptor);
+            for &(port, _) in &regions {
+                bench.passes[which].set(port, BASE);
+            }
+            let expected = if size < 2 { NONE } else { SIZE };
+            assert_eq!(bench.ask(ask)[which], expected, "size {size}");
+            for (port, bytes) in regions {
+                let last = BASE + MEMORY - bytes.next_multiple_of(16);
+                for (address, outside) in [
+                    (last, NONE),
+                    (last + 16, ADDRESS),
+                    (BASE + MEMORY, ADDRESS),
+                    (last + MEMORY, ADDRESS),
+                ] {
+                    bench.passes[which].set(port, address);
+                    let expected = if size < 2 { outside } else { SIZE };
+                    assert_eq!(bench.ask(ask)[which], expected, "{port} {address:#x}");
+                }
+                bench.passes[which].set(port, BASE);
+            }
+        }
+    }
+}
+
 /// For counts and lengths from the lowest to the highest: a region may end where memory ends, but not one word farther.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
@@ -122,8 +163,15 @@ fn lengths_are_counted_to_the_last_word() {
                 bench.passes[RASTER].set(port, BASE);
             }
             bench.passes[GEOMETRY].set("geometry.lists", BASE);
-            let expected = [GEOMETRY, RASTER]
-                .map(|which| refusal(which, &bench.passes[which], shift, bench.descriptor));
+            let expected = [GEOMETRY, RASTER].map(|which| {
+                refusal(
+                    which,
+                    &bench.passes[which],
+                    shift,
+                    bench.descriptor,
+                    bench.limits,
+                )
+            });
             assert_eq!(expected[GEOMETRY], expected[RASTER]);
             assert_eq!(
                 bench.ask([true, true]),

@@ -3,8 +3,8 @@
 use glint_testbench::{Module, Port};
 
 use crate::control::passes::{
-    ADDRESS, BASE, BUSY, CANCELLED, FULL, Flags, GEOMETRY, LATENCY, LIST, MEMORY, MESH, NAMES,
-    NONE, Pass, RASTER, refusal,
+    ADDRESS, BASE, BUSY, CANCELLED, FULL, Flags, GEOMETRY, LATENCY, LIST, Limits, MEMORY, MESH,
+    NAMES, NONE, Pass, RASTER, refusal,
 };
 
 /// Expected state of a pass.
@@ -32,6 +32,7 @@ pub struct Bench {
     pub descriptor: u64,
     pub passes: [Pass; 2],
     pub list_shift: u64,
+    pub limits: Limits,
     pub states: [State; 2],
     /// Expected values of each pass's output `error`; `kept` holds the expected values of each pass's output `kept`.
     pub errors: [u64; 2],
@@ -72,6 +73,10 @@ impl Bench {
             descriptor,
             passes: Pass::good(),
             list_shift: 9,
+            limits: Limits {
+                memory: MEMORY,
+                sizes: 3,
+            },
             states: [State::Idle; 2],
             errors: [NONE; 2],
             kept: [None, None],
@@ -186,8 +191,13 @@ impl Bench {
                 if self.is_active(which) {
                     self.errors[which] = BUSY;
                 } else {
-                    let refusal =
-                        refusal(which, &self.passes[which], self.list_shift, self.descriptor);
+                    let refusal = refusal(
+                        which,
+                        &self.passes[which],
+                        self.list_shift,
+                        self.descriptor,
+                        self.limits,
+                    );
                     self.states[which] = State::Asked(now, refusal);
                     self.errors[which] = NONE;
                     self.kept[which] = Some(self.passes[which].flags.clone());

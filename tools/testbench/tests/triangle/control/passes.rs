@@ -173,15 +173,24 @@ pub fn regions(
     }
 }
 
+/// Limits of a build of the module.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Bytes of memory.
+    pub memory: u64,
+    /// Number of picture sizes.
+    pub sizes: usize,
+}
+
 /// Returns the error code with which an ask for a pass must be refused, or `NONE`.
-pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64) -> u64 {
+pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limits: Limits) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);
         !first.is_multiple_of(16)
-            || !(BASE..BASE + MEMORY).contains(&first)
-            || bytes.next_multiple_of(16) > BASE + MEMORY - first
+            || !(BASE..BASE + limits.memory).contains(&first)
+            || bytes.next_multiple_of(16) > BASE + limits.memory - first
     };
-    if pass.size() == 3 {
+    if pass.size() >= limits.sizes {
         SIZE
     } else if regions(which, pass, list_shift, descriptor)
         .iter()
