@@ -107,13 +107,18 @@ fn lists_name_the_triangles_of_their_bands() {
     let mut random = Random(7);
     for size in Size::ALL {
         for capability in Shading::ALL {
-            let shift = list_shift(size.width());
+            let shift = list_shift(size.width(), 1 << 20);
             let bands = size.height() / band_rows(size.width());
             let list_words = 4 * list_word(bands, shift) as usize;
             let mut descriptors = vec![0; DESCRIPTORS * words(capability)];
             let mut lists = vec![0; list_words];
-            let mut writer =
-                ListWriter::new(&mut descriptors, &mut lists, size.width(), capability);
+            let mut writer = ListWriter::new(
+                &mut descriptors,
+                &mut lists,
+                size.width(),
+                shift,
+                capability,
+            );
             let mut put = vec![];
             while put.len() < DESCRIPTORS {
                 let triangle = glint_vectors::triangles::random_triangle(&mut random);
@@ -167,7 +172,7 @@ fn lists_without_room_are_refused() {
         (words(Shading::Flat), LENGTHS - 1, Err(Full)),
     ] {
         let (mut descriptors, mut lists) = (vec![0; descriptor_words], vec![0; list_words]);
-        let mut writer = ListWriter::new(&mut descriptors, &mut lists, 320, Shading::Flat);
+        let mut writer = ListWriter::new(&mut descriptors, &mut lists, 320, 15, Shading::Flat);
         writer.put(&setup, Rgb565::WHITE);
         assert_eq!(writer.finish(), expected);
     }

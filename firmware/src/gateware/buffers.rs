@@ -5,14 +5,35 @@ use core::mem;
 use glint_core::colour::Shading;
 use glint_hal::triangle::{Lists, Set};
 use glint_model::Stats;
-use glint_model::triangle::descriptor;
+use glint_model::triangle::descriptor::{self, list_shift};
 
-/// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a set.
-/// The CPU draws frames that need more.
-const DESCRIPTORS: usize = 1 << 16;
-/// Number of 32-bit words for the descriptors of a set. A descriptor with smooth shading is twice as long as one without,
-/// so there is room for half as many of them.
-const DESCRIPTOR_WORDS: usize = DESCRIPTORS * descriptor::words(Shading::Flat);
+/// Numbers of items for which the memory of one frame has room. The CPU draws frames that need more.
+#[derive(Clone, Copy)]
+pub struct Room {
+    /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a
+    /// set. A descriptor with smooth shading is twice as long, so there is room for half as many of them.
+    descriptors: usize,
+    /// Number of 32-bit words of a set of band lists, including the table of their lengths.
+    list_words: usize,
+}
+
+impl Room {
+    /// The room for each of two frames in `words` 32-bit words; `None` if it is too small. A frame has two sets of lists, each an
+    /// eighth of the memory or up to half as large.
+    pub fn of(words: usize) -> Option<Self> {
+        let list_words = 1 << (words / 8).checked_ilog2()?;
+        let descriptors = 1 << (words / 96).checked_ilog2()?;
+        (list_words >= 1 << 16).then_some(Self {
+            descriptors,
+            list_words,
+        })
+    }
+
+    /// Number of 32-bit words for the descriptors of a set.
+    const fn descriptor_words(self) -> usize {
+        self.descriptors * descriptor::words(Shading::Flat)
+    }
+}
 
 /// Memory of one frame: two sets of descriptors and band lists, and the list of exceptions.
 pub struct Buffers {
@@ -32,28 +53,33 @@ pub struct Buffers {
 
 impl Buffers {
     /// Splits the memory of a frame off `memory`; `None` if `memory` is too small.
-    pub fn split_off(memory: &mut &'static mut [u32]) -> Option<Self> {
+    pub fn split_off(memory: &mut &'static mut [u32], room: Room) -> Option<Self> {
         let mut piece = |length| {
             let (piece, rest) = mem::take(memory).split_at_mut_checked(length)?;
             *memory = rest;
             Some(piece)
         };
         Some(Self {
-            descriptors: piece(DESCRIPTOR_WORDS)?,
-            lists: piece(descriptor::LIST_SET_WORDS)?,
-            exceptions: piece(DESCRIPTORS)?,
-            clipped_descriptors: piece(DESCRIPTOR_WORDS)?,
-            clipped_lists: piece(descriptor::LIST_SET_WORDS)?,
+            descriptors: piece(room.descriptor_words())?,
+            lists: piece(room.list_words)?,
+            exceptions: piece(room.descriptors)?,
+            clipped_descriptors: piece(room.descriptor_words())?,
+            clipped_lists: piece(room.list_words)?,
             sets: [None; 2],
             stats: Stats::default(),
         })
+    }
+
+    /// The list shift of both passes for a picture of this width.
+    pub const fn list_shift(&self, width: u32) -> u32 {
+        list_shift(width, self.lists.len())
     }
 
     /// The memory for the output of a geometry pass, on gateware whose best shading is `capability`.
     pub fn lists(&self, capability: Shading) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
-            descriptor_limit: (DESCRIPTOR_WORDS / descriptor::words(capability)) as u32,
+            descriptor_limit: (self.descriptors.len() / descriptor::words(capability)) as u32,
             lists: address(self.lists),
         }
     }

@@ -6,13 +6,13 @@ use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{
     Counters, EngineError, Error, Geometry, Prepared, Raster, Set, TriangleEngine,
 };
-use glint_model::triangle::descriptor::{ListWriter, list_shift};
+use glint_model::triangle::descriptor::ListWriter;
 use glint_model::{
     Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
 };
 use litex_pac::cpu;
 
-use super::buffers::{Buffers, address};
+use super::buffers::{Buffers, Room, address};
 use super::fallback::Fallback;
 use super::watchdog::Watchdog;
 
@@ -79,13 +79,14 @@ impl GatewareRenderer {
         mut memory: &'static mut [u32],
         first_frame_buffer: u32,
     ) -> Option<Self> {
+        let room = Room::of(memory.len())?;
         Some(Self {
             shading: engine.shading(),
             engine,
             raymarcher,
             buffers: [
-                Buffers::split_off(&mut memory)?,
-                Buffers::split_off(&mut memory)?,
+                Buffers::split_off(&mut memory, room)?,
+                Buffers::split_off(&mut memory, room)?,
             ],
             first_frame_buffer,
             drawn_sizes: [None; 2],
@@ -263,7 +264,7 @@ impl GatewareRenderer {
             exceptions: address(buffers.exceptions),
             exception_limit: buffers.exceptions.len() as u32,
         };
-        let shift = list_shift(setup.width) as u8;
+        let shift = buffers.list_shift(setup.width) as u8;
         self.engine.prepare_geometry(&pass, shift)
     }
 
@@ -307,10 +308,12 @@ impl GatewareRenderer {
             cpu::flush_data_cache();
             let exceptions = buffers.exceptions.get(..counts.exceptions as usize);
             let mut numbers = exceptions.unwrap_or_default().iter().copied();
+            let list_shift = buffers.list_shift(setup.width);
             let mut writer = ListWriter::new(
                 buffers.clipped_descriptors,
                 buffers.clipped_lists,
                 setup.width,
+                list_shift,
                 self.shading,
             );
             let options = Options {

@@ -120,12 +120,10 @@ const fn size(width: u32) -> Size {
 /// Number of 32-bit words of the table of list lengths, which is at the start of a set of lists.
 pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 
-/// Number of 32-bit words of a set of lists, including the table of their lengths: 4 MiB.
-pub const LIST_SET_WORDS: usize = 1 << 20;
-
-/// The `shift` of [`list_word`] for a picture of this width: the largest value for which the lists of all bands fit a set.
-pub const fn list_shift(width: u32) -> u32 {
-    let room = LIST_SET_WORDS as u32 / 4 - LIST_TABLE_WORDS;
+/// The `shift` of [`list_word`] for a picture of this width: the largest value for which the lists of all bands fit `words` 32-bit
+/// words, with the table of their lengths. At least 2^15 words are required.
+pub const fn list_shift(width: u32, words: usize) -> u32 {
+    let room = (words / 4) as u32 - LIST_TABLE_WORDS;
     (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
 }
 
@@ -146,12 +144,13 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Starts an empty set of descriptors and band lists in two regions of memory, for a picture of this width and
-    /// gateware whose best shading is `capability`.
+    /// Starts an empty set of descriptors and band lists in two regions of memory, for a picture of this width and gateware
+    /// whose best shading is `capability`. A list has room for 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
         width: u32,
+        list_shift: u32,
         capability: Shading,
     ) -> Self {
         Self {
@@ -160,7 +159,7 @@ impl<'a> ListWriter<'a> {
             lengths: [0; LENGTHS],
             count: 0,
             band_rows: band_rows(width),
-            list_shift: list_shift(width),
+            list_shift,
             capability,
             is_full: false,
         }
@@ -214,14 +213,21 @@ impl<'a> ListWriter<'a> {
 mod tests {
     use glint_core::picture::Size;
 
-    use super::{LIST_SET_WORDS, list_shift, list_word};
+    use super::{list_shift, list_word};
 
     #[test]
     fn the_lists_of_all_bands_fit_a_set() {
-        for (size, shift) in [(Size::W320, 15), (Size::W640, 14), (Size::W1280, 12)] {
-            assert_eq!(list_shift(size.width()), shift);
-            assert!(4 * list_word(size.bands(), shift) as usize <= LIST_SET_WORDS);
-            assert!(4 * list_word(size.bands(), shift + 1) as usize > LIST_SET_WORDS);
+        for (size, words, shift) in [
+            (Size::W320, 1 << 20, 15),
+            (Size::W640, 1 << 20, 14),
+            (Size::W1280, 1 << 20, 12),
+            (Size::W320, 1 << 18, 13),
+            (Size::W640, 1 << 18, 12),
+            (Size::W1280, 1 << 15, 3),
+        ] {
+            assert_eq!(list_shift(size.width(), words), shift, "{size}, {words}");
+            assert!(4 * list_word(size.bands(), shift) as usize <= words);
+            assert!(4 * list_word(size.bands(), shift + 1) as usize > words);
         }
     }
 }
