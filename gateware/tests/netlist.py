@@ -88,15 +88,17 @@ class Netlist:
 
         A cell with a name in the source code belongs to the instance around it; any other cell to the instance of the net that
         it drives. Where that net has no name, as between LUTs, the cell belongs to the instance of most of its loads, so what
-        several instances share is counted at one. In a flat source, the words of the names stand for instances.
+        several instances share is counted at one. In a flat source, the words of the names of nets stand for instances.
         """
         def path(name):
             *instance, name = name.split(".")
             return tuple(instance) if instance or not is_flat_source else tuple(name.split("_")[:-1])
         owners = {}
         for name, cell in self.cells.items():
-            named = [re.sub(r"(\.\d+)+$", "", name)] if not name.startswith("$") else map(self.name, _bits(cell, "output"))
-            if own := next(filter(None, named), None):
+            names = [None if name.startswith("$") else re.sub(r"(\.\d+)+$", "", name), *map(self.name, _bits(cell, "output"))]
+            if is_flat_source and "." not in (names[0] or "."):
+                names.append(names.pop(0) + "_") # a name such as that of a memory or a primitive, all of whose words count
+            if own := next(filter(None, names), None):
                 owners[name] = path(own)
         waiting = self.cells.keys() - owners.keys()
         while waiting:
