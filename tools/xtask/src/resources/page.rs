@@ -7,7 +7,7 @@ use super::table::{
 };
 
 /// Notes on the measurement of cells, for the page.
-const NOTES: [&str; 10] = [
+const NOTES: [&str; 11] = [
     "Yosys counts the cells of the mapped netlist; no cell is estimated. Other tools give other counts. Yosys' own counts vary \
      by a cell of path or a percent of LUTs with irrelevant changes.",
     "LUT: LUT1 to LUT6 and inverters (logic), shift registers (SRL), and LUTs of LUT memories (LUTRAM: four for a RAM32M). \
@@ -25,6 +25,10 @@ const NOTES: [&str; 10] = [
     "Largest fan-outs: the nets with the most inputs of cells, except clocks. A net without a name in the source code is \
      described by a register that it controls.",
     "A block on its own keeps logic that is constant in the SoC, so the blocks do not add up to the SoC.",
+    "`cargo xtask resources --tree` attributes each cell to one instance: a cell with a name in the source code to the instance \
+     around it, any other to the instance of the net that it drives. A LUT that drives a net without a name belongs to the \
+     instance of most of its loads, so logic that several instances share counts for one. LiteX writes one flat module: there \
+     the words of a net's name stand for instances.",
     "`ring_lane` is a lane for the sponge up to depth 4 without cones, `ring_lane_all` a lane for every field with cones. \
      `raymarcher` is the build for all fields; `raymarcher_round`, `raymarcher_faces` and `raymarcher_sponge` are the builds \
      of `cargo xtask gateware --fields`. The budget of `ring_lane` allows three multipliers, for p = o + t·d: no other field \
@@ -35,7 +39,7 @@ const NOTES: [&str; 10] = [
 ];
 
 /// Notes on the clock rates, for the page.
-const ROUTE_NOTES: [&str; 6] = [
+const ROUTE_NOTES: [&str; 7] = [
     "Yosys maps a block for the ECP5, and nextpnr places and routes it alone on an LFE5U-85F of speed grade 6, the slowest: \
      tools from PyPI, pinned, which run on any machine. 100 MHz are asked. Every port of the block is a flip-flop, so paths to \
      and from ports count. Of a block with several clocks, the slowest counts; paths between two clocks do not.",
@@ -44,6 +48,8 @@ const ROUTE_NOTES: [&str; 6] = [
      a ratio above 1 limits the SoC's clock less than the soft core does.",
     "Wires make the difference between chips: placed on the XC7S50 by an open tool, the worst paths of these blocks are wire \
      for 85 to 90 % of their delay. No vendor tool has confirmed a rate.",
+    "A block RAM without its output register takes 5.6 ns from clock to output on this ECP5, so a path from such a RAM weighs \
+     more here than on the 7 series.",
     "An ECP5 multiplies 18 by 18 bits, a DSP48E1 of the 7 series 25 by 18. Wider products get a register between the \
      multipliers and their sum for this measurement, as they would in a pipeline made for the family: paths in such a product \
      do not count.",
@@ -64,6 +70,7 @@ pub fn page(measured: &Measured, budget: &Budget) -> String {
          `cargo xtask resources` repeats the count of cells and fails beyond the limits in `gateware/budget.toml`;\n\
          `cargo xtask resources setup` measures one block, `--json` prints JSON. `cargo xtask resources --route` places and routes\n\
          the own blocks, about two minutes each, and prints clock rates beside VexRiscv's; `--route setup` does it for one.\n\
+         `cargo xtask resources --tree` prints the cells of the SoC by instance, `--tree setup` those of one block.\n\
          `cargo xtask test` counts the cells of {own},\nand checks the clock rate of {}.\n\n{}\n",
         tools(measured),
         if routed.is_empty() {
