@@ -23,7 +23,8 @@ import pythondata_cpu_vexriscv
 
 import size
 from netlist import Netlist
-from tools import BUILD, NEXTPNR, ToolError, run_program, run_yosys
+from tools import BUILD, NEXTPNR, TESTS, YOSYS, ToolError, run_program, run_yosys
+from verilate.programs import digest, is_current
 
 REFERENCE = "vexriscv"
 """The soft core in the SoC's variant: every ratio is to this block's rate."""
@@ -60,11 +61,22 @@ def measure(name, seeds=SEEDS):
     """Returns the rates of a block or of `REFERENCE`, in MHz, for each seed and their median, and the median's worst path, as a
     dictionary.
 
-    The files of all programs stay in `target/gateware/route/NAME`.
+    The files of all programs stay in `target/gateware/route/NAME`. The same inputs to the same programs give the same rates, so
+    they are measured again only after a change.
     """
     top, sources, parameters = _block(name)
     folder = _FOLDER / name
     folder.mkdir(parents=True, exist_ok=True)
+    stamp, result = folder / "inputs", folder / "result.json"
+    code = [TESTS / file for file in ("route.py", "netlist.py", "tools.py")]
+    inputs = digest([*sources, *code], top, parameters, seeds, version(YOSYS), version(NEXTPNR))
+    if not is_current(stamp, inputs, result):
+        result.write_text(json.dumps(_measure(top, sources, parameters, seeds, folder)))
+        stamp.write_text(inputs)
+    return json.loads(result.read_text())
+
+
+def _measure(top, sources, parameters, seeds, folder):
     set_parameters = size.set_parameters(top, parameters)
     run_yosys(f"{set_parameters}hierarchy -check -top {top}; proc; select {top}; write_json -selected ports.json", sources, folder)
     ports = _ports(json.loads((folder / "ports.json").read_text()), top)
