@@ -53,8 +53,9 @@ const ROUTE_NOTES: [&str; 7] = [
     "An ECP5 multiplies 18 by 18 bits, a DSP48E1 of the 7 series 25 by 18. Wider products get a register between the \
      multipliers and their sum for this measurement, as they would in a pipeline made for the family: paths in such a product \
      do not count.",
-    "The placer starts from a seed. Three seeds give three rates, and the median counts. Rates of one netlist vary by about 4 % \
-     to either side, so a difference between two ratios below 0.05 says nothing.",
+    "The placer starts from a seed. Three seeds give three rates, and the median counts. Rates of one netlist differ by 5 to \
+     10 % between seeds, and a median has moved by 4 % when only comments changed. So a difference between two ratios below 0.05 \
+     says nothing, and the least ratios of the budget leave as much room.",
     "Worst path: of the median, from register to register; `port` is the flip-flop of a port. A level is a LUT with its \
      multiplexers, or a whole carry chain. Logic has the delays of the registers too.",
 ];
