@@ -10,7 +10,7 @@
 // and pulses `vblank`. The pix side requests line 0 only after that, so all lines of a picture come from one frame in memory.
 // The video timing never waits: a line that comes late is replaced by the previous line, and counted as an underflow.
 //
-// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 3 pix_clk from scanout_timing to the video
+// Throughput: one pixel a pix_clk, at most one memory word a sys_clk. Latency: 4 pix_clk from scanout_timing to the video
 // outputs; a source line (a line of the frame in memory) is requested one to `scale` output lines before its first use. Clock
 // domain crossings: three four-phase requests with stable payload (cdc_request), one level, and the line ring, whose slots are
 // written and read at different times by the protocol of scanout_lines.
@@ -100,7 +100,7 @@ module scanout #(
     // ---- Frame parameters and counters, clocked by sys_clk ------------------------------------------------------
 
     logic [1:0] shift, shift_asked;
-    logic       scale_known, underflow_seen;
+    logic       scale_known, underflow_seen, stalled, stored;
 
     always_comb begin
         scale_known = 1'b1;
@@ -126,11 +126,15 @@ module scanout #(
         end
         if (sys_underflow) underflow_seen <= 1'b1;
 
+        // Registers apart from the counters, because memory's signals end long paths in LiteDRAM.
+        stalled <= cmd_valid && !cmd_ready;
+        stored  <= store;
+
         frames         <= frames         + 32'(sys_vblank);
         underflows     <= underflows     + 32'(sys_underflow);
         cycles_busy    <= cycles_busy    + 32'(fetching);
-        cycles_stalled <= cycles_stalled + 32'(cmd_valid && !cmd_ready);
-        items_in       <= items_in       + 32'(store);
+        cycles_stalled <= cycles_stalled + 32'(stalled);
+        items_in       <= items_in       + 32'(stored);
         items_out      <= items_out      + 32'(sys_fetch_done && enabled);
 
         if (sys_rst) begin
@@ -139,6 +143,8 @@ module scanout #(
             shift          <= 2'd2;
             error          <= 2'd0;
             underflow_seen <= 1'b0;
+            stalled        <= 1'b0;
+            stored         <= 1'b0;
             frames         <= '0;
             underflows     <= '0;
             cycles_busy    <= '0;
@@ -166,11 +172,15 @@ module scanout #(
     // ---- Line ring, two buffers of one source line: written in sys_clk, read in pix_clk -------------------------
 
     logic [127:0]         ring [0:2*(1 << WORD_BITS)-1];
-    logic [127:0]         ring_word;
+    logic [127:0]         ring_latched, ring_word;
     logic [WORD_BITS:0]   ring_address;
 
     always_ff @(posedge sys_clk) if (store) ring[{store_slot, store_word}] <= rdata;
-    always_ff @(posedge pix_clk) ring_word <= ring[ring_address];
+    // The second register is the output register of the block RAM, whose read is slow.
+    always_ff @(posedge pix_clk) begin
+        ring_latched <= ring[ring_address];
+        ring_word    <= ring_latched;
+    end
 
     // ---- Video timing and control of the line ring, clocked by pix_clk ------------------------------------------
 
@@ -199,12 +209,12 @@ module scanout #(
     // ---- Pixel pipeline, clocked by pix_clk: address, read of the ring, selection of the pixel ------------------
 
     logic [X_BITS-1:0] source_x;
-    logic [2:0]        lane_1, lane_2;
-    logic [2:0]        sync_1, sync_2; // hsync, vsync, active
+    logic [2:0]        lane_1, lane_2, lane_3;
+    logic [2:0]        sync_1, sync_2, sync_3; // hsync, vsync, active
     logic [15:0]       pixel;
 
     assign source_x = x >> pix_shift;
-    assign pixel    = ring_word[16*lane_2 +: 16];
+    assign pixel    = ring_word[16*lane_3 +: 16];
 
     always_ff @(posedge pix_clk) begin
         ring_address <= {shown_slot, source_x[3 +: WORD_BITS]};
@@ -212,17 +222,20 @@ module scanout #(
         sync_1       <= {hsync, vsync, active};
         lane_2       <= lane_1;
         sync_2       <= sync_1;
+        lane_3       <= lane_2;
+        sync_3       <= sync_2;
 
-        {video_hsync, video_vsync, video_de} <= sync_2;
+        {video_hsync, video_vsync, video_de} <= sync_3;
         // Repeats the top bits of a channel as its lowest bits, so that 31 and 63 become 255.
         video_r <= {pixel[15:11], pixel[15:13]};
         video_g <= {pixel[10:5],  pixel[10:9]};
         video_b <= {pixel[4:0],   pixel[4:2]};
-        if (!sync_2[0] || !shown || !pix_enabled) {video_r, video_g, video_b} <= '0;
+        if (!sync_3[0] || !shown || !pix_enabled) {video_r, video_g, video_b} <= '0;
 
         if (pix_rst) begin
             sync_1 <= '0;
             sync_2 <= '0;
+            sync_3 <= '0;
             {video_hsync, video_vsync, video_de} <= '0;
         end
     end

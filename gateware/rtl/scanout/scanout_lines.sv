@@ -16,7 +16,7 @@
 `default_nettype none
 
 module scanout_lines #(
-    parameter int unsigned V_ACTIVE = 720,
+    parameter int unsigned V_ACTIVE = 720, // a multiple of 4
     parameter int unsigned Y_BITS   = 10
 ) (
     input  wire               clk,
@@ -50,7 +50,8 @@ module scanout_lines #(
         first_use   = (tick_line & group_mask) == '0;
         needed      = tick_line >> shift;
         next        = in_picture ? needed + 1'b1 : '0;
-        next_exists = next < (Y_BITS'(V_ACTIVE) >> shift);
+        // No source line follows the last one, whose output lines end with the last line of the picture.
+        next_exists = (tick_line | group_mask) != Y_BITS'(V_ACTIVE - 1);
     end
 
     // `frame_open` is high from `frame_begun` to the next vertical blanking. `hidden_asked` is high if a fetch into the hidden
