@@ -63,26 +63,26 @@ def _ring(old, new, fails):
 
 
 _FIFO = [
-    _fifo("out_valid <= stored;", "out_valid <= stored && in_valid;", "order.shown_in_time"),
+    _fifo("out_valid <= stored ||", "out_valid <= stored && in_valid ||", "order.shown_in_time"),
     _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
-    _fifo("load     = !out_valid || out_ready", "load     = 1'b1", "shown.valid_stays"),
-    _fifo("out_valid <= stored;", "out_valid <= stored || in_valid;", "order.nothing_made_up"),
+    _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
+    _fifo("out_valid <= stored ||", "out_valid <= stored || in_valid ||", "order.nothing_made_up"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "1'b1", "order.nothing_too_many"),
-    _fifo("if (stored) tail", "if (stored && !in_valid) tail", "order.in_order"),
+    _fifo("if (load && stored) ", "if (load && stored && !in_valid) ", "order.in_order"),
     _fifo("if (in_valid && in_ready) head", "if (in_valid) head", "order.in_order"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "head == '0", "order.taken_in_time"),
 ]
 
 MUTATIONS = {
     "skid_buffer": [
-        _skid("in_valid || !in_ready;", "in_valid && in_ready;", "order.shown_in_time"),
-        _skid("in_valid || !in_ready;", "1'b1;", "order.nothing_made_up"),
+        _skid("in_valid || !in_ready ||", "in_valid && in_ready ||", "order.shown_in_time"),
+        _skid("in_valid || !in_ready ||", "1'b1 ||", "order.nothing_made_up"),
         _skid("if (in_ready) spare", "spare", "order.in_order"),
         _skid("in_ready ? in_data : spare", "in_data", "order.in_order"),
-        _skid("in_ready <= 1'b0;", "in_ready <= 1'b1;", "order.nothing_too_many"),
-        _skid("if (!out_valid || out_ready)", "if (1'b1)", "shown.valid_stays"),
+        _skid("in_ready && !in_valid;", "in_ready;", "order.nothing_too_many"),
+        _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "shown.valid_stays"),
         _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "shown.payload_stable"),
-        _skid(": spare;\n            in_ready  <= 1'b1;", ": spare;", "order.taken_in_time"),
+        _skid("!out_valid || out_ready || in_ready", "!out_valid || in_ready", "order.taken_in_time"),
     ],
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
@@ -128,7 +128,7 @@ MUTATIONS = {
         _ring("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
         _ring("{in_ray.place, in_ray.length,", "{in_ray.place, ~in_ray.length,", "as_it_came"),
         _ring("steps_1 + 8'd1 >= tuning.cap", "steps_1 >= tuning.cap", "counts_steps"),
-        Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = 1'b1", "ends.valid_stays"),
+        Mutation("fifo.sv", "stored || out_valid && !out_ready;", "stored;", "ends.valid_stays"),
         Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "ends.payload_stable"),
     ],
     "write_port": [
@@ -147,7 +147,7 @@ MUTATIONS = {
         _write("if (gathered >= COUNT_BITS'(BURST) || hurry)", "if (hurry)", "full_goes"),
     ],
     "band_extents": [
-        Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (1'b1)", "spans.valid_stays"),
+        Mutation("skid_buffer.sv", "!in_ready || !out_ready && out_valid;", "!in_ready;", "spans.valid_stays"),
         Mutation("skid_buffer.sv", "if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)",
                  "spans.payload_stable"),
         # Fault: the module ignores a line's extent in the last frame, or takes it from the other frame buffer.
@@ -218,13 +218,13 @@ MUTATIONS = {
         _walker("            active       <= 1'b0;", "            active       <= 1'b1;", "busy_while_it_walks"),
     ],
     "lanes": [
-        _skid("if (!out_valid || out_ready)", "if (1'b1)", "shown.valid_stays"),
+        _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "shown.valid_stays"),
         _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "shown.payload_stable"),
         _lanes("= valid[4] && out_mask != '0;", "= valid[4];", "nothing_made_up"),
         _lanes("place_3 <= place_2;", "place_3 <= place_1;", "in_order"),
         _lanes("assign in_ready = out_ready;", "assign in_ready = 1'b1;", "nothing_too_many"),
         _lanes("valid == '0;", "valid[3:1] == '0;", "idle_when_empty"),
         _lanes("if (out_ready) valid <=", "if (out_ready && in_valid) valid <=", "shown_in_time"),
-        _skid(": spare;\n            in_ready  <= 1'b1;", ": spare;", "taken_in_time"),
+        _skid("!out_valid || out_ready || in_ready", "!out_valid || in_ready", "taken_in_time"),
     ],
 }

@@ -36,10 +36,9 @@ module fifo #(
 
     always_ff @(posedge clk) begin
         if (in_valid && in_ready) head <= head + 1'b1;
-        if (load) begin
-            out_valid <= stored;
-            if (stored) tail <= tail + 1'b1;
-        end
+        if (load && stored) tail <= tail + 1'b1;
+        // Written without a clock enable, since a flip-flop with an enable of its own takes a slice of the FPGA.
+        out_valid <= stored || out_valid && !out_ready;
 
         if (rst) begin
             head      <= '0;

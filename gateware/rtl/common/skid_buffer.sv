@@ -26,15 +26,12 @@ module skid_buffer #(
 );
     logic [WIDTH-1:0] spare;
 
-    // `in_ready` is high exactly while the spare place is free.
+    // `in_ready` is high exactly while the spare place is free. Both flags are written without a clock enable, since a flip-flop
+    // with an enable of its own takes a slice of the FPGA.
     always_ff @(posedge clk) begin
-        if (!out_valid || out_ready) begin
-            out_valid <= in_valid || !in_ready;
-            out_data  <= in_ready ? in_data : spare;
-            in_ready  <= 1'b1;
-        end else if (in_valid && in_ready) begin
-            in_ready <= 1'b0;
-        end
+        out_valid <= in_valid || !in_ready || !out_ready && out_valid;
+        in_ready  <= !out_valid || out_ready || in_ready && !in_valid;
+        if (!out_valid || out_ready) out_data <= in_ready ? in_data : spare;
         if (in_ready) spare <= in_data;
 
         if (rst) begin
