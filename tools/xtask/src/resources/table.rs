@@ -52,7 +52,7 @@ pub fn placement_rows(measured: &Measured, budget: &Budget) -> Rows {
         "control sets",
         "FF in small sets",
         "slices",
-        "MHz",
+        "ECP5 MHz",
         "to VexRiscv",
         "largest fan-outs",
     ];
