@@ -1,11 +1,11 @@
 // Computes the reciprocal y = 2^47/m of a mantissa m in [2^23, 2^24), from a table and two Newton steps
 // (docs/formats.md, "The reciprocal").
 //
-// `out_y` comes with `out_valid` (one clock) 14 clocks after m, and stays until the next result; nothing stalls. Throughput:
+// `out_y` comes with `out_valid` (one clock) 15 clocks after m, and stays until the next result; nothing stalls. Throughput:
 // `in_ready` admits one m in 10 clocks. One DSP48 makes the four products:
 //
-//   clock  0        1          4             7           10            13         14
-//          m ─▶ seed y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
+//   clock  0      1       2        5             8           11            14         15
+//          m ─▶ seed ─▶ y0 ─▶ e0 = −m·y0 ─▶ y1 = y0 + y0·e0 ─▶ e1 = −m·y1 ─▶ y1·e1 ─▶ y = y1 + y1·e1
 //
 // −m·y is computed as ~m·y + y, so that there is no adder before the multiplier. The residues are e0 = 2^33 − m·y0 and
 // e1 = 2^40 − m·y1; only their bits 8 to 25 are used, in which the powers of two are 0.
@@ -28,10 +28,11 @@ module reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago.
-    logic [13:0] since;
+    // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago. The seed comes from a block RAM, whose output is late
+    // in the clock, so y0 is a register behind it.
+    logic [14:0] since;
     logic [23:0] m;
-    logic [9:0]  y0;
+    logic [9:0]  seed, y0;
     logic [16:0] y1, y1_held;
 
     logic signed [24:0] a;
@@ -43,28 +44,29 @@ module reciprocal (
     assign unused = &p[7:0];
 
     assign in_ready  = since[8:0] == '0;
-    assign out_valid = since[13];
+    assign out_valid = since[14];
     assign e         = p[25:8];
     assign y1        = p[35] ? '1 : p[34:18];
     assign sum       = {1'b0, y1_held, 7'b0} + 25'($signed(p[36:25]));
 
     always_comb begin
-        a = since[0] || since[6] ? {1'b1, ~m} : 25'(e);
-        b = since[0] || since[3] ? {8'b0, y0} : {1'b0, since[6] ? y1 : y1_held};
-        c = since[2] ? {27'b0, y0}
-          : since[5] ? {2'b0, y0, 25'b0}
-          : since[8] ? {20'b0, y1_held}
+        a = since[1] || since[7] ? {1'b1, ~m} : 25'(e);
+        b = since[1] || since[4] ? {8'b0, y0} : {1'b0, since[7] ? y1 : y1_held};
+        c = since[3] ? {27'b0, y0}
+          : since[6] ? {2'b0, y0, 25'b0}
+          : since[9] ? {20'b0, y1_held}
           : 37'd1 << 24;
     end
 
     always_ff @(posedge clk) begin
-        since <= {since[12:0], in_valid && in_ready};
+        since <= {since[13:0], in_valid && in_ready};
         if (in_ready) begin
-            m  <= in_m;
-            y0 <= seeds[in_m[22:15]];
+            m    <= in_m;
+            seed <= seeds[in_m[22:15]];
         end
-        if (since[6])  y1_held <= y1;
-        if (since[12]) out_y   <= sum[24] ? '1 : sum[23:0];
+        y0 <= seed;
+        if (since[7])  y1_held <= y1;
+        if (since[13]) out_y   <= sum[24] ? '1 : sum[23:0];
         if (rst) since <= '0;
     end
 

@@ -140,7 +140,7 @@ module setup #(
     flat_shade shade (
         .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
-    // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 6 of stage 2 on, or earlier in stage 2 if
+    // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 7 of stage 2 on, or earlier in stage 2 if
     // the beat of stage 1 is longer than 11 clocks.
     normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (

@@ -3,8 +3,8 @@
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
-//   9    m comes                 10, 13    −m·y0 and y0·e0'
-//   25   y is valid, until 30    17, 20    −m·y1 and y1·e1'
+//   9    m comes                 11, 14    −m·y0 and y0·e0'
+//   25   y is valid, until 30    18, 21    −m·y1 and y1·e1'
 
 `default_nettype none
 
@@ -22,9 +22,10 @@ module vertex_reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // −m is valid from clock 10 on, and `minus_m_later` from 16 on; y0 from 10 on; y1 from 17 and `y1_later` from 23 on.
+    // −m is valid from clock 10 on, and `minus_m_later` from 16 on; y0 from 11 on; y1 from 18 and `y1_later` from 24 on. The seed
+    // comes from a block RAM, whose output is late in the clock, so y0 is a register behind it.
     logic signed [24:0] minus_m, minus_m_later;
-    logic        [9:0]  y0;
+    logic        [9:0]  seed, y0;
     logic        [16:0] y1, y1_later;
     logic signed [24:0] a;
     logic signed [17:0] b, e;
@@ -40,33 +41,35 @@ module vertex_reciprocal (
 
     always_comb begin
         case ({half, element[0]})
-            2'b10: a = minus_m;
-            2'b00: a = {15'b0, y0};
-            2'b11: a = minus_m_later;
-            2'b01: a = {8'b0, y1};
+            2'b11: a = minus_m;
+            2'b01: a = {15'b0, y0};
+            2'b10: a = minus_m_later;
+            2'b00: a = {8'b0, y1};
         endcase
         b = e;
-        if (half) b = element[0] ? {1'b0, y1} : {8'b0, y0};
+        if (half) b = element[0] ? {8'b0, y0} : {1'b0, y1};
         case ({half, element})
-            3'b010:  c = {2'b0, y0, 25'b0};
-            3'b100:  c = 37'd1 << 24;
+            3'b100:  c = {2'b0, y0, 25'b0};
+            3'b101:  c = 37'd1 << 24;
             default: c = '0;
         endcase
     end
 
     multiply_add #(.BITS(37)) multiply (.clk(clk), .enable(1'b1), .a(a), .b(b), .c(c), .p(p));
 
+    assign sum = {1'b0, y1_later, 7'b0} + 25'($signed(p[36:25]));
+
     always_ff @(posedge clk) begin
         if (!half && element == 2'd2) begin
             minus_m       <= -{1'b0, m};
             minus_m_later <= minus_m;
-            y0            <= seeds[m[22:15]];
+            seed          <= seeds[m[22:15]];
         end
-        if (half && element == 2'd0) begin
+        y0 <= seed;
+        if (half && element == 2'd1) begin
             y1       <= p[35] ? '1 : p[34:18];
             y1_later <= y1;
         end
-        sum <= {1'b0, y1_later, 7'b0} + 25'($signed(p[36:25]));
         if (half && element == 2'd2) y <= sum[24] ? '1 : sum[23:0];
     end
 endmodule
