@@ -1,5 +1,5 @@
 // Proof that culled triangles do not block the stage `cull`, for any triangles in any order. The limits count only clocks in
-// which no triangle waits at the output for the consumer. A triangle at the input waits for at most 3 such clocks. Each triangle
+// which no triangle waits at the output for the consumer. A triangle at the input waits for at most 4 such clocks. Each triangle
 // leaves once, culled or drawn; while triangles are inside, one leaves after at most 8 such clocks.
 
 `default_nettype none
@@ -52,7 +52,7 @@ module cull_proof (
 
         if (culled) culled_before <= 1'b1;
 
-        taken_in_time:     assert (waited <= 4'd3);
+        taken_in_time:     assert (waited <= 4'd4);
         leaves_in_time:    assert (stood <= 4'd8);
         nothing_too_many:  assert (inside <= 3'd3);
         nothing_made_up:   assert (!leaves || inside != '0);

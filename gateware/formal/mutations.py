@@ -42,6 +42,10 @@ def _cull(old, new, fails):
     return Mutation("cull.sv", old, new, fails)
 
 
+def _classify(old, new, fails):
+    return Mutation("classify.sv", old, new, fails)
+
+
 def _setup(old, new, fails):
     return Mutation("setup.sv", old, new, fails)
 
@@ -175,24 +179,38 @@ MUTATIONS = {
     ],
     "cull": [
         _cull("if (advance) phase", "if (advance && !drop) phase", "taken_in_time"),
-        _cull("if (advance) phase", "if (advance && !drop) phase", "leaves_in_time"),
+        _cull("if (advance) phase", "if (advance && in_valid) phase", "leaves_in_time"),
         _cull("last_valid && !drop;", "last_valid && !drop && !first_valid;", "nothing_too_many"),
         _cull("in_ready && last_valid && drop;", "in_ready && drop;", "nothing_made_up"),
         _cull("first_valid || last_valid || out_valid;", "first_valid || last_valid;", "busy_while_inside"),
-        _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.valid_stays"),
-        _cull("if (!out_valid || out_ready) begin", "if (1'b1) begin", "shown.payload_stable"),
+        _cull("phase == 2'd3 && !in_ready && room;", "phase == 2'd3 && !in_ready;", "nothing_too_many"),
+        _cull("out_valid ? !out_ready : in_ready", "in_ready", "shown.valid_stays"),
+        _cull("if (!out_valid) out_triangle", "if (1'b1) out_triangle", "shown.payload_stable"),
+    ],
+    "classify": [
+        _classify("known        <= held && !leaves;", "known        <= held && !known;", "exception.valid_stays"),
+        _classify("if (in_ready) regular_side", "if (1'b1) regular_side", "in_order"),
+        _classify("                regular_vertices[i] <= vertex.place;", "", "regular.payload_stable"),
+        _classify("if (leaves) count", "if (known) count", "counted"),
+        _classify("if (leaves) count", "if (known) count", "exception.payload_stable"),
+        _classify("known && !to_regular && !to_exception;", "known && !to_regular;", "leaves_one_way"),
+        _classify("unseen           = known &&", "unseen           =", "nothing_made_up"),
+        _classify("assign idle           = !held;", "assign idle           = !known;", "idle_while_empty"),
+        _classify("!to_exception || exception_ready", "exception_ready", "taken_in_time"),
     ],
     "setup": [
         _setup("if (out_ready) out_valid <= 1'b0;", "out_valid <= 1'b0;", "shown.valid_stays"),
-        _setup("count != LAST || !valid[4] || !out_valid;", "1'b1;", "shown.payload_stable"),
+        _setup("waits  = valid[4] && out_valid && !out_ready;", "waits  = 1'b0;", "shown.payload_stable"),
+        _setup("enable <= !(ending && waits);", "enable <= 1'b1;", "dut.shade.in_step"),
+        _setup("enable <= !(ending && waits);", "enable <= !ending;", "dut.shade.in_step"),
         _setup("if (beat && valid[4]) begin", "if (beat) begin", "nothing_made_up"),
         _setup("lit_4      <= lit_3;", "lit_4      <= lit_2;", "in_order"),
         _setup("drawn <= beat && valid[4];", "drawn <= beat;", "counted"),
         _setup("cull_busy || valid != '0 || out_valid", "cull_busy || valid[3:1] != '0 || out_valid", "busy_while_inside"),
         _setup("valid <= {valid[3:1], first_valid};", "valid <= {1'b0, valid[2:1], first_valid};", "busy_while_inside"),
         # Fault: triangles wait for later triangles, or for the consumer.
-        _setup("end else if (enable) begin", "end else if (enable && first_valid) begin", "no_standstill"),
-        _setup("end else if (enable) begin", "end else if (enable && out_ready) begin", "taken_in_time"),
+        _setup("end else if (count != LAST) begin", "end else if (count != LAST && first_valid) begin", "no_standstill"),
+        _setup("end else if (count != LAST) begin", "end else if (count != LAST && out_ready) begin", "taken_in_time"),
     ],
     "band_entry": [
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),

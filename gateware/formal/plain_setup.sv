@@ -106,6 +106,16 @@ module flat_shade (
     output logic [15:0]      lit
 );
     assign lit = colour;
+
+    // `enable` stops the arithmetic exactly as often as the last clock of a beat, here number 2, is repeated.
+    logic       running = 1'b0;
+    logic [3:0] step = '0;
+
+    always_ff @(posedge clk) begin
+        running <= 1'b1;
+        if (running && enable) step <= step == 4'd2 ? 4'd0 : step + 1'b1;
+        if (running) in_step: assert (step == count);
+    end
 endmodule
 
 module normalise (
@@ -135,7 +145,6 @@ endmodule
 
 module setup_gradient (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [3:0]  count,
     input  wire  [45:0] nx,
     input  wire  [45:0] ny,
@@ -150,7 +159,6 @@ endmodule
 
 module setup_start (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [3:0]  count,
     input  wire  [39:0] gx,
     input  wire  [39:0] gy,

@@ -5,7 +5,8 @@
 //   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
 //   otherwise                                                                      regular: goes to the setup
 //
-// Latency 2 clocks, throughput a triangle a clock. `width` and `height` must hold while triangles are inside. Triangles are
+// Latency 2 clocks, throughput a triangle in 3 clocks, in which `vertex_cache` collects the vertices of the next one. One
+// triangle is inside, so `in_ready` depends on registers alone. `width` and `height` must hold while it is inside. Triangles are
 // numbered in the order in which they come, from 0 after `restart`.
 
 `default_nettype none
@@ -40,17 +41,14 @@ module classify #(
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
 
-    logic                 held, known, moves, next_free;
-    logic [SIDE_BITS-1:0] side;
-    logic [2:0][65:0]     places;
-    logic [2:0][3:0]      off;
-    logic [2:0]           behind, beyond;
-    logic                 is_unseen, is_exceptional;
+    logic            held, known, leaves;
+    logic [2:0][3:0] off;
+    logic [2:0]      behind, beyond;
+    logic            is_unseen, is_exceptional;
 
-    // The first stage examines each vertex, the second stage decides about the triangle.
-    assign idle           = !held && !known;
-    assign next_free      = !known || moves;
-    assign in_ready       = !held || next_free;
+    // The first clock examines each vertex, the second one decides about the triangle, which is then `known`.
+    assign idle           = !held;
+    assign in_ready       = !held;
     assign is_unseen      = behind == '1 || behind == '0 && (off[0] & off[1] & off[2]) != '0;
     assign is_exceptional = behind != '0 || beyond != '0;
 
@@ -61,43 +59,34 @@ module classify #(
 
         always_ff @(posedge clk) begin
             if (in_ready) begin
-                places[i] <= vertex.place;
-                behind[i] <= vertex.behind;
-                beyond[i] <= vertex.beyond;
-                off[i]    <= off_sides(vertex.place.x[20:8], vertex.place.y[20:8]);
+                regular_vertices[i] <= vertex.place;
+                behind[i]           <= vertex.behind;
+                beyond[i]           <= vertex.beyond;
+                off[i]              <= off_sides(vertex.place.x[20:8], vertex.place.y[20:8]);
             end
         end
     end
 
     logic to_regular, to_exception;
 
-    assign regular_valid   = known && to_regular;
-    assign exception_valid = known && to_exception;
-    assign moves           = to_regular ? regular_ready : !to_exception || exception_ready;
+    assign regular_valid    = known && to_regular;
+    assign exception_valid  = known && to_exception;
+    assign exception_number = count;
+    assign unseen           = known && !to_regular && !to_exception;
+    assign leaves           = known && (to_regular ? regular_ready : !to_exception || exception_ready);
 
     always_ff @(posedge clk) begin
-        if (in_ready) begin
-            held <= in_valid;
-            side <= in_side;
-        end
-
-        unseen <= 1'b0;
-        if (next_free) begin
-            known        <= held;
-            to_regular   <= !is_unseen && !is_exceptional;
-            to_exception <= !is_unseen && is_exceptional;
-            unseen       <= held && is_unseen;
-            regular_vertices <= places;
-            regular_side     <= side;
-            exception_number <= count;
-            if (held) count <= count + 1'b1;
-        end
+        if (in_ready) regular_side <= in_side;
+        to_regular   <= !is_unseen && !is_exceptional;
+        to_exception <= !is_unseen && is_exceptional;
+        held         <= held ? !leaves : in_valid;
+        known        <= held && !leaves;
+        if (leaves) count <= count + 1'b1;
 
         if (restart) count <= '0;
         if (rst) begin
-            held   <= 1'b0;
-            known  <= 1'b0;
-            unseen <= 1'b0;
+            held  <= 1'b0;
+            known <= 1'b0;
         end
     end
 endmodule

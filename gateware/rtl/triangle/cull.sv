@@ -9,8 +9,8 @@
 //   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
 //        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
 //
-// All stages stop while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready`
-// follows `out_ready` in the same clock, so `out_ready` must come from registers, as it does in `setup`.
+// All stages stop while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready` is a
+// register, decided a clock ahead: high in the clock in which the stages move. So it follows `out_ready` a clock later.
 
 `default_nettype none
 
@@ -54,13 +54,14 @@ module cull #(
     assign v2 = in_vertices[2];
 
     logic [1:0] phase;
-    logic       advance, drop;
+    logic       advance, drop, drop_next, room;
     logic       first_valid, last_valid, first_x_21;
     triangle_t  first, last;
 
-    assign advance  = phase != 2'd3 || !last_valid || drop || !out_valid || out_ready;
-    assign in_ready = phase == 2'd3 && advance;
-    assign busy     = first_valid || last_valid || out_valid;
+    // `room`: the output is free in the next clock.
+    assign room    = !out_valid || out_ready;
+    assign advance = phase != 2'd3 || in_ready;
+    assign busy    = first_valid || last_valid || out_valid;
 
     function automatic logic precedes(input logic [20:0] a, input logic [20:0] b);
         precedes = $signed(a) < $signed(b);
@@ -68,6 +69,7 @@ module cull #(
 
     always_ff @(posedge clk) begin
         if (advance) phase <= phase + 1'b1;
+        in_ready <= phase == 2'd2 && (!last_valid || drop_next || room) || phase == 2'd3 && !in_ready && room;
         if (in_ready) begin
             first_valid  <= in_valid;
             first.v0     <= v0;
@@ -87,6 +89,7 @@ module cull #(
         end
         if (rst) begin
             phase       <= '0;
+            in_ready    <= 1'b0;
             first_valid <= 1'b0;
             last_valid  <= 1'b0;
         end
@@ -138,7 +141,7 @@ module cull #(
     end
 
     // The decision to cull the triangle, and the values that depend on its facing, registered for phase 3.
-    logic        front, no_area, no_column, no_row;
+    logic        front, no_column;
     logic [39:0] flipped_area;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
@@ -155,6 +158,8 @@ module cull #(
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
     end
 
+    assign drop_next = area == '0 || top >= bottom || no_column || cull_back && !area[43];
+
     always_ff @(posedge clk) begin
         if (advance) begin
             extreme <= phase[1] ? (chosen[1] ? first.v2.y : chosen[0] ? first.v1.y : first.v0.y)
@@ -164,8 +169,7 @@ module cull #(
                 2'd2: begin
                     left          <= cut;
                     front         <= area[43];
-                    no_area       <= area == '0;
-                    no_row        <= top >= bottom;
+                    drop          <= drop_next;
                     flipped_area  <= area[39:0] ^ {40{area[43]}};
                     group_top     <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
                 end
@@ -181,7 +185,6 @@ module cull #(
         end
     end
 
-    assign drop   = no_area || no_row || no_column || cull_back && !front;
     assign culled = in_ready && last_valid && drop;
 
     // In a front face, vertices 1 and 2 are swapped. Values that change their sign use −v = ~v + 1.
@@ -210,10 +213,9 @@ module cull #(
     end
 
     always_ff @(posedge clk) begin
-        if (!out_valid || out_ready) begin
-            out_valid    <= in_ready && last_valid && !drop;
-            out_triangle <= oriented;
-        end
+        // A triangle that is not culled moves only when the output is free.
+        if (!out_valid) out_triangle <= oriented;
+        out_valid <= out_valid ? !out_ready : in_ready && last_valid && !drop;
         if (rst) out_valid <= 1'b0;
     end
 
@@ -236,7 +238,7 @@ module cull #(
                 first_light <= in_light;
                 last_light  <= first_light;
             end
-            if (!out_valid || out_ready) out_lit <= lit;
+            if (!out_valid) out_lit <= lit;
         end
     end else begin : flat
         assign out_lit = '0;

@@ -50,8 +50,8 @@ module flat_shade (
 
     // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
     always_ff @(posedge clk) begin
-        if (enable && count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
-        if (enable && count == 4'd9) green_blue <= {p[26:21], p[12:8]};
+        if (count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
+        if (count == 4'd9) green_blue <= {p[26:21], p[12:8]};
     end
 
     assign lit = {p[12:8], green_blue};

@@ -64,12 +64,15 @@ module setup #(
         logic [20:0] px, py;
     } origin_t;
 
+    // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both are registers, decided a
+    // clock ahead: `ending` is high if the next clock can be the last one of the beat. They drive hundreds of flip-flops, also in
+    // `cull`.
     logic [3:0] count;
-    logic       enable, beat;
+    logic       enable, beat, ending, waits;
     logic [4:1] valid;
 
-    assign enable = count != LAST || !valid[4] || !out_valid;
-    assign beat   = count == LAST && enable;
+    assign ending = !beat && (count == LAST || count == LAST - 1'b1);
+    assign waits  = valid[4] && out_valid && !out_ready;
 
     setup_pkg::oriented_t     first;
     logic [2:0][LIT_BITS-1:0] first_lit;
@@ -82,15 +85,19 @@ module setup #(
     );
 
     always_ff @(posedge clk) begin
+        beat   <= ending && !waits;
+        enable <= !(ending && waits);
         if (beat) begin
             count <= '0;
             valid <= {valid[3:1], first_valid};
-        end else if (enable) begin
+        end else if (count != LAST) begin
             count <= count + 1'b1;
         end
         if (rst) begin
-            count <= '0;
-            valid <= '0;
+            beat   <= 1'b0;
+            enable <= 1'b1;
+            count  <= '0;
+            valid  <= '0;
         end
     end
 
@@ -234,7 +241,7 @@ module setup #(
     end
 
     setup_plane depth (
-        .clk, .enable, .beat, .count, .nx(nx_2), .ny(ny_2), .y(y_3), .lead(lead_3),
+        .clk, .beat, .count, .nx(nx_2), .ny(ny_2), .y(y_3), .lead(lead_3),
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
@@ -267,7 +274,7 @@ module setup #(
                 .x10(passed_2.x10), .y01(passed_2.y01), .x02(passed_2.x02), .y20(passed_2.y20), .nx(light_nx), .ny(light_ny)
             );
             setup_plane plane (
-                .clk, .enable, .beat, .count, .nx(light_nx), .ny(light_ny), .y(y_3), .lead(lead_3),
+                .clk, .beat, .count, .nx(light_nx), .ny(light_ny), .y(y_3), .lead(lead_3),
                 .px(origin_4.px), .py(origin_4.py), .value(p0_4), .step_x(light_step_x), .step_y(light_step_y), .start(light_start)
             );
 

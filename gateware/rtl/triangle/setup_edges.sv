@@ -44,8 +44,8 @@ module setup_edges (
     end
 
     always_ff @(posedge clk) begin
-        if (enable && count[1:0] == 2'd0) low <= p[16:0];
-        if (enable && count == 4'd6)      e0  <= {p[24:0], low};
+        if (count[1:0] == 2'd0) low <= p[16:0];
+        if (count == 4'd6)      e0  <= {p[24:0], low};
     end
 
     assign e2 = {p[24:0], low};

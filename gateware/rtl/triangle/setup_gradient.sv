@@ -4,13 +4,12 @@
 // Each gradient takes three products, with pieces of the normal of 17, 17 and 12 bits from the low end. Then follows a shift in
 // three parts: by multiples of 16, of 4 and of 1. The module `setup` drives `count`, the number of the clock in a beat (the
 // time of a triangle in a stage of `setup`, 11 clocks or more). The inputs hold during a beat; the result for Nx is valid from
-// clock 8 on, for Ny in clock 10.
+// clock 8 on, for Ny in clock 10, also while that clock is repeated.
 
 `default_nettype none
 
 module setup_gradient (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [3:0]  count,
     input  wire  [45:0] nx,
     input  wire  [45:0] ny,
@@ -45,16 +44,15 @@ module setup_gradient (
     assign twice_gy = 41'(by_4 >>> lead[1:0]);
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            if (count == 4'd3 || count == 4'd6) low    <= p[16:0];
-            if (count == 4'd4 || count == 4'd7) middle <= p[16:0];
-            by_16 <= 56'($signed(product[69:7]) >>> {lead[5:4], 4'b0});
-            by_4  <= 44'(by_16 >>> {lead[3:2], 2'b0});
-            if (count == 4'd7) twice_gx <= twice_gy;
-        end
+        // The sums of the three pieces follow each other, so the bits that a sum completes are those of the last two clocks.
+        middle <= p[16:0];
+        low    <= middle;
+        by_16  <= 56'($signed(product[69:7]) >>> {lead[5:4], 4'b0});
+        if (count != 4'd10) by_4     <= 44'(by_16 >>> {lead[3:2], 2'b0});
+        if (count == 4'd7)  twice_gx <= twice_gy;
     end
 
-    multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
+    multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
 
     wire _unused = &{1'b0, p[43:36], product[6:0]};
 endmodule

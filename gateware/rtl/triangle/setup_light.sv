@@ -52,7 +52,7 @@ module setup_light (
 
     always_ff @(posedge clk) begin
         if (beat) w0 <= {1'b0, next_w0} + 25'd32;
-        if (enable && (count == 4'd2 || count == 4'd5)) w <= w0 + (count[0] ? w20 : w10);
+        if (count == 4'd2 || count == 4'd5) w <= w0 + (count[0] ? w20 : w10);
     end
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c(44'd1 << 13), .p);
@@ -66,14 +66,14 @@ module setup_light (
     assign difference = {1'b0, p[37:14]} - {1'b0, first};
 
     always_ff @(posedge clk) begin
+        unique case (count)
+            4'd3, 4'd4, 4'd5: p0_1[channel]  <= p[37:14];
+            4'd6, 4'd7, 4'd8: p10_1[channel] <= difference;
+            4'd9:             p20_red        <= difference;
+            4'd0:             p20[2]         <= difference;
+            default: ;
+        endcase
         if (enable) begin
-            unique case (count)
-                4'd3, 4'd4, 4'd5: p0_1[channel]  <= p[37:14];
-                4'd6, 4'd7, 4'd8: p10_1[channel] <= difference;
-                4'd9:             p20_red        <= difference;
-                4'd0:             p20[2]         <= difference;
-                default: ;
-            endcase
             unique case (count)
                 4'd5, 4'd8: first <= p0_1[0];
                 4'd6, 4'd9: first <= p0_1[1];

@@ -39,7 +39,7 @@ module setup_normal (
     end
 
     always_ff @(posedge clk) begin
-        if (enable && count == 4'd6) nx <= p;
+        if (count == 4'd6) nx <= p;
     end
 
     assign ny = p;

@@ -9,7 +9,6 @@
 
 module setup_plane (
     input  wire         clk,
-    input  wire         enable,
     input  wire         beat,
     input  wire  [3:0]  count,
     input  wire  [45:0] nx,
@@ -43,11 +42,11 @@ module setup_plane (
         end
         gx <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
         gy <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
-        if (enable) count_4 <= count;
+        count_4 <= count;
     end
 
-    setup_gradient gradient (.clk, .enable, .count, .nx(nx_3), .ny(ny_3), .y, .lead, .twice_gx, .twice_gy);
-    setup_start at_start (.clk, .enable, .count(count_4), .gx, .gy, .px, .py, .value, .start);
+    setup_gradient gradient (.clk, .count, .nx(nx_3), .ny(ny_3), .y, .lead, .twice_gx, .twice_gy);
+    setup_start at_start (.clk, .count(count_4), .gx, .gy, .px, .py, .value, .start);
 endmodule
 
 `default_nettype wire

@@ -10,7 +10,6 @@
 
 module setup_start (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [3:0]  count,
     input  wire  [39:0] gx,
     input  wire  [39:0] gy,
@@ -24,7 +23,7 @@ module setup_start (
     logic signed [43:0] c, p;
     logic        [39:0] gradient;
     logic        [8:0]  low;
-    logic        [16:0] middle;
+    logic        [16:0] middle, high;
 
     // The factors follow from count = 2·piece + term, with term 0 for Gx and 1 for Gy. The addend `c` comes two clocks after
     // the factors of its product.
@@ -42,14 +41,17 @@ module setup_start (
     end
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            if (count == 4'd4) low    <= p[16:8];
-            if (count == 4'd6) middle <= p[16:0];
-            if (count == 4'd8) start  <= {p[5:0], middle, low};
+        // In clocks 4, 6 and 8 comes a sum. The last of them stays from then on, also while clock 10 is repeated.
+        if (!count[0] && count != 4'd10) begin
+            high   <= p[16:0];
+            middle <= high;
+            low    <= middle[16:8];
         end
     end
 
-    multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
+    assign start = {high[5:0], middle, low};
+
+    multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
 endmodule
 
 `default_nettype wire
