@@ -11,9 +11,15 @@
 // written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
 // these changes rare.
 //
-// Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. `restart` (while idle) empties
-// all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths and ends with `done`. Items for
-// which there is no room are dropped, and `full` is set: the frame is then incomplete.
+// Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the
+// input, so it moves a clock after its last word. `in_ready` is a register.
+//
+//   clock  1      2        3, 4, 5          6                           7, 8 …
+//          IDLE   LOCATE   WORD             ENTRY                       LOOK, ENTRY
+//                 band     3 words out      in_ready; the first band    each further band
+//
+// `restart` (while idle) empties all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths
+// and ends with `done`. Items for which there is no room are dropped, and `full` is set: the frame is then incomplete.
 
 `default_nettype none
 
@@ -61,21 +67,6 @@ module binner #(
     localparam int unsigned DESCRIPTOR_WORDS = 3 << SMOOTH;
     localparam int unsigned WORD_BITS        = $clog2(DESCRIPTOR_WORDS);
 
-    // Computes v/3 for 8 bits as v·171/512, which is exact in this range.
-    function automatic logic [6:0] third(input logic [7:0] v);
-        logic [15:0] product;
-        product = (16'(v) << 7) + (16'(v) << 5) + (16'(v) << 3) + (16'(v) << 1) + 16'(v);
-        third   = 7'(product >> 9);
-    endfunction
-
-    function automatic logic [BAND_BITS-1:0] band_of(input logic [9:0] row);
-        case (size)
-            2'd0:    band_of = BAND_BITS'(row >= 10'd45) + BAND_BITS'(row >= 10'd90) + BAND_BITS'(row >= 10'd135);
-            2'd1:    band_of = BAND_BITS'(third(8'(row[9:3])));
-            default: band_of = BAND_BITS'(third(row[9:2]));
-        endcase
-    endfunction
-
     // Returns the byte strobe that writes only the entry in lane `lane` of a word.
     function automatic logic [15:0] entry_strobe(input logic [1:0] lane);
         entry_strobe = 16'hf << {lane, 2'b00};
@@ -84,36 +75,35 @@ module binner #(
     typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
-    // For each list: its length, and the first three entries of its incomplete last word.
+    // For each list: its length, the first three entries of its incomplete last word, and its address. The addresses follow from
+    // each other while the lists are emptied.
     (* ram_style = "distributed" *) logic [COUNT_BITS-1:0]   lengths [0:BANDS-1];
     (* ram_style = "distributed" *) logic [3*COUNT_BITS-1:0] ends [0:BANDS-1];
-    logic [BAND_BITS-1:0]    band, last_band;
-    logic [COUNT_BITS-1:0]   length, stored;
+    (* ram_style = "distributed" *) logic [ADDRESS_BITS-1:0] addresses [0:BANDS-1];
+    logic [BAND_BITS-1:0]    band;
+    logic [COUNT_BITS-1:0]   length, stored, room;
     logic [3*COUNT_BITS-1:0] list_end, stored_end;
+    logic [ADDRESS_BITS-1:0] list_word, next_address, address_step;
     logic                    store, word_ends, end_written;
 
-    triangle_pkg::descriptor_t             descriptor;
-    logic [PLANES_BITS-1:0]  planes;
-    logic [128*DESCRIPTOR_WORDS-1:0]    words;
+    logic [128*DESCRIPTOR_WORDS-1:0] words;
     logic [WORD_BITS-1:0]    word;
     logic [ADDRESS_BITS-1:0] descriptor_word;
     logic [95:0]             gathered;
-    logic                    free, list_full;
+    logic                    free, list_full, descriptors_full, exceptions_full;
 
     if (SMOOTH) begin : light
-        assign words = {95'd0, planes, descriptor};
+        assign words = {95'd0, in_planes, in_descriptor};
     end else begin : flat
-        assign words = descriptor;
+        assign words = in_descriptor;
 
-        wire _unused = &{1'b0, planes};
+        wire _unused = &{1'b0, in_planes};
     end
 
     assign idle            = state == IDLE;
     assign done            = state == DONE;
     assign free            = !write_valid || write_ready;
-    assign in_ready        = state == IDLE;
-    assign exception_ready = state == IDLE && !in_valid && free;
-    assign list_full       = (length >> list_shift) >> 2 != '0;
+    assign exception_ready = state == IDLE && !in_valid && !write_valid;
 
     assign word_ends = length[1:0] == 2'd3;
     assign store     = state == CLEAR || state == ENTRY && (free || !word_ends) && !list_full;
@@ -128,9 +118,34 @@ module binner #(
         endcase
     end
 
-    // Values that are read from `lengths` and `ends` for `band` are valid a clock after `band`.
-    logic [ADDRESS_BITS-1:0] first_list, list_word;
-    logic [127:0]            list_data;
+    // The band of a row, two clocks later: first that of the first row of the descriptor at the input, when `top_comes[1]` is high,
+    // and from the first ENTRY clock on that of its last row. Bands of 24 and 12 rows have 3 times 8 and 4 rows; v/3 is
+    // v·171/512, which is exact for 8 bits, and 171 is 2·5·17 + 1.
+    logic [9:0]           row;
+    logic [7:0]           parts, parts_1;
+    logic [10:0]          by_5;
+    logic [14:0]          by_85;
+    logic [15:0]          by_171;
+    logic [1:0]           top_comes, band_of_45;
+    logic [BAND_BITS-1:0] row_band;
+
+    assign parts  = size == 2'd1 ? 8'(row[9:3]) : row[9:2];
+    assign by_5   = 11'(parts) + {1'b0, parts, 2'b0};
+    assign by_171 = 16'(parts_1) + {by_85, 1'b0};
+
+    always_ff @(posedge clk) begin
+        if (state == IDLE) row <= in_descriptor.top;
+        if (state == WORD) row <= in_descriptor.bottom - 1'b1;
+        top_comes  <= {top_comes[0], state == LOCATE && !descriptors_full};
+        parts_1    <= parts;
+        by_85      <= 15'(by_5) + {by_5, 4'b0};
+        band_of_45 <= 2'(row >= 10'd45) + 2'(row >= 10'd90) + 2'(row >= 10'd135);
+        row_band   <= size == 2'd0 ? BAND_BITS'(band_of_45) : by_171[9 +: BAND_BITS];
+    end
+
+    // Values that are read for `band` are valid a clock after `band`. `room` is the number of entries of a full list, a power of
+    // two.
+    logic [127:0] list_data;
 
     assign list_data = {32'(descriptors), 32'(list_end[2*COUNT_BITS +: COUNT_BITS]), 32'(list_end[COUNT_BITS +: COUNT_BITS]),
                         32'(list_end[0 +: COUNT_BITS])};
@@ -140,15 +155,23 @@ module binner #(
             lengths[band] <= stored;
             ends[band]    <= stored_end;
         end
-        length     <= lengths[band];
-        list_end   <= ends[band];
-        first_list <= list_base + ADDRESS_BITS'(list_pkg::TABLE_WORDS);
-        list_word  <= first_list + (ADDRESS_BITS'(band) << list_shift)
-                    + ADDRESS_BITS'(band) * ADDRESS_BITS'(list_pkg::BANK_WORDS);
+        if (state == CLEAR) addresses[band] <= next_address;
+        length    <= lengths[band];
+        list_full <= (lengths[band] & room) != '0;
+        list_end  <= ends[band];
+        list_word <= addresses[band];
+
+        room         <= COUNT_BITS'(4) << list_shift;
+        address_step <= (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::BANK_WORDS);
+        next_address <= (restart ? list_base : next_address) + (restart ? ADDRESS_BITS'(list_pkg::TABLE_WORDS) : address_step);
+
+        descriptors_full <= descriptors == descriptor_limit;
+        exceptions_full  <= exceptions == exception_limit;
     end
 
     always_ff @(posedge clk) begin
         if (write_ready) write_valid <= 1'b0;
+        in_ready <= 1'b0;
 
         case (state)
             CLEAR: begin
@@ -156,16 +179,14 @@ module binner #(
                 if (band == '1) state <= IDLE;
             end
             IDLE: begin
-                descriptor <= in_descriptor;
-                planes     <= in_planes;
-                word       <= '0;
+                word <= '0;
                 if (in_valid) begin
-                    state <= LOCATE;
+                    if (!in_ready) state <= LOCATE;
                 end else if (exception_valid) begin
-                    if (free) begin
-                        exceptions   <= exceptions + COUNT_BITS'(exceptions != exception_limit);
-                        full         <= full || exceptions == exception_limit;
-                        write_valid  <= exceptions != exception_limit;
+                    if (!write_valid) begin
+                        exceptions   <= exceptions + COUNT_BITS'(!exceptions_full);
+                        full         <= full || exceptions_full;
+                        write_valid  <= !exceptions_full;
                         write_addr   <= exception_base + ADDRESS_BITS'(exceptions >> 2);
                         write_data   <= {4{exception_number}};
                         write_strobe <= entry_strobe(exceptions[1:0]);
@@ -177,10 +198,9 @@ module binner #(
                 end
             end
             LOCATE: begin
-                band      <= band_of(descriptor.top);
-                last_band <= band_of(descriptor.bottom - 1'b1);
-                full      <= full || descriptors == descriptor_limit;
-                state     <= descriptors == descriptor_limit ? IDLE : WORD;
+                full     <= full || descriptors_full;
+                in_ready <= descriptors_full;
+                state    <= descriptors_full ? IDLE : WORD;
             end
             WORD: if (free) begin
                 write_valid     <= 1'b1;
@@ -190,7 +210,10 @@ module binner #(
                 write_descriptor <= 1'b1;
                 descriptor_word <= descriptor_word + 1'b1;
                 word            <= word + 1'b1;
-                if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) state <= ENTRY;
+                if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) begin
+                    in_ready <= 1'b1;
+                    state    <= ENTRY;
+                end
             end
             // Waits one clock to read the next list's length and entries.
             LOOK: state <= ENTRY;
@@ -205,7 +228,7 @@ module binner #(
                 full         <= full || list_full;
                 band         <= band + 1'b1;
                 state        <= LOOK;
-                if (band == last_band) begin
+                if (band == row_band) begin
                     descriptors <= descriptors + 1'b1;
                     state       <= IDLE;
                 end
@@ -235,6 +258,7 @@ module binner #(
             end
             default: if (!finish) state <= IDLE;
         endcase
+        if (top_comes[1]) band <= row_band;
 
         if (rst || restart) begin
             state           <= CLEAR;
@@ -244,8 +268,11 @@ module binner #(
             descriptor_word <= descriptor_base;
             full            <= 1'b0;
             write_valid     <= 1'b0;
+            in_ready        <= 1'b0;
         end
     end
+
+    wire _unused = &{1'b0, by_171[15], by_171[8:0]};
 endmodule
 
 `default_nettype wire
