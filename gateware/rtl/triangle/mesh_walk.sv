@@ -49,10 +49,10 @@ module mesh_walk #(
     logic [31:0]             vertices, triangles;
     logic [SUM_BITS-1:0]     triangles_base, end_base;
     logic [31:0]             to_ask, to_give;
-    logic                    asked, wild;
+    logic                    asked, more, wild;
 
     assign busy         = state != IDLE;
-    assign ask_valid    = state == ASK || state == TRIANGLES && to_ask != '0;
+    assign ask_valid    = state == ASK || state == TRIANGLES && more;
     assign asked        = ask_valid && ask_ready;
     assign out_triangle = data;
     assign out_valid    = state == TRIANGLES && data_valid;
@@ -60,6 +60,8 @@ module mesh_walk #(
     assign wild         = vertices == '0 || end_base > SUM_BITS'(past);
 
     always_ff @(posedge clk) begin
+        // Whether the next clock has an address to ask for.
+        more  <= asked ? to_ask > 32'd1 : to_ask != '0;
         chunk <= 1'b0;
 
         case (state)

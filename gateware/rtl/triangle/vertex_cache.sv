@@ -53,16 +53,16 @@ module vertex_cache #(
     localparam int unsigned ENTRY_BITS = EPOCH_BITS + TAG_BITS;
     localparam int unsigned RECORDS    = 64;
     localparam int unsigned PLACES     = 16; // for vertices whose triangle is incomplete
-    localparam int unsigned TRIANGLES  = 32; // more than the triangles of all RECORDS and PLACES
+    localparam int unsigned TRIANGLES  = 32; // more than 29, the triangles of all RECORDS, PLACES, and of both ends
 
     // First stage: looks up the indices of a triangle one by one, while the FIFO has room for their records.
     logic [2:0][15:0]        indices;
     logic [1:0]              to_look;
     logic [$clog2(RECORDS):0] records;
-    logic                    look, taken, side_room, clearing, record_taken;
+    logic                    look, taken, clearing, record_taken;
 
     assign look     = to_look != 2'd0 && !records[$clog2(RECORDS)];
-    assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && side_room && !clearing;
+    assign in_ready = (to_look == 2'd0 || to_look == 2'd1 && look) && !clearing;
     assign taken    = in_valid && in_ready;
 
     // Number of the current epoch. Epoch 0 is reserved for empty slots, which never hit.
@@ -187,7 +187,7 @@ module vertex_cache #(
     end
 
     // Collects three vertices for each triangle and adds the fields of `side`.
-    logic                   vertex_valid, vertex_room, side_valid;
+    logic                   vertex_valid, vertex_room, side_room, side_valid;
     logic [VERTEX_BITS-1:0] vertex;
     logic [1:0]             filled;
     logic [5:0]             inside_count;
@@ -222,7 +222,7 @@ module vertex_cache #(
     // The FIFOs are never full, and the triangle's other fields arrive long before its vertices, so these
     // signals need no check.
     logic unused;
-    assign unused = fetch_room && record_room && vertex_room && side_valid;
+    assign unused = fetch_room && record_room && vertex_room && side_room && side_valid;
 endmodule
 
 `default_nettype wire
