@@ -159,9 +159,12 @@ MUTATIONS = {
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
         # Fault: the module goes on to further lines while no span is taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
-        # Fault: an extent of the band stays for the next band, or keeps only its last group.
-        _extents("empties ? EMPTY : united", "united", "in_order"),
-        _extents("united(kept[bank], {add_column, add_column})", "{add_column, add_column}", "in_order"),
+        # Fault: an extent stays after a sweep or for the next band, or keeps only its last group.
+        _extents("sweeps_2 ? EMPTY : united", "united", "in_order"),
+        _extents("empties_2 ? EMPTY : updated", "updated", "in_order"),
+        _extents("united(old, {column_2, column_2})", "{column_2, column_2}", "in_order"),
+        # Fault: two groups of a line in a row update the same old extent.
+        _extents("same[drawn_1] ? updated : kept[drawn_1]", "kept[drawn_1]", "in_order"),
         _extents("if (valid[4]) line_row", "line_row", "in_order"),
         _extents("all ? {last_column, {COLUMN_BITS{1'b0}}} : united", "united", "in_order"),
         _extents(" && united_4[COLUMN_BITS-1:0] != '1", "", "nothing_made_up"),
@@ -170,12 +173,12 @@ MUTATIONS = {
         _extents("if (line == last_line) planning", "if (line == last_line && span_valid) planning", "ends"),
     ],
     "band_pipe": [
-        _pipe("hold <= 2'd3;", "hold <= 2'd2;", "drawn_as_given"),
-        _pipe("hold <= 2'd2;", "hold <= 2'd1;", "drawn_as_given"),
-        _pipe("            else if (conflict_1) hold <= 2'd1;\n", "", "drawn_as_given"),
+        _pipe("hold <= 3'b111;", "hold <= 3'b011;", "drawn_as_given"),
+        _pipe("hold <= 3'b011;", "hold <= 3'b001;", "drawn_as_given"),
+        _pipe("            else if (conflict_1) hold <= 3'b001;\n", "", "drawn_as_given"),
         _pipe("comparing.codes[18*lane +: 18] >=", "comparing.codes[18*lane +: 18] >", "drawn_as_given"),
         _pipe("!stored_written[lane] ||", "", "drawn_as_given"),
-        _pipe("hold <= hold - 1'b1;", "hold <= hold;", "taken_in_time"),
+        _pipe("hold <= hold >> 1;", "hold <= hold;", "taken_in_time"),
     ],
     "cull": [
         _cull("if (advance) phase", "if (advance && !drop) phase", "taken_in_time"),

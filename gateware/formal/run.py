@@ -59,7 +59,7 @@ class Proof:
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 36, ("any_product", "any_field")),
     Proof("band_flush", "band_flush_proof", 23),
-    Proof("band_extents", "band_extents_proof", 24),
+    Proof("band_extents", "band_extents_proof", 27),
     Proof("setup", "setup_proof", 22, ("plain_setup",)),
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
     Proof("walker", "walker_proof", 15, ("any_stepper",)),

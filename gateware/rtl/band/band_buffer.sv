@@ -105,13 +105,15 @@ module band_buffer #(
     logic [7:0]          flushed_written;
 
     assign flushed    = flush_idle;
-    assign open       = !clearing && !closing && !flush_reads_depth;
     assign band_ready = closing && empty && flush_idle;
     assign swap       = band_valid && band_ready;
 
     always_ff @(posedge clk) begin
         closing <= band_valid && !swap && !clearing;
         if (swap) drawn <= !drawn;
+        // `open` is the register of !clearing && !closing && !flush_reads_depth, and rises a clock later than that after a
+        // clearing and after a flush of depths.
+        open    <= !(clearing || flush_reads_depth || rst || restart || (swap ? band_with_depth : band_valid));
 
         if (rst || restart) closing <= 1'b0;
         if (rst) drawn <= 1'b0;
@@ -208,14 +210,27 @@ module band_buffer #(
         for (int i = 0; i < 8; i++) ones = ones + 4'(lanes[i]);
     endfunction
 
+    // Masks of the pixels that were covered and drawn, and the other events, a clock before they leave the module.
+    logic [7:0] covered_mask, drawn_mask;
+    logic       group_taken, was_held, waited, waited_for_flush;
+
+    always_ff @(posedge clk) begin
+        group_taken      <= group_valid && group_ready;
+        covered_mask     <= group_mask;
+        drawn_mask       <= draw_lanes;
+        was_held         <= held;
+        waited           <= flush_waits;
+        waited_for_flush <= closing && empty && !flush_idle;
+    end
+
     always_comb begin
         events = '0;
-        events.groups         = group_valid && group_ready;
-        events.pixels_covered = group_valid && group_ready ? ones(group_mask) : '0;
-        events.pixels_drawn   = ones(draw_lanes);
-        events.cycles_held    = held;
-        events.cycles_memory  = flush_waits;
-        events.cycles_flush   = closing && empty && !flush_idle;
+        events.groups         = group_taken;
+        events.pixels_covered = group_taken ? ones(covered_mask) : '0;
+        events.pixels_drawn   = ones(drawn_mask);
+        events.cycles_held    = was_held;
+        events.cycles_memory  = waited;
+        events.cycles_flush   = waited_for_flush;
     end
 endmodule
 

@@ -9,9 +9,10 @@
 //                          └───────────────┘
 //
 // The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now` in LUTs holds the
-// extents of the lines of a band, once for each colour bank. A group updates the extent of its line in one clock, so there is
-// no hazard. The memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent goes from
-// the largest column down to 0, which is the neutral element of the union; so the largest column, all ones, must not be drawn.
+// extents of the lines of a band, once for each colour bank. A group updates the extent of its line in two clocks, a read and a
+// write; an extent that is written goes straight to a read of the same line in that clock. The last update ends 2 clocks after
+// its group. The memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent goes from the
+// largest column down to 0, which is the neutral element of the union; so the largest column, all ones, must not be drawn.
 //
 // `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on its
 // bank is the one that is not drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line
@@ -78,31 +79,47 @@ module band_extents #(
 
     assign plan = planning && advance;
 
-    // Line and column of a drawn group, which update the memory `now` a clock after the group.
-    logic                   adds;
-    logic [LINE_BITS-1:0]   add_line;
-    logic [COLUMN_BITS-1:0] add_column;
+    // Update of the extent `old` by the column of a group: `_1` reads it, `_2` writes it.
+    logic                   adds_1, adds_2, sweeps_1, sweeps_2, drawn_1, to_write;
+    logic [COLUMN_BITS-1:0] column_1, column_2;
+    logic [EXTENT_BITS-1:0] old, updated;
+
+    // Of each bank: the extent that is read, and whether the same line is written in this clock.
+    logic [EXTENT_BITS-1:0] kept [0:1];
+    logic [1:0]             same;
+
+    assign updated = sweeps_2 ? EMPTY : united(old, {column_2, column_2});
 
     always_ff @(posedge clk) begin
-        adds       <= group_valid && !rst;
-        add_line   <= group_line;
-        add_column <= group_column;
+        adds_1   <= group_valid && !rst;
+        adds_2   <= adds_1;
+        sweeps_1 <= sweep;
+        sweeps_2 <= sweeps_1;
+        column_1 <= group_column;
+        column_2 <= column_1;
+        drawn_1  <= drawn;
+        old      <= same[drawn_1] ? updated : kept[drawn_1];
     end
-
-    logic [EXTENT_BITS-1:0] kept [0:1];
 
     for (genvar bank = 0; bank < 2; bank++) begin : banks
         (* ram_style = "distributed" *) logic [EXTENT_BITS-1:0] now [0:2**LINE_BITS-1];
-        logic                 empties;
-        logic [LINE_BITS-1:0] at;
+        logic                 empties_1, empties_2, stores;
+        logic [LINE_BITS-1:0] line_1, line_2;
 
-        assign empties       = sweep || drawn != 1'(bank);
-        assign at            = empties ? line : add_line;
-        assign kept[bank] = now[at];
+        assign kept[bank] = now[line_1];
+        assign stores     = sweeps_2 || (empties_2 ? to_write : adds_2);
+        assign same[bank] = (sweeps_2 || adds_2) && line_1 == line_2;
 
         always_ff @(posedge clk) begin
-            if (empties ? sweep || plan : adds)
-                now[at] <= empties ? EMPTY : united(kept[bank], {add_column, add_column});
+            empties_1 <= sweep || drawn != 1'(bank);
+            empties_2 <= empties_1;
+            if (sweep || drawn != 1'(bank)) begin
+                if (sweep || advance) line_1 <= line;
+            end else begin
+                line_1 <= group_line;
+            end
+            line_2 <= line_1;
+            if (stores) now[line_2] <= empties_2 ? EMPTY : updated;
         end
     end
 
@@ -129,8 +146,7 @@ module band_extents #(
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
     logic [PLACE_BITS-1:0]  from, to;
-    logic [EXTENT_BITS-1:0] to_store, latched, earlier, now_1, now_2, now_3, united_4;
-    logic                   to_write;
+    logic [EXTENT_BITS-1:0] latched, earlier, now_2, now_3, united_4;
     logic [4:1]             valid;
     // Band buffer row at which the line in the last pipeline stage begins.
     logic [ROW_BITS-1:0]    line_row;
@@ -138,14 +154,12 @@ module band_extents #(
     always_ff @(posedge clk) begin
         to_write <= valid[1] && advance;
         to       <= from;
-        to_store <= now_1;
-        if (to_write) last[to] <= to_store;
+        if (to_write) last[to] <= now_2;
 
         if (advance) begin
             valid    <= {valid[3:1], planning};
             from     <= place;
-            now_1    <= kept[!drawn];
-            now_2    <= now_1;
+            now_2    <= kept[!drawn_1];
             now_3    <= now_2;
             latched  <= last[from];
             earlier  <= latched;

@@ -56,11 +56,11 @@ module band_pipe #(
     group_t     issued, reading_0, reading_1, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
-    // Number of clocks for which the issued group still waits.
-    logic [1:0] hold;
+    // As many ones, from bit 0 on, as the clocks for which the issued group still waits. Only a valid group waits.
+    logic [2:0] hold;
 
-    assign held        = issued_valid && hold != '0;
-    assign issue       = issued_valid && hold == '0;
+    assign held        = hold[0];
+    assign issue       = issued_valid && !held;
     assign group_ready = open && !held;
     assign read_row    = issued.row;
     assign empty       = !issued_valid && occupied == '0;
@@ -73,13 +73,16 @@ module band_pipe #(
     assign conflict_1      = group_row == reading_1.row && (group_mask & reading_1.mask) != '0;
 
     always_ff @(posedge clk) begin
-        if (hold != '0) hold <= hold - 1'b1;
-        if (!held) issued_valid <= group_valid && open;
+        hold <= hold >> 1;
         if (group_valid && group_ready) begin
-            issued <= {group_row, group_mask, group_halves, group_codes, group_colours};
-            if (conflict_issued) hold <= 2'd3;
-            else if (conflict_0) hold <= 2'd2;
-            else if (conflict_1) hold <= 2'd1;
+            if (conflict_issued) hold <= 3'b111;
+            else if (conflict_0) hold <= 3'b011;
+            else if (conflict_1) hold <= 3'b001;
+        end
+        // Without a group this loads a payload that is not valid, so that only one register drives the enable.
+        if (!held) begin
+            issued_valid <= group_valid && open;
+            issued       <= {group_row, group_mask, group_halves, group_codes, group_colours};
         end
 
         reading_0 <= issued;
