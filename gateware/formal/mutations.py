@@ -136,10 +136,11 @@ MUTATIONS = {
         Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "ends.payload_stable"),
     ],
     "write_port": [
-        _write("cmd_valid <= sent;", "cmd_valid <= sent && hurry;", "commands_in_order"),
-        _write("if (!cmd_valid || cmd_ready) begin", "if (1'b1) begin", "commands.valid_stays"),
-        _write("            cmd_addr  <= address;\n        end", "        end\n        cmd_addr <= address;", "commands.payload_stable"),
-        _write("bursting && (!cmd_valid || cmd_ready);", "bursting;", "commands_in_order"),
+        _write("(cmd_ready && bursting)", "(cmd_ready)", "commands_in_order"),
+        # Fault: a burst ends while a command waits.
+        _write("gathered == '0) ", "1'b1) ", "commands.valid_stays"),
+        _write("(cmd_ready && bursting)", "(bursting)", "commands.payload_stable"),
+        _write("(cmd_ready && bursting)", "(bursting)", "commands_in_order"),
         _write(".in_data   ({in_strobe, in_data})", ".in_data   ({in_strobe, in_data << 1})", "data_in_order"),
         _write(".in_valid  (in_valid),\n        .in_ready  (room)", ".in_valid  (in_valid && gone),\n        .in_ready  (room)",
                "data_at_command"),

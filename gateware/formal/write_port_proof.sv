@@ -21,7 +21,8 @@ module write_port_proof (
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    logic [NUMBER_BITS-1:0] came, commanded, went, cmd_addr;
+    // Words that came, words whose command was taken, and words whose data were taken, now and in the previous clock.
+    logic [NUMBER_BITS-1:0] came, commanded, went, went_before, cmd_addr;
     logic [127:0]           wdata;
     logic [15:0]            wdata_strobe;
     logic                   in_ready, cmd_valid, wdata_valid, idle;
@@ -46,9 +47,10 @@ module write_port_proof (
         came      <= came + NUMBER_BITS'(in_valid && in_ready);
         commanded <= commanded + NUMBER_BITS'(cmd_valid && cmd_ready);
         went      <= went + NUMBER_BITS'(wdata_ready);
+        went_before <= went;
         unmoved   <= idle || !hurry || !cmd_ready || commanded != went && !wdata_ready || wdata_ready ? '0 : unmoved + 1'b1;
         refused   <= in_ready || !cmd_ready || commanded != went && !wdata_ready || wdata_ready ? '0 : refused + 1'b1;
-        if (rst) {came, commanded, went, unmoved, refused} <= '0;
+        if (rst) {came, commanded, went, went_before, unmoved, refused} <= '0;
     end
 
     always_ff @(posedge clk) if (!rst) begin
@@ -58,7 +60,7 @@ module write_port_proof (
         data_in_order:     assert (!wdata_valid || wdata == 128'(went) && wdata_strobe == 16'(~went));
         data_at_command:   assert (commanded == went || wdata_valid);
         none_made_up:      assert (!wdata_valid || went != came);
-        idle_is_empty:     assert (idle == (went == came));
+        idle_is_empty:     assert (idle == (went_before == came));
         goes_in_a_hurry:   assert (unmoved < 4'(WITHIN));
         full_goes:         assert (refused < 4'(WITHIN));
         burst:             cover (went == NUMBER_BITS'(2 * DEPTH) && idle);

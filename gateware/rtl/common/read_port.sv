@@ -9,11 +9,12 @@
 // client is served in bursts: a burst ends when the client has no request or its FIFO is full, and a new one begins when half
 // of the FIFO is empty. Other clients are served between the bursts.
 //
-// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client.
-// `drop`, held until `idle`, cancels everything: no commands go out, and words still to come from memory are discarded.
+// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client. `ask_ready` comes from registers alone,
+// because the ready of the memory's command is the end of a long path in LiteDRAM.
+// `drop`, held until `idle`, cancels everything: no further commands are made, and words still to come from memory are discarded.
 //
-//   ask ──┐                    ┌──▶ command
-//   ask ──┼──▶ turn ──┬────────┘
+//   ask ──┐           ┌──▶ skid_buffer ──▶ command
+//   ask ──┼──▶ turn ──┤
 //   ask ──┘           └──▶ owners ──┐
 //                                   ▼
 //  data ◀── FIFO ◀──┬────────── whose word ◀── data
@@ -52,9 +53,9 @@ module read_port #(
     // The client of the next command (`turn`) is chosen one clock before the command: the same client while it may continue,
     // otherwise the next client with a request. The choice does not depend on requests in the clock of the command. If the
     // chosen client then has no request, no command is sent.
-    logic [CLIENT_BITS-1:0] turn, first, chosen, asker;
-    logic [CLIENTS-1:0]     servable, taken;
-    logic                   given, any, moves;
+    logic [CLIENT_BITS-1:0] turn, first, chosen;
+    logic [CLIENTS-1:0]     servable;
+    logic                   given, any, moves, commands;
 
     always_comb begin
         any    = 1'b0;
@@ -68,36 +69,36 @@ module read_port #(
             if (servable[i] && CLIENT_BITS'(i) >= first) chosen = CLIENT_BITS'(i);
     end
 
-    assign moves = !cmd_valid || cmd_ready;
+    assign commands = given && ask_valid[turn];
 
     always_ff @(posedge clk) begin
         if (moves) begin
-            given     <= any;
-            turn      <= chosen;
-            cmd_valid <= given && ask_valid[turn];
-            cmd_addr  <= ask_addr[turn * ADDRESS_BITS +: ADDRESS_BITS];
-            asker     <= turn;
+            given <= any;
+            turn  <= chosen;
             if (any) first <= chosen;
         end
 
         if (rst || drop) given <= 1'b0;
-        if (rst) begin
-            cmd_valid <= 1'b0;
-            first     <= '0;
-        end
+        if (rst) first <= '0;
     end
 
-    // Queue of the clients of all words that were requested and have not come, in the order of the commands.
+    skid_buffer #(.WIDTH(ADDRESS_BITS)) command (
+        .clk, .rst,
+        .in_valid(commands), .in_ready(moves), .in_data(ask_addr[turn * ADDRESS_BITS +: ADDRESS_BITS]),
+        .out_valid(cmd_valid), .out_ready(cmd_ready), .out_data(cmd_addr)
+    );
+
+    // Queue of the clients of all words that have a command and have not come, in the order of the commands.
     (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
 
     assign owner = owners[answered[OWNER_BITS-1:0]];
-    assign idle  = asked == answered && !cmd_valid;
+    assign idle  = asked == answered;
 
     always_ff @(posedge clk) begin
-        if (cmd_valid && cmd_ready) begin
-            owners[asked[OWNER_BITS-1:0]] <= asker;
+        if (commands && moves) begin
+            owners[asked[OWNER_BITS-1:0]] <= turn;
             asked <= asked + 1'b1;
         end
         if (rdata_valid) answered <= answered + 1'b1;
@@ -120,22 +121,24 @@ module read_port #(
     for (genvar i = 0; i < CLIENTS; i++) begin : client
         // Number of free places in the client's FIFO, without those that are reserved for requested words.
         logic [ROOM_BITS-1:0] room;
-        logic                 has_turn, asks, bursting;
+        logic                 has_turn, asks, taken, bursting;
 
         assign has_turn     = given && turn == CLIENT_BITS'(i);
         assign servable[i]  = ask_valid[i] && bursting && (room > ROOM_BITS'(1) || room[0] && !has_turn);
         assign ask_ready[i] = moves && has_turn;
         assign asks         = ask_valid[i] && ask_ready[i];
-        assign taken[i]     = data_valid[i] && data_ready[i];
 
+        // A place counts as free a clock after its word has left, so that `data_ready` ends at the FIFO.
         always_ff @(posedge clk) begin
-            if (asks != taken[i]) room <= asks ? room - 1'b1 : room + 1'b1;
+            taken <= data_valid[i] && data_ready[i];
+            if (asks != taken) room <= asks ? room - 1'b1 : room + 1'b1;
             if (room == '0)                       bursting <= 1'b0;
             else if (room >= ROOM_BITS'(DEPTH/2)) bursting <= 1'b1;
 
             if (rst || drop) begin
                 room     <= ROOM_BITS'(DEPTH);
                 bursting <= 1'b1;
+                taken    <= 1'b0;
             end
         end
 

@@ -10,8 +10,9 @@
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
 //
-// Latency 3 clocks from a word to its command during a burst, throughput one word a clock. `idle` is high when memory
-// has taken all words.
+// Latency 2 clocks from a word to its command during a burst, throughput one word a clock. `idle` is high when memory
+// has taken all words; it rises a clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
+// only move the FIFOs.
 
 `default_nettype none
 
@@ -40,8 +41,7 @@ module write_port #(
 );
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2) + 1;
 
-    logic move, room, address_valid, address_ready, gone;
-    logic [ADDRESS_BITS-1:0] address;
+    logic move, room, address_valid, sent, gone, bursting;
 
     assign move     = in_valid && in_ready;
     assign in_ready = room;
@@ -55,8 +55,8 @@ module write_port #(
         .in_ready  (),
         .in_data   (in_addr),
         .out_valid (address_valid),
-        .out_ready (address_ready),
-        .out_data  (address)
+        .out_ready (cmd_ready && bursting),
+        .out_data  (cmd_addr)
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
@@ -71,32 +71,28 @@ module write_port #(
         .out_data  ({wdata_strobe, wdata})
     );
 
-    // `gathered` is the number of words whose command has not left its FIFO, `waiting` the number of words whose data memory has
-    // not taken.
+    // `gathered` is the number of words whose command has not been taken, `waiting` the number of words whose data memory has not
+    // taken. Both follow memory by a clock, so neither is ever too low, and a burst does not end before a command has been taken.
     logic [COUNT_BITS-1:0] gathered, waiting;
-    logic                  bursting, sent;
 
-    assign address_ready = bursting && (!cmd_valid || cmd_ready);
-    assign sent          = address_valid && address_ready;
-    assign gone          = wdata_valid && wdata_ready;
-    assign idle          = waiting == '0;
+    assign cmd_valid = address_valid && bursting;
+    assign idle      = waiting == '0;
 
     always_ff @(posedge clk) begin
         if (gathered >= COUNT_BITS'(BURST) || hurry) bursting <= 1'b1;
         else if (gathered == '0)                     bursting <= 1'b0;
 
-        if (!cmd_valid || cmd_ready) begin
-            cmd_valid <= sent;
-            cmd_addr  <= address;
-        end
+        sent <= cmd_valid && cmd_ready;
+        gone <= wdata_valid && wdata_ready;
         if (move != sent) gathered <= move ? gathered + 1'b1 : gathered - 1'b1;
         if (move != gone) waiting  <= move ? waiting + 1'b1 : waiting - 1'b1;
 
         if (rst) begin
-            bursting  <= 1'b0;
-            cmd_valid <= 1'b0;
-            gathered  <= '0;
-            waiting   <= '0;
+            bursting <= 1'b0;
+            sent     <= 1'b0;
+            gone     <= 1'b0;
+            gathered <= '0;
+            waiting  <= '0;
         end
     end
 endmodule
