@@ -52,6 +52,8 @@ MODULES = [
     Module(top="reciprocal"),
     Module(top="setup", variants={"setup_smooth": _SMOOTH}),
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
+    Module(top="list_reader", measured=("list_reader",)),
+    Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine", variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}},
            measured=("triangle_engine_fields",)),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),

@@ -12,7 +12,7 @@
 // tag. The FIFO `marks` tells the last stage what to do for each item: pass the end of a band, read a line, or fill it. An item
 // without a descriptor (`in_end`) passes in order.
 //
-// Latency 5 clocks for a hit, and the latency of memory plus 6 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
+// Latency 6 clocks for a hit, and the latency of memory plus 7 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
 // in 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
 // is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
@@ -58,11 +58,13 @@ module descriptor_cache #(
     // A tag consists of the set, the high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // First stage: an item waits one clock while the tag of its line is read, then until the FIFO `marks` and, for a miss, the
-    // request of addresses can take it.
+    // First stage: an item waits two clocks while the tag of its line is read and compared, then until the FIFO `marks` and, for a
+    // miss, the request of addresses can take it.
     (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
-    logic                    looked, is_end, set, hit, passes, asks;
+    logic                    looked, compared, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
+    // Place of the descriptor, in words, after the first descriptor of its set.
+    logic [ADDRESS_BITS-1:0] place;
     logic [TAG_BITS-1:0]     tag, found;
     logic [LINE_BITS-1:0]    line, swept_line;
     logic                    swept, used;
@@ -71,8 +73,7 @@ module descriptor_cache #(
 
     assign line     = number[LINE_BITS-1:0];
     assign tag      = {1'b1, set, number[COUNT_BITS-1:LINE_BITS]};
-    assign hit      = found == tag;
-    assign passes   = looked && mark_ready && (is_end || hit || words_asked);
+    assign passes   = compared && mark_ready && (is_end || hit || words_asked);
     assign asks     = passes && !is_end && !hit;
     assign in_ready = !looked && swept;
 
@@ -85,6 +86,9 @@ module descriptor_cache #(
             found    <= tags[in_number[LINE_BITS-1:0]];
             set_base <= in_set ? base[ADDRESS_BITS +: ADDRESS_BITS] : base[0 +: ADDRESS_BITS];
         end
+        hit      <= found == tag;
+        place    <= (ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH;
+        compared <= looked && !passes;
         if (passes) looked <= 1'b0;
 
         if (asks || !swept) tags[swept ? line : swept_line] <= swept ? tag : '0;
@@ -99,6 +103,7 @@ module descriptor_cache #(
 
         if (rst) begin
             looked     <= 1'b0;
+            compared   <= 1'b0;
             swept      <= 1'b0;
             swept_line <= '0;
             used       <= 1'b0;
@@ -113,7 +118,7 @@ module descriptor_cache #(
     always_ff @(posedge clk) begin
         if (words_asked) begin
             ask_valid <= asks;
-            ask_addr  <= set_base + ((ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH);
+            ask_addr  <= set_base + place;
             word      <= '0;
         end else if (ask_ready) begin
             ask_addr <= ask_addr + 1'b1;
@@ -130,7 +135,7 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
     );
 
-    // Last stage: the words of a descriptor that missed are collected from memory, and written to the cache line when the
+    // Last stage: the words of a descriptor that missed are collected from memory, and written to the cache line until the
     // descriptor leaves; a descriptor that hit is read from its line.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
@@ -140,7 +145,7 @@ module descriptor_cache #(
 
     assign data_ready = marked && !out_end && !mark_hit && words != WORD_BITS'(WORDS);
     assign out_valid  = marked && (out_end || words == WORD_BITS'(WORDS));
-    assign fills      = out_valid && out_ready && !out_end && !mark_hit;
+    assign fills      = marked && !out_end && !mark_hit && words == WORD_BITS'(WORDS);
 
     assign out_descriptor = descriptor[383:0];
 
@@ -160,15 +165,14 @@ module descriptor_cache #(
     always_ff @(posedge clk) begin
         read <= marked && mark_hit && !out_valid;
         if (read) begin
-            words      <= WORD_BITS'(WORDS);
-            descriptor <= cached;
-            read       <= 1'b0;
+            words <= WORD_BITS'(WORDS);
+            read  <= 1'b0;
         end
-        if (data_ready && data_valid) begin
-            words      <= words + 1'b1;
-            descriptor <= {data, descriptor[128*WORDS-1:128]};
-        end
+        if (data_ready && data_valid) words <= words + 1'b1;
         if (out_valid && out_ready) words <= '0;
+        for (int i = 0; i < WORDS; i++)
+            if (read || data_ready && data_valid && words == WORD_BITS'(i))
+                descriptor[128*i +: 128] <= read ? cached[128*i +: 128] : data;
         if (rst) begin
             words <= '0;
             read  <= 1'b0;

@@ -88,7 +88,7 @@ module list_reader #(
 
     logic                    list_set, job_ready;
     logic [5:0]              list_band;
-    logic [ADDRESS_BITS-1:0] list_offset, list_word;
+    logic [ADDRESS_BITS-1:0] list_offset, list_step, list_first, list_word;
     logic [COUNT_BITS-1:0]   length;
     logic [31:0]             found;
     logic [COUNT_BITS-3:0]   words_left;
@@ -103,13 +103,17 @@ module list_reader #(
                     || list_state == WORDS && ask_ready[1] && words_left == '0;
 
     always_ff @(posedge clk) begin
-        list_room <= 34'd4 << list_shift;
+        // Places and lengths that follow from parameters of the frame, or from `list_set` and `list_band`, are registered: these
+        // hold for at least two clocks before their use.
+        list_room  <= 34'd4 << list_shift;
+        list_step  <= (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::BANK_WORDS);
+        list_first <= lists[list_set] + list_offset;
 
         case (list_state)
             IDLE: begin
                 list_set    <= 1'b0;
                 list_band   <= '0;
-                list_offset <= '0;
+                list_offset <= ADDRESS_BITS'(list_pkg::TABLE_WORDS);
                 if (start) list_state <= LENGTH;
             end
             LENGTH: begin
@@ -121,7 +125,7 @@ module list_reader #(
                 list_state <= JOB;
             end
             JOB: begin
-                list_word  <= lists[list_set] + list_offset + ADDRESS_BITS'(list_pkg::TABLE_WORDS);
+                list_word  <= list_first;
                 words_left <= length[COUNT_BITS-1:2] - (COUNT_BITS - 2)'(length[1:0] == '0);
                 if (job_ready) list_state <= WORDS;
             end
@@ -135,7 +139,7 @@ module list_reader #(
             list_state <= list_set && list_band == last_band ? IDLE : LENGTH;
             if (list_set) begin
                 list_band   <= list_band + 1'b1;
-                list_offset <= list_offset + (ADDRESS_BITS'(1) << list_shift) + ADDRESS_BITS'(list_pkg::BANK_WORDS);
+                list_offset <= list_offset + list_step;
             end
         end
         if (rst) list_state <= IDLE;

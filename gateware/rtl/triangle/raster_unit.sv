@@ -66,7 +66,8 @@ module raster_unit #(
     logic [7:0]  stride;
     logic [10:0] words;
 
-    assign {last_band, rows, stride, words} = band_pkg::cut(flags.size);
+    // The size holds from before `start`.
+    always_ff @(posedge clk) {last_band, rows, stride, words} <= band_pkg::cut(flags.size);
 
     typedef enum logic [2:0] {IDLE, DRAW, FIELD, HAND_OVER, FLUSH} state_t;
     state_t state;
@@ -143,7 +144,7 @@ module raster_unit #(
 
     // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
     assign triangle_valid = item_valid && !band_ends && !stray;
-    assign item_ready     = band_ends ? read_odd == band[0] : stray || triangle_ready;
+    assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
     assign drawn          = read_odd != band[0] && raster_idle;
 
     always_ff @(posedge clk) begin

@@ -9,7 +9,7 @@
 // memory bank only when the previous bank is idle, four clocks later, so each of these streams has its own port. Write ports
 // serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes.
 // `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start. geometry_unit
-// and raster_unit explain their parameters and results. `events` has the growth of each counter in this clock.
+// and raster_unit explain their parameters and results. `events` has the growth of each counter, some clocks late.
 //
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
 // is interpolated over the depth, with a division at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have
@@ -122,15 +122,25 @@ module triangle_engine #(
 
     // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out`
     // grow by at most 1 a clock.
+    logic [2:0] stalled_reads;
+    logic [1:0] stalled_lists, stalled_frame;
+
+    // Registers, because the ready of a command ends a long path in LiteDRAM.
+    always_ff @(posedge clk) begin
+        stalled_reads <= {mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready,
+                          vertex_read_request.cmd_valid && !vertex_read_answer.cmd_ready,
+                          raster_read_request.cmd_valid && !raster_read_answer.cmd_ready};
+        stalled_lists <= {descriptors_write_request.cmd_valid && !descriptors_write_answer.cmd_ready,
+                          lists_write_request.cmd_valid && !lists_write_answer.cmd_ready};
+        stalled_frame <= {frame_even_write_request.cmd_valid && !frame_even_write_answer.cmd_ready,
+                          frame_odd_write_request.cmd_valid && !frame_odd_write_answer.cmd_ready};
+    end
+
     always_comb begin
         port_events = '0;
-        port_events.stalled_reads = mesh_read_request.cmd_valid && !mesh_read_answer.cmd_ready
-                                 || vertex_read_request.cmd_valid && !vertex_read_answer.cmd_ready
-                                 || raster_read_request.cmd_valid && !raster_read_answer.cmd_ready;
-        port_events.stalled_lists = descriptors_write_request.cmd_valid && !descriptors_write_answer.cmd_ready
-                                 || lists_write_request.cmd_valid && !lists_write_answer.cmd_ready;
-        port_events.stalled_frame = frame_even_write_request.cmd_valid && !frame_even_write_answer.cmd_ready
-                                 || frame_odd_write_request.cmd_valid && !frame_odd_write_answer.cmd_ready;
+        port_events.stalled_reads = stalled_reads != '0;
+        port_events.stalled_lists = stalled_lists != '0;
+        port_events.stalled_frame = stalled_frame != '0;
         port_events.cycles_stalled = port_events.stalled_reads || port_events.stalled_lists || port_events.stalled_frame;
         port_events.items_in  = mesh_read_answer.rdata_valid || vertex_read_answer.rdata_valid || raster_read_answer.rdata_valid;
         port_events.items_out = descriptors_write_request.wdata_valid && descriptors_write_answer.wdata_ready
@@ -140,7 +150,8 @@ module triangle_engine #(
         port_events.cycles_busy = status.geometry_busy || status.raster_busy;
     end
 
-    assign events = geometry_events | raster_events | port_events;
+    // A register, because these conditions end paths through both units.
+    always_ff @(posedge clk) events <= geometry_events | raster_events | port_events;
 endmodule
 
 `default_nettype wire
