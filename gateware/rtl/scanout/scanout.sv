@@ -172,15 +172,11 @@ module scanout #(
     // ---- Line ring, two buffers of one source line: written in sys_clk, read in pix_clk -------------------------
 
     logic [127:0]         ring [0:2*(1 << WORD_BITS)-1];
-    logic [127:0]         ring_latched, ring_word;
+    logic [127:0]         ring_word;
     logic [WORD_BITS:0]   ring_address;
 
     always_ff @(posedge sys_clk) if (store) ring[{store_slot, store_word}] <= rdata;
-    // The second register is the output register of the block RAM, whose read is slow.
-    always_ff @(posedge pix_clk) begin
-        ring_latched <= ring[ring_address];
-        ring_word    <= ring_latched;
-    end
+    always_ff @(posedge pix_clk) ring_word <= ring[ring_address];
 
     // ---- Video timing and control of the line ring, clocked by pix_clk ------------------------------------------
 
@@ -209,12 +205,15 @@ module scanout #(
     // ---- Pixel pipeline, clocked by pix_clk: address, read of the ring, selection of the pixel ------------------
 
     logic [X_BITS-1:0] source_x;
-    logic [2:0]        lane_1, lane_2, lane_3;
+    logic [2:0]        lane_1, lane_2;
+    logic [1:0]        lane_3;
+    // The half of the word with the pixel. Block RAM is slow, so only one level of selection comes before this register.
+    logic [63:0]       half_word;
     logic [2:0]        sync_1, sync_2, sync_3; // hsync, vsync, active
     logic [15:0]       pixel;
 
     assign source_x = x >> pix_shift;
-    assign pixel    = ring_word[16*lane_3 +: 16];
+    assign pixel    = half_word[16*lane_3 +: 16];
 
     always_ff @(posedge pix_clk) begin
         ring_address <= {shown_slot, source_x[3 +: WORD_BITS]};
@@ -222,7 +221,8 @@ module scanout #(
         sync_1       <= {hsync, vsync, active};
         lane_2       <= lane_1;
         sync_2       <= sync_1;
-        lane_3       <= lane_2;
+        lane_3       <= lane_2[1:0];
+        half_word    <= ring_word[64*lane_2[2] +: 64];
         sync_3       <= sync_2;
 
         {video_hsync, video_vsync, video_de} <= sync_3;
