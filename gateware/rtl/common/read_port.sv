@@ -25,7 +25,9 @@
 module read_port #(
     parameter int unsigned CLIENTS      = 4,
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter int unsigned DEPTH        = 32
+    parameter int unsigned DEPTH        = 32,
+    // Clients whose FIFO is in block RAM: two RAMB36 in place of 88 LUTs and 128 flip-flops.
+    parameter bit [CLIENTS-1:0] BLOCK   = '0
 ) (
     input  wire                             clk,
     input  wire                             rst,
@@ -144,7 +146,7 @@ module read_port #(
 
         // A place is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
-        fifo #(.WIDTH(128), .DEPTH(DEPTH)) words (
+        fifo #(.WIDTH(128), .DEPTH(DEPTH), .BLOCK(BLOCK[i])) words (
             .clk       (clk),
             .rst       (rst || drop),
             .in_valid  (store[i]),

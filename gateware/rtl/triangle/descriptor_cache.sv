@@ -12,7 +12,7 @@
 // tag. The FIFO `marks` tells the last stage what to do for each item: pass the end of a band, read a line, or fill it. An item
 // without a descriptor (`in_end`) passes in order.
 //
-// Latency 6 clocks for a hit, and the latency of memory plus 7 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
+// Latency 7 clocks for a hit, and the latency of memory plus 8 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
 // in 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
 // is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
@@ -58,14 +58,15 @@ module descriptor_cache #(
     // A tag consists of the set, the high bits of the number, and a valid bit.
     localparam int unsigned TAG_BITS  = COUNT_BITS - LINE_BITS + 2;
 
-    // First stage: an item waits two clocks while the tag of its line is read and compared, then until the FIFO `marks` and, for a
-    // miss, the request of addresses can take it.
-    (* ram_style = "distributed" *) logic [TAG_BITS-1:0] tags [0:2**LINE_BITS-1];
-    logic                    looked, compared, is_end, set, hit, passes, asks;
+    // First stage: an item waits three clocks while the tag of its line is read from block RAM (`latched`, `found`) and compared,
+    // then until the FIFO `marks` and, for a miss, the request of addresses can take it.
+    (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
+    logic [TAG_BITS-1:0]     tags [0:2**LINE_BITS-1];
+    logic                    looked, read_out, compared, is_end, set, hit, passes, asks;
     logic [COUNT_BITS-1:0]   number;
     // Place of the descriptor, in words, after the first descriptor of its set.
     logic [ADDRESS_BITS-1:0] place;
-    logic [TAG_BITS-1:0]     tag, found;
+    logic [TAG_BITS-1:0]     tag, latched, found;
     logic [LINE_BITS-1:0]    line, swept_line;
     logic                    swept, used;
     logic                    mark_ready, words_asked;
@@ -83,12 +84,14 @@ module descriptor_cache #(
             is_end   <= in_end;
             set      <= in_set;
             number   <= in_number;
-            found    <= tags[in_number[LINE_BITS-1:0]];
+            latched  <= tags[in_number[LINE_BITS-1:0]];
             set_base <= in_set ? base[ADDRESS_BITS +: ADDRESS_BITS] : base[0 +: ADDRESS_BITS];
         end
         hit      <= found == tag;
         place    <= (ADDRESS_BITS'(number) + (ADDRESS_BITS'(number) << 1)) << SMOOTH;
-        compared <= looked && !passes;
+        found    <= latched;
+        read_out <= looked && !passes;
+        compared <= read_out && !passes;
         if (passes) looked <= 1'b0;
 
         if (asks || !swept) tags[swept ? line : swept_line] <= swept ? tag : '0;
@@ -103,6 +106,7 @@ module descriptor_cache #(
 
         if (rst) begin
             looked     <= 1'b0;
+            read_out   <= 1'b0;
             compared   <= 1'b0;
             swept      <= 1'b0;
             swept_line <= '0;

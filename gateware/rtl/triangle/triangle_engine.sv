@@ -90,7 +90,8 @@ module triangle_engine #(
         .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
     );
 
-    read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS)) raster_read (
+    // The words of the lists and of the descriptors wait in block RAM, of which the FPGA has more to spare than of LUTs.
+    read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
         .clk, .rst, .drop, .idle(ports_idle[2]),
         .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
         .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
