@@ -25,6 +25,7 @@ use crate::{bootstrap, paths, run};
 use blocks::{BUILDS, ENGINES, FLAT, FLAT_PARTS, OWN, SOC, sort_by_row};
 use budget::Budget;
 use measure::{measured_line, two_at_a_time};
+use route::Seeds;
 use size::Size;
 use table::Measured;
 
@@ -64,7 +65,10 @@ pub fn resources(options: &Options) -> Result<()> {
     if options.route {
         let engines = if options.write { &ENGINES[..] } else { &[] };
         let routed = strings(&[&OWN[..], engines].concat());
-        measured.rates = Some(route::measure(selection(&options.blocks, routed))?);
+        measured.rates = Some(route::measure(
+            selection(&options.blocks, routed),
+            Seeds::All,
+        )?);
     }
     if options.json {
         println!("{:#}", table::json(&measured, &budget));
@@ -111,7 +115,7 @@ pub fn check_own_blocks() -> Result<()> {
     within(&Budget::read()?, &measured)
 }
 
-/// Measures the blocks that have a least clock rate in the budget, and compares them with it.
+/// Measures the blocks that have a least clock rate in the budget, with one seed, and compares them with it.
 ///
 /// # Errors
 /// As [`resources`].
@@ -123,7 +127,7 @@ pub fn check_clock_rates() -> Result<()> {
     }
     let measured = Measured {
         sizes: vec![],
-        rates: Some(route::measure(routed)?),
+        rates: Some(route::measure(routed, Seeds::First)?),
     };
     within(&budget, &measured)
 }
@@ -185,7 +189,7 @@ fn measure_sizes(names: VecDeque<String>) -> Result<Vec<Size>> {
         gateware::build(Board::Urbana)?;
     }
     let mut sizes = two_at_a_time(names, |name| {
-        Size::parse(&measured_line("size", "--size", name)?)
+        Size::parse(&measured_line("size", &["--size"], name)?)
     })?;
     add_flat_build(&mut sizes);
     sort_by_row(&mut sizes, |size| &size.name);

@@ -45,16 +45,18 @@ pub fn two_at_a_time<T: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Measures a block by an option of `gateware/tests/run.py`, and returns the line of JSON that this prints.
+/// Measures a block by `gateware/tests/run.py` with options, the last of which takes the block's name, and returns the line of JSON that this prints.
 ///
 /// # Errors
 /// The program fails.
-pub fn measured_line(what: &str, option: &str, name: &str) -> Result<String> {
+pub fn measured_line(what: &str, options: &[&str], name: &str) -> Result<String> {
     let mut found = String::new();
     run::watched_step(
         &format!("{what} of {name}"),
         Command::new(paths::venv_program("python"))
-            .args(["gateware/tests/run.py", option, name])
+            .arg("gateware/tests/run.py")
+            .args(options)
+            .arg(name)
             .current_dir(paths::root()),
         |line| {
             if line.starts_with('{') {

@@ -81,16 +81,35 @@ impl Rates {
     }
 }
 
+/// Seeds of the placer. A seed takes some 25 s of CPU time for the soft core.
+#[derive(Clone, Copy, Debug)]
+pub enum Seeds {
+    /// All: the rate of a block is their median.
+    All,
+    /// The first one alone.
+    First,
+}
+
+impl Seeds {
+    /// Options of `gateware/tests/run.py`.
+    fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::All => &["--route"],
+            Self::First => &["--seeds", "1", "--route"],
+        }
+    }
+}
+
 /// Places and routes the soft core and blocks, two at a time.
 ///
 /// # Errors
 /// A block cannot be measured.
-pub fn measure(blocks: VecDeque<String>) -> Result<Rates> {
+pub fn measure(blocks: VecDeque<String>, seeds: Seeds) -> Result<Rates> {
     let mut names = blocks;
     names.retain(|name| name != REFERENCE);
     names.push_front(REFERENCE.to_owned());
     let mut rates = two_at_a_time(names, |name| {
-        Rate::parse(&measured_line("clock rate", "--route", name)?)
+        Rate::parse(&measured_line("clock rate", seeds.options(), name)?)
     })?;
     sort_by_row(&mut rates, |rate| &rate.name);
     let at = rates.iter().position(|rate| rate.name == REFERENCE);
