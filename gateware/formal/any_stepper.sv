@@ -1,43 +1,42 @@
-// Stand-in for the module stepper in proofs. Edge functions and depths are arbitrary, but constant while the walker stalls. Only
-// the number of a group (eight neighbouring pixels of a line) is computed as in the real stepper.
+// Stand-ins for the modules edge_stepper and stepper in proofs. Edge functions and depths are arbitrary, but constant while the
+// walker stalls.
 
 `default_nettype none
 
-module stepper #(
-    parameter int unsigned WIDTH = 34,
-    parameter int unsigned LOW   = 18
-) (
-    input  wire              clk,
-    input  wire              advance,
-    input  wire              keep,
-    input  wire              extend,
-    input  wire              seek,
-    input  wire              left,
-    input  wire              last,
-    input  wire  [WIDTH-1:0] load_value,
-    input  wire  [WIDTH-1:0] step_x,
-    input  wire  [WIDTH-1:0] step_y,
-    output logic [WIDTH-1:0] current,
-    output logic [WIDTH-1:0] next
+module edge_stepper (
+    input  wire                     clk,
+    input  wire                     advance,
+    input  wire                     keep,
+    input  wire                     resume,
+    input  wire raster_pkg::move_t  move,
+    input  wire  [33:0]             load_best,
+    input  wire                     load_beside_fails,
+    input  wire                     rises,
+    input  wire  [19:0]             slope,
+    input  wire  [20:0]             step_y,
+    input  wire  [24:0]             beside_step,
+    output logic [33:0]             best,
+    output logic                    beside_fails
 );
-    if (WIDTH == 8) begin : group
-        logic [WIDTH-1:0] snapshot, from;
+    (* anyseq *) logic [34:0] any;
 
-        assign from = extend ? current : !seek && last ? load_value : snapshot;
+    always_ff @(posedge clk) if (advance) {best, beside_fails} <= any;
+endmodule
 
-        always_comb begin
-            if (!extend && !seek) next = last ? from : from + step_y;
-            else                  next = left ? from - step_x : from + step_x;
-        end
+module stepper (
+    input  wire                     clk,
+    input  wire                     advance,
+    input  wire                     keep,
+    input  wire                     resume,
+    input  wire raster_pkg::move_t  move,
+    input  wire  [31:0]             load_value,
+    input  wire  [31:0]             step_x,
+    input  wire  [31:0]             step_y,
+    output logic [31:0]             current
+);
+    (* anyseq *) logic [31:0] any;
 
-        always_ff @(posedge clk) if (advance && !keep) snapshot <= next;
-    end else begin : value
-        (* anyseq *) logic [WIDTH-1:0] any;
-
-        assign next = any;
-    end
-
-    always_ff @(posedge clk) if (advance) current <= next;
+    always_ff @(posedge clk) if (advance) current <= any;
 endmodule
 
 `default_nettype wire

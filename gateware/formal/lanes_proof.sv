@@ -1,5 +1,6 @@
-// Proof of `lanes`, which computes which of the eight pixels (lanes) of a group a triangle covers, with the skid buffer at its
-// output, for any pattern of valid and ready on both sides. Groups are numbered, and all of their pixels are covered or none.
+// Proof of `lanes`, which computes which of the eight pixels (lanes) of a group a triangle covers, with a FIFO at its output that
+// tells the source when there is room, for any pattern of valid and ready on both sides. Groups are numbered, and all of their
+// pixels are covered or none.
 // Each group with covered pixels comes out once, in order, with all its fields; a group without them never comes out. A group
 // becomes valid at the output even if the consumer is not ready.
 
@@ -25,11 +26,12 @@ module lanes_proof (
         logic [15:0]      colour;
     } group_t;
 
-    logic                   idle, in_ready, made_valid, made_ready, out_valid, right;
+    logic                   lanes_idle, fifo_idle, room, made_valid, out_valid, right;
     group_t                 made, group;
     raster_pkg::candidate_t candidate;
-    logic [BITS-1:0]        kept = '0, went = '0, number;
-    logic [2:0]             unseen = '0, refused = '0;
+    raster_pkg::late_t      late;
+    logic [BITS-1:0]        kept = '0, went = '0, number, was_number;
+    logic [3:0]             unseen = '0, refused = '0;
 
     // Groups without covered pixels carry the number `'1`, which the proof never expects at the output. One of their edges passes
     // only in lane 7 and another only in lane 0, so no lane passes all edges.
@@ -37,28 +39,30 @@ module lanes_proof (
 
     always_comb begin
         candidate        = '0;
-        candidate.line   = 6'd2;
         candidate.group  = {4'd0, number};
-        candidate.depth  = {14'd1, number, 14'd0};
-        candidate.colour = {12'd1, number};
         for (int k = 0; k < 3; k++) begin
             candidate.best[k]  = {in_kept, 32'd0};
             candidate.slope[k] = 20'd1;
         end
         candidate.rises[0] = 1'b1;
+
+        late        = '0;
+        late.line   = 6'd2;
+        late.depth  = {14'd1, was_number, 14'd0};
+        late.colour = {12'd1, was_number};
     end
 
     lanes dut (
-        .clk, .rst, .stride(8'd40), .idle, .in_valid, .in_ready, .in_group(candidate),
-        .out_valid(made_valid), .out_ready(made_ready), .out_row(made.row), .out_line(made.line), .out_column(made.column),
-        .out_mask(made.mask), .out_codes(made.codes), .out_colour(made.colour)
+        .clk, .rst, .stride(8'd40), .idle(lanes_idle), .in_valid(in_valid && room), .in_group(candidate), .in_late(late),
+        .out_valid(made_valid), .out_row(made.row), .out_line(made.line), .out_column(made.column), .out_mask(made.mask),
+        .out_codes(made.codes), .out_colour(made.colour)
     );
-    skid_buffer #(.WIDTH($bits(made))) buffer (
-        .clk, .rst, .in_valid(made_valid), .in_ready(made_ready), .in_data(made), .out_valid, .out_ready, .out_data(group)
+    pipeline_fifo #(.WIDTH($bits(made)), .DEPTH(8), .FLIGHT(5)) queue (
+        .clk, .rst, .idle(fifo_idle), .room, .in_valid(made_valid), .in_data(made), .out_valid, .out_ready, .out_data(group)
     );
 
     stream_checker #(.WIDTH(1), .GIVEN(1)) given (
-        .clk, .rst, .valid(in_valid), .ready(in_ready), .data(in_kept)
+        .clk, .rst, .valid(in_valid), .ready(room), .data(in_kept)
     );
     stream_checker #(.WIDTH($bits(group))) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(group)
@@ -67,20 +71,21 @@ module lanes_proof (
     assign right = group == {11'd80 + 11'(went), 6'd2, {4'd0, went}, 8'hff, {8{14'd1, went}}, {12'd1, went}};
 
     always_ff @(posedge clk) if (!rst) begin
-        if (in_valid && in_ready && in_kept) kept <= kept + 1'b1;
-        if (out_valid && out_ready)          went <= went + 1'b1;
+        if (in_valid && room && in_kept) kept <= kept + 1'b1;
+        if (out_valid && out_ready)      went <= went + 1'b1;
+        was_number <= number;
         unseen  <= kept != went && !out_valid ? unseen + 1'b1 : '0;
-        refused <= in_valid && !in_ready && out_ready ? refused + 1'b1 : '0;
+        refused <= in_valid && !room && out_ready ? refused + 1'b1 : '0;
 
         assume (kept != '1);
         nothing_made_up:  assert (!out_valid || kept != went);
         in_order:         assert (!out_valid || right);
-        nothing_too_many: assert (kept - went <= BITS'(6));
-        idle_when_empty:  assert (!idle || out_valid || kept == went);
-        shown_in_time:    assert (unseen < 3'd5);
-        taken_in_time:    assert (refused < 3'd2);
+        nothing_too_many: assert (kept - went <= BITS'(8));
+        idle_when_empty:  assert (!(lanes_idle && fifo_idle) || out_valid || kept == went);
+        shown_in_time:    assert (unseen < 4'd7);
+        taken_in_time:    assert (refused < 4'd11);
 
-        six_inside: cover (kept - went == BITS'(6) && !in_ready);
+        eight_inside: cover (kept - went == BITS'(8) && !room);
     end
 endmodule
 

@@ -22,6 +22,10 @@ def _fifo(old, new, fails):
     return Mutation("fifo.sv", old, new, fails)
 
 
+def _queue(old, new, fails):
+    return Mutation("pipeline_fifo.sv", old, new, fails)
+
+
 def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
@@ -223,6 +227,7 @@ MUTATIONS = {
         # Fault: the next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
         _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
+        _entry("if (moved) out_late", "out_late", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),
         _entry("!busy || pass == LAST;", "1'b1;", "nothing_too_many"),
         _entry("(ending != '0 || held_valid) && held_odd", "held_valid && held_odd", "held_is_told"),
@@ -230,23 +235,25 @@ MUTATIONS = {
         _entry("end else if (advance) begin", "end else if (advance && out_ready) begin", "taken_in_time"),
     ],
     "walker": [
-        _walker("if (out_ready) begin\n            seek_left", "if (1'b1) begin\n            seek_left", "shown.valid_stays"),
-        _walker("if (out_ready) begin\n            seek_left", "if (1'b1) begin\n            seek_left", "shown.payload_stable"),
+        _walker("if (out_ready) begin\n            group ", "if (1'b1) begin\n            group ", "shown.valid_stays"),
+        _walker("if (out_ready) begin\n            group ", "if (1'b1) begin\n            group ", "shown.payload_stable"),
         _walker("= active && !fails;", "= !fails;", "nothing_made_up"),
-        _walker("(seeks || !left) && !at_right;", "(seeks || !left);", "within_bounds"),
-        _walker("(seeks || left) && !at_left;", "!at_left;", "none_twice"),
-        _walker("(seeks || left) && !at_left;", "!at_left;", "left_in_time"),
+        _walker("(!keep || !left) && !at_right;", "(!keep || !left);", "within_bounds"),
+        _walker("(!keep || left) && !at_left;", "!at_left;", "none_twice"),
+        _walker("(!keep || left) && !at_left;", "!at_left;", "left_in_time"),
+        _walker("late_advance && late_move == raster_pkg::LOAD) begin", "late_move == raster_pkg::LOAD) begin", "nothing_made_up"),
         _walker("!in_valid || in_triangle.rows == 6'd1;", "1'b1;", "none_left_out"),
         _walker("            active       <= 1'b0;", "            active       <= 1'b1;", "busy_while_it_walks"),
     ],
     "lanes": [
-        _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "shown.valid_stays"),
-        _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "shown.payload_stable"),
-        _lanes("= valid[4] && out_mask != '0;", "= valid[4];", "nothing_made_up"),
-        _lanes("place_3 <= place_2;", "place_3 <= place_1;", "in_order"),
-        _lanes("assign in_ready = out_ready;", "assign in_ready = 1'b1;", "nothing_too_many"),
-        _lanes("valid == '0;", "valid[3:1] == '0;", "idle_when_empty"),
-        _lanes("if (out_ready) valid <=", "if (out_ready && in_valid) valid <=", "shown_in_time"),
-        _skid("!out_valid || out_ready || in_ready", "!out_valid || in_ready", "taken_in_time"),
+        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _lanes("valid[4] && mask != '0;", "valid[4];", "nothing_made_up"),
+        _lanes("{line_4, column_4, colour_4}", "{line_4, column_3, colour_4}", "in_order"),
+        _queue("DEPTH - FLIGHT - 2;", "DEPTH - FLIGHT;", "nothing_too_many"),
+        _lanes("valid == '0 &&", "valid[3:1] == '0 &&", "idle_when_empty"),
+        _queue("assign idle = level == '0;", "assign idle = 1'b1;", "idle_when_empty"),
+        _lanes("valid     <= {valid", "if (in_valid) valid <= {valid", "shown_in_time"),
+        _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
     ],
 }

@@ -26,13 +26,21 @@ module walker_proof (
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    logic                   idle, walking, in_ready, out_valid, taken, goes;
-    raster_pkg::placed_t    placed;
-    raster_pkg::candidate_t group;
+    logic                     idle, walking, in_ready, out_valid, taken;
+    raster_pkg::placed_t      placed;
+    raster_pkg::placed_late_t placed_late;
+    raster_pkg::candidate_t   group;
+    raster_pkg::late_t        late;
+
+    // A group's line and colour come a clock after the group, so groups are checked a clock late: `was_*` and `goes` are from the
+    // clock before.
+    logic       was_taken = 1'b0, was_idle = 1'b0, was_two, goes = 1'b0;
+    logic [3:0] was_columns;
+    logic [7:0] was_group;
 
     // The current triangle: its number, its groups (bit 4·line + column) in `bounds`, and the groups that have come out in
     // `gone`.
-    logic [BITS-1:0] came = '0, number;
+    logic [BITS-1:0] came = '0, was_came = '0, number;
     logic            some = 1'b0;
     logic [7:0]      bounds, gone, group_bit;
     logic [3:0]      columns;
@@ -40,43 +48,49 @@ module walker_proof (
 
     always_comb begin
         placed             = '0;
-        placed.colour      = 16'(came);
-        placed.line        = 6'd0;
         placed.rows        = in_two ? 6'd2 : 6'd1;
         placed.group_left  = 8'(in_left);
         placed.group_right = 8'(in_right);
         placed.group_start = 8'(in_start);
         placed.rises       = in_rises;
         placed.falls       = in_falls;
+        placed_late        = '0;
+        placed_late.colour = 16'(was_came);
         for (int i = 0; i < 4; i++) columns[i] = 2'(i) >= in_left && 2'(i) <= in_right;
     end
 
     walker dut (
-        .clk, .rst, .idle, .walking, .in_valid, .in_ready, .in_triangle(placed), .out_valid, .out_ready, .out_group(group)
+        .clk, .rst, .idle, .walking, .in_valid, .in_ready, .in_triangle(placed), .in_late(placed_late), .out_valid, .out_ready,
+        .out_group(group), .out_late(late)
     );
 
     stream_checker #(.WIDTH(13), .GIVEN(1)) given (
         .clk, .rst, .valid(in_valid), .ready(in_ready), .data({in_two, in_left, in_right, in_start, in_rises, in_falls})
     );
-    stream_checker #(.WIDTH(16 + 6 + 8 + 32)) shown (
-        .clk, .rst, .valid(out_valid), .ready(out_ready), .data({group.colour, group.line, group.group, group.depth})
+    stream_checker #(.WIDTH(8 + 33)) shown (
+        .clk, .rst, .valid(out_valid), .ready(out_ready), .data({group.group, group.best[0]})
     );
 
     assign taken     = in_valid && in_ready;
-    assign goes      = out_valid && out_ready;
-    assign group_bit = 8'd1 << {group.line[0], group.group[1:0]};
+    assign group_bit = 8'd1 << {late.line[0], was_group[1:0]};
 
     always_ff @(posedge clk) if (!rst) begin
+        {was_taken, was_idle, was_two, was_columns, was_group, was_came} <= {taken, idle, in_two, columns, group.group, came};
+        goes <= out_valid && out_ready;
+
         if (taken) begin
             came   <= came + 1'b1;
-            number <= came;
-            some   <= 1'b1;
-            bounds <= {in_two ? columns : 4'd0, columns};
-            gone   <= '0;
             walked <= '0;
-        end else begin
-            if (goes) gone <= gone | group_bit;
-            if (walking) walked <= walked + 1'b1;
+        end else if (walking) begin
+            walked <= walked + 1'b1;
+        end
+        if (was_taken) begin
+            number <= was_came;
+            some   <= 1'b1;
+            bounds <= {was_two ? was_columns : 4'd0, was_columns};
+            gone   <= '0;
+        end else if (goes) begin
+            gone <= gone | group_bit;
         end
 
         assume (came != '1);
@@ -87,16 +101,16 @@ module walker_proof (
             assume (!walking || out_valid);
         end
 
-        if (out_valid) begin
-            nothing_made_up: assert (some && group.colour == 16'(number));
-            within_bounds:   assert (group.line[5:1] == '0 && group.group[7:2] == '0 && (group_bit & bounds) != '0);
+        if (goes) begin
+            nothing_made_up: assert (some && late.colour == 16'(number));
+            within_bounds:   assert (late.line[5:1] == '0 && was_group[7:2] == '0 && (group_bit & bounds) != '0);
             none_twice:      assert ((group_bit & gone) == '0);
         end
         // In a line of three groups, the walker may try two groups in which an edge fails before it finds the line's first group,
         // and may try these two again afterwards.
         left_in_time:  assert (!walking || walked < 5'd10);
-        none_left_out: assert (!solid || !some || !(taken || idle) || (gone | (goes ? group_bit : '0)) == bounds);
-        busy_while_it_walks: assert (idle || some);
+        none_left_out: assert (!solid || !some || !(was_taken || was_idle) || (gone | (goes ? group_bit : '0)) == bounds);
+        busy_while_it_walks: assert (idle || came != '0);
 
         three_walked: cover (came == BITS'(3) && idle && gone == 8'h77);
     end

@@ -45,7 +45,9 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Planes of light in the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
+    // Outputs that come, and hold, one clock later than `out_triangle`. The planes of light have the format of `in_planes`, with
+    // their values at the triangle's first row in the band, in lane 0.
+    output raster_pkg::placed_late_t       out_late,
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
@@ -55,7 +57,7 @@ module band_entry #(
     // held stage, in which it waits for the output register.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
-    logic        busy, odd, held_valid, held_odd, advance, next_free;
+    logic        busy, odd, held_valid, held_odd, advance, next_free, moved;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
@@ -142,9 +144,10 @@ module band_entry #(
         end
     end
 
-    raster_pkg::placed_t placed;
-    logic [2:0][19:0]    slopes;
-    logic [2:0]          all_rises, all_falls;
+    raster_pkg::placed_t      placed;
+    raster_pkg::placed_late_t late;
+    logic [2:0][19:0]         slopes;
+    logic [2:0]               all_rises, all_falls;
 
     for (genvar k = 0; k < 3; k++) begin : edges
         // LANE_0: the number of the pass in whose clock the edge's value in lane 0 arrives. STEP: the number of the pass that
@@ -163,7 +166,8 @@ module band_entry #(
                 all_falls[k] <= falls;
             end
             if (at_lane_0 || at_lane_7 && all_rises[k]) placed.best[k] <= sum[33:0];
-            if (at_lane_7) placed.beside[k] <= beside;
+            // Written without a clock enable, since a flip-flop with an enable of its own takes a slice of the FPGA.
+            placed.beside_fails[k] <= at_lane_7 && beside[33] || !at_lane_7 && placed.beside_fails[k];
         end
 
         triangle_pkg::steps_t steps;
@@ -176,22 +180,21 @@ module band_entry #(
     // The held triangle: its results stay in their registers, its other fields are copied here after the last pass.
     always_ff @(posedge clk) begin
         if (pass == LAST) begin
-            held_odd            <= odd;
-            placed.step_x       <= step_x;
-            placed.step_y       <= step_y;
-            placed.depth_step_x <= triangle.depth_step_x;
-            placed.depth_step_y <= triangle.depth_step_y;
-            placed.slope        <= slopes;
-            placed.rises        <= all_rises;
-            placed.falls        <= all_falls;
-            placed.line         <= first;
-            placed.rows         <= count;
-            placed.group_left   <= triangle.group_left;
-            placed.group_right  <= triangle.group_right;
-            placed.group_start  <= triangle.group_start;
-            placed.colour       <= triangle.colour;
+            held_odd           <= odd;
+            placed.slope       <= slopes;
+            placed.step_y      <= step_y;
+            placed.rises       <= all_rises;
+            placed.falls       <= all_falls;
+            placed.rows        <= count;
+            placed.group_left  <= triangle.group_left;
+            placed.group_right <= triangle.group_right;
+            placed.group_start <= triangle.group_start;
+            late.depth_step_x  <= triangle.depth_step_x;
+            late.depth_step_y  <= triangle.depth_step_y;
+            late.line          <= first;
+            late.colour        <= triangle.colour;
         end
-        if (ending[3]) placed.depth <= sum[31:0];
+        if (ending[3]) late.depth <= sum[31:0];
     end
 
     if (SMOOTH) begin : light
@@ -200,12 +203,12 @@ module band_entry #(
         always_ff @(posedge clk) begin
             if (in_ready)     smooth <= in_planes[288];
             if (pass == LAST) held_smooth <= smooth;
-            if (next_free)    out_planes[288] <= held_smooth;
+            if (moved)        out_planes[288] <= held_smooth;
         end
 
         for (genvar k = 0; k < 3; k++) begin : channels
             plane_entry plane (
-                .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .result(ending[3]), .give(next_free),
+                .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .result(ending[3]), .give(moved),
                 .in_plane(in_planes[96 * k +: 96]), .out_plane(out_planes[96 * k +: 96])
             );
         end
@@ -235,6 +238,8 @@ module band_entry #(
             out_odd      <= held_odd;
             out_triangle <= placed;
         end
+        moved <= next_free;
+        if (moved) out_late <= late;
         if (ending[3]) held_valid <= 1'b1;
 
         if (rst) begin
@@ -244,6 +249,8 @@ module band_entry #(
             out_valid  <= 1'b0;
         end
     end
+
+    wire _unused = &{1'b0, beside[32:0]};
 endmodule
 
 `default_nettype wire

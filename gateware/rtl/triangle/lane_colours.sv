@@ -6,14 +6,12 @@
 //                                                  light ─────────────┴▶ light·y + half ─▶ five or six bits, by the zeros
 //
 // `zeros` is the number of leading zeros of the depth, at most 11. Both pixels share a table in half a block RAM, which has two
-// ports. Latency 7 clocks in which `enable` is high, counted from the depths, and 4 counted from the light; throughput two
-// pixels a clock.
+// ports. Latency 7 clocks, counted from the depths, and 4 counted from the light; throughput two pixels a clock.
 
 `default_nettype none
 
 module lane_colours (
     input  wire                   clk,
-    input  wire                   enable,
     input  wire  [1:0][31:0]      depths, // with half a depth code added
     input  wire  [1:0][2:0][31:0] lights, // red in the lowest bits; three clocks after the depths
     output logic [1:0][15:0]      colours
@@ -28,8 +26,8 @@ module lane_colours (
     logic [1:0][9:0]  index;
     logic [1:0][16:0] inverse;
 
-    always_ff @(posedge clk) if (enable) inverse[0] <= inverses[index[0]];
-    always_ff @(posedge clk) if (enable) inverse[1] <= inverses[index[1]];
+    always_ff @(posedge clk) inverse[0] <= inverses[index[0]];
+    always_ff @(posedge clk) inverse[1] <= inverses[index[1]];
 
     for (genvar lane = 0; lane < 2; lane++) begin : lanes
         logic [31:0] depth;
@@ -43,26 +41,24 @@ module lane_colours (
         assign ones  = by_4[13] ? 2'd0 : by_4[12] ? 2'd1 : by_4[11] ? 2'd2 : 2'd3;
 
         always_ff @(posedge clk) begin
-            if (enable) begin
-                fours_1 <= fours;
-                case (fours)
-                    2'd0:    by_4 <= depth[31:18];
-                    2'd1:    by_4 <= depth[27:14];
-                    default: by_4 <= depth[23:10];
-                endcase
-                zeros <= {fours_1, ones};
-                case (ones)
-                    2'd0: index[lane] <= by_4[12:3];
-                    2'd1: index[lane] <= by_4[11:2];
-                    2'd2: index[lane] <= by_4[10:1];
-                    2'd3: index[lane] <= by_4[9:0];
-                endcase
-                half <= 42'd1 << (6'd34 - 6'(zeros_4));
-            end
+            fours_1 <= fours;
+            case (fours)
+                2'd0:    by_4 <= depth[31:18];
+                2'd1:    by_4 <= depth[27:14];
+                default: by_4 <= depth[23:10];
+            endcase
+            zeros <= {fours_1, ones};
+            case (ones)
+                2'd0: index[lane] <= by_4[12:3];
+                2'd1: index[lane] <= by_4[11:2];
+                2'd2: index[lane] <= by_4[10:1];
+                2'd3: index[lane] <= by_4[9:0];
+            endcase
+            half <= 42'd1 << (6'd34 - 6'(zeros_4));
         end
 
-        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay (.clk, .enable, .in(zeros), .out(zeros_4));
-        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay_4 (.clk, .enable, .in(zeros_4), .out(zeros_6));
+        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay (.clk, .enable(1'b1), .in(zeros), .out(zeros_4));
+        delay #(.WIDTH(4), .CLOCKS(2)) zeros_delay_4 (.clk, .enable(1'b1), .in(zeros_4), .out(zeros_6));
 
         for (genvar k = 0; k < 3; k++) begin : channels
             localparam int unsigned BITS = k == 1 ? 6 : 5;
@@ -75,13 +71,13 @@ module lane_colours (
             assign light = lights[lane][k];
 
             multiply_add #(.BITS(42)) dsp (
-                .clk, .enable, .a({1'b0, light[31:8]}), .b({1'b0, inverse[lane]}), .c(half >> (BITS - 5)), .p(product)
+                .clk, .enable(1'b1), .a({1'b0, light[31:8]}), .b({1'b0, inverse[lane]}), .c(half >> (BITS - 5)), .p(product)
             );
 
             // High if the light is below 0, which rounding may cause for a light of 0. The channel is then 0.
             assign dark = light[31:26] == '1;
 
-            delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable, .in(dark), .out(dark_6));
+            delay #(.WIDTH(1), .CLOCKS(3)) dark_delay (.clk, .enable(1'b1), .in(dark), .out(dark_6));
 
             always_comb begin
                 case (zeros_6[3:2])
@@ -92,15 +88,13 @@ module lane_colours (
             end
 
             always_ff @(posedge clk) begin
-                if (enable) begin
-                    case (zeros_6[1:0])
-                        2'd0: channel <= window[8 -: BITS];
-                        2'd1: channel <= window[7 -: BITS];
-                        2'd2: channel <= window[6 -: BITS];
-                        2'd3: channel <= window[5 -: BITS];
-                    endcase
-                    if (dark_6) channel <= '0;
-                end
+                case (zeros_6[1:0])
+                    2'd0: channel <= window[8 -: BITS];
+                    2'd1: channel <= window[7 -: BITS];
+                    2'd2: channel <= window[6 -: BITS];
+                    2'd3: channel <= window[5 -: BITS];
+                endcase
+                if (dark_6) channel <= '0;
             end
 
             if (k == 0) begin : red

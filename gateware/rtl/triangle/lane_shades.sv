@@ -1,12 +1,12 @@
 // Smooth shading of eight pixels: computes the colours of a group in parallel with `lanes`, and delays the outputs of `lanes`
 // to match.
 //
-//   stage   1         3                4                    6              10
+//   stage   2         4                5                    7              11
 //           light ───────────────────────▶ lane_values ─────▶ ┌──────────────┐
 //                     depths ───────────────────────────────▶ │ lane_colours │─▶ colours
 //                                      group ─────────────────└──────────────┘─▶ group
 //
-// Stage numbers count from the input of `lanes`; all stages move in clocks with `enable`. Latency 6 clocks from the group's
+// Stage numbers count from the input of `lanes`. Like `lanes`, the pipeline cannot be stopped. Latency 6 clocks from the group's
 // output by `lanes` to the coloured group, throughput a group a clock.
 
 `default_nettype none
@@ -16,15 +16,14 @@ module lane_shades #(
 ) (
     input  wire                    clk,
     input  wire                    rst,
-    input  wire                    enable,
     output logic                   idle,
-    // Stage 1.
+    // Stage 2.
     input  wire  [2:0][31:0]       in_light,  // red in the lowest bits
     input  wire  [2:0][31:0]       in_step_x,
     input  wire                    in_smooth,
-    // Stage 3.
-    input  wire  [7:0][31:0]       in_depths, // with half a depth code added
     // Stage 4.
+    input  wire  [7:0][31:0]       in_depths, // with half a depth code added
+    // Stage 5.
     input  wire                    in_valid,
     input  wire  [GROUP_BITS-1:0]  in_group,
     input  wire  [15:0]            in_colour, // of a flat triangle
@@ -40,7 +39,7 @@ module lane_shades #(
     assign out_valid = valid[LATENCY-1];
 
     always_ff @(posedge clk) begin
-        if (enable) valid <= {valid[LATENCY-2:0], in_valid};
+        valid <= {valid[LATENCY-2:0], in_valid};
         if (rst) valid <= '0;
     end
 
@@ -48,11 +47,11 @@ module lane_shades #(
     logic [15:0] colour;
 
     delay #(.WIDTH(GROUP_BITS + 16), .CLOCKS(LATENCY)) group_delay (
-        .clk, .enable, .in({in_colour, in_group}), .out({colour, out_group})
+        .clk, .enable(1'b1), .in({in_colour, in_group}), .out({colour, out_group})
     );
-    delay #(.WIDTH(1), .CLOCKS(8)) smooth_delay (.clk, .enable, .in(in_smooth), .out(smooth_9));
+    delay #(.WIDTH(1), .CLOCKS(8)) smooth_delay (.clk, .enable(1'b1), .in(in_smooth), .out(smooth_9));
 
-    always_ff @(posedge clk) if (enable) smooth <= smooth_9;
+    always_ff @(posedge clk) smooth <= smooth_9;
 
     // The light of a group is delayed until the depths are there. Before `lane_values` it is an accumulator and its step, after
     // `lane_values` the accumulators of eight lanes.
@@ -61,8 +60,8 @@ module lane_shades #(
     for (genvar k = 0; k < 3; k++) begin : channels
         logic [31:0] light, step_x;
 
-        delay #(.WIDTH(64), .CLOCKS(2)) light_delay (.clk, .enable, .in({in_light[k], in_step_x[k]}), .out({light, step_x}));
-        lane_values spread (.clk, .enable, .in(light), .step_x, .values(lights[k]));
+        delay #(.WIDTH(64), .CLOCKS(2)) light_delay (.clk, .enable(1'b1), .in({in_light[k], in_step_x[k]}), .out({light, step_x}));
+        lane_values spread (.clk, .in(light), .step_x, .values(lights[k]));
     end
 
     for (genvar pair = 0; pair < 4; pair++) begin : pairs
@@ -77,7 +76,7 @@ module lane_shades #(
             assign out_colours[LANE] = smooth ? colours[16 * lane +: 16] : colour;
         end
 
-        lane_colours quotients (.clk, .enable, .depths(in_depths[2 * pair +: 2]), .lights(pair_lights), .colours);
+        lane_colours quotients (.clk, .depths(in_depths[2 * pair +: 2]), .lights(pair_lights), .colours);
     end
 endmodule
 

@@ -1,13 +1,12 @@
 // Computes the values of an accumulator in the eight lanes of a group, modulo 2^32, by doubling: lane 4 from lane 0, then lanes
 // 2 and 6 from these two, then the odd lanes from these four.
 //
-// Latency 3 clocks in which `enable` is high, throughput a group a clock.
+// Latency 3 clocks, throughput a group a clock.
 
 `default_nettype none
 
 module lane_values (
     input  wire              clk,
-    input  wire              enable,
     input  wire  [31:0]      in,     // in lane 0
     input  wire  [31:0]      step_x,
     output logic [7:0][31:0] values
@@ -17,21 +16,19 @@ module lane_values (
     logic [3:0][31:0] four;
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            step_1 <= step_x;
-            two[0] <= in;
-            two[1] <= in + (step_x << 2);
+        step_1 <= step_x;
+        two[0] <= in;
+        two[1] <= in + (step_x << 2);
 
-            step_2 <= step_1;
-            for (int i = 0; i < 2; i++) begin
-                four[2 * i]     <= two[i];
-                four[2 * i + 1] <= two[i] + (step_1 << 1);
-            end
+        step_2 <= step_1;
+        for (int i = 0; i < 2; i++) begin
+            four[2 * i]     <= two[i];
+            four[2 * i + 1] <= two[i] + (step_1 << 1);
+        end
 
-            for (int i = 0; i < 4; i++) begin
-                values[2 * i]     <= four[i];
-                values[2 * i + 1] <= four[i] + step_2;
-            end
+        for (int i = 0; i < 4; i++) begin
+            values[2 * i]     <= four[i];
+            values[2 * i + 1] <= four[i] + step_2;
         end
     end
 endmodule

@@ -1,62 +1,60 @@
-// One of the walker's accumulators, such as an edge function: its value at the current group, and a snapshot of its value at an
-// earlier group.
+// One of the accumulators that follow the walker's moves, depth or light: its value at the current group, and a snapshot of its
+// value at an earlier group.
 //
-// In each clock with `advance` the value becomes one of the following, by the first control that is high. `keep` preserves the
-// snapshot; without `keep` the snapshot takes the new value.
+// In each clock with `advance` the value becomes the one that `move` selects. `keep` preserves the snapshot; without `keep` the
+// snapshot takes the new value.
 //
-//   extend        current + step_x, or current - step_x with `left`
-//   else seek     snapshot + step_x, or snapshot - step_x with `left`
-//   else last     load_value
-//   else          snapshot + step_y
+//   LEFT    current - step_x
+//   RIGHT   current + step_x, or snapshot + step_x with `resume`
+//   DOWN    snapshot + step_y
+//   LOAD    load_value
 //
-// The addition is in the walker's critical loop. So the upper part of the sum is computed for both values of the carry from the
-// lower part, and the logic fits LUTs of six inputs: one LUT for each bit of `from`, and one for each bit of the sum. Sums are
-// modulo 2^WIDTH.
+// All controls come from registers, so one adder behind the selection of its operands is fast enough, and takes half the LUTs of
+// edge_stepper. Sums are modulo 2^32. Latency 1 clock, throughput a move a clock.
 
 `default_nettype none
 
-module stepper #(
-    parameter int unsigned WIDTH = 34,
-    parameter int unsigned LOW   = 18
-) (
-    input  wire                    clk,
-    input  wire                    advance,
-    input  wire                    keep,
-    input  wire                    extend,
-    input  wire                    seek,
-    input  wire                    left,
-    input  wire                    last,
-    input  wire  [WIDTH-1:0]       load_value,
-    input  wire  [WIDTH-1:0]       step_x,
-    input  wire  [WIDTH-1:0]       step_y,
-    output logic [WIDTH-1:0]       current,
-    output logic [WIDTH-1:0]       next
+module stepper (
+    input  wire                     clk,
+    input  wire                     advance,
+    input  wire                     keep,
+    input  wire                     resume,
+    input  wire raster_pkg::move_t  move,
+    input  wire  [31:0]             load_value,
+    input  wire  [31:0]             step_x,     // from lane to lane; a group has eight lanes
+    input  wire  [31:0]             step_y,
+    output logic [31:0]             current
 );
-    logic [WIDTH-1:0]     snapshot, from, step;
-    logic                 sideways, negate, carry;
-    logic [LOW-1:0]       low;
-    logic [WIDTH-LOW-1:0] high, high_with_carry;
-    logic                 below_low, below_high;
+    logic [31:0] snapshot, from, group_step, step, next;
+    logic        negate, below;
 
-    assign sideways = extend || seek;
-    assign negate   = sideways && left;
-    assign from     = extend ? current : !seek && last ? load_value : snapshot;
-    assign step     = sideways ? step_x ^ {WIDTH{left}} : last ? '0 : step_y;
+    assign group_step = {step_x[28:0], 3'b000};
+    assign negate     = move == raster_pkg::LEFT;
 
-    // The added bit below the lowest bit makes the carry in: for a subtraction it is 1 in both summands.
-    assign {carry, low, below_low}       = {1'b0, from[LOW-1:0], negate} + {1'b0, step[LOW-1:0], negate};
-    assign high                          = from[WIDTH-1:LOW] + step[WIDTH-1:LOW];
-    assign {high_with_carry, below_high} = {from[WIDTH-1:LOW], 1'b1} + {step[WIDTH-1:LOW], 1'b1};
-    assign next                          = {carry ? high_with_carry : high, low};
-
-    always_ff @(posedge clk) begin
-        if (advance) begin
-            current <= next;
-            if (!keep) snapshot <= next;
-        end
+    always_comb begin
+        case (move)
+            raster_pkg::LEFT:  from = current;
+            raster_pkg::RIGHT: from = resume ? snapshot : current;
+            raster_pkg::DOWN:  from = snapshot;
+            default:           from = load_value;
+        endcase
+        case (move)
+            raster_pkg::LEFT:  step = ~group_step;
+            raster_pkg::RIGHT: step = group_step;
+            raster_pkg::DOWN:  step = step_y;
+            default:           step = '0;
+        endcase
     end
 
-    wire _unused = &{1'b0, below_low, below_high};
+    // The added bit below the lowest bit makes the carry in: for a subtraction it is 1 in both summands.
+    assign {next, below} = {from, negate} + {step, negate};
+
+    always_ff @(posedge clk) begin
+        if (advance) current <= next;
+        if (advance && !keep) snapshot <= next;
+    end
+
+    wire _unused = &{1'b0, step_x[31:29], below};
 endmodule
 
 `default_nettype wire

@@ -1,23 +1,26 @@
 // Draws the parts of triangles that are in a band. Input: descriptors (triangles after the setup). Output: groups of eight
 // neighbouring pixels of a row.
 //
-//               ┌────────────┐     ┌────────┐     ┌───────┐     ┌─────────────┐
-//   triangle ──▶│ band_entry │────▶│ walker │────▶│ lanes │────▶│ skid_buffer │──▶ group
-//               └────────────┘     └────────┘     └───────┘     └─────────────┘
+//               ┌────────────┐     ┌────────┐     ┌───────┐     ┌───────────────┐
+//   triangle ──▶│ band_entry │────▶│ walker │────▶│ lanes │────▶│ pipeline_fifo │──▶ group
+//               └────────────┘     └────────┘     └───────┘     └───────────────┘
+//                                      ▲                                │
+//                                      └────────────── room ────────────┘
 //
 // With SMOOTH, a triangle comes with the planes of its three colour channels, and lane_shades stands between `lanes` and
-// `skid_buffer`; the latency is then 25 clocks.
+// `pipeline_fifo`; the latency is then 27 clocks.
 //
 // A group is {line = y - y0 with y0 the first row of the band, column = x / 8, row address in the band buffer = line * stride +
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
 // 0. Each group that a triangle covers comes once; triangles keep their order.
 //
-// Streams are valid/ready, with a register between any two ready signals. Latency 19 clocks from a descriptor to its first
-// group. Throughput: the walker tests one group a clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row
-// of the band, and `triangle_odd`, the parity of the band's number, come with each triangle. `odd` is the parity of the band
-// that is drawn. Triangles of the next band are accepted and prepared, but wait until `odd` is the parity of their band. `idle`
-// is low from the clock after a descriptor of the drawn band is taken until the last group of that band is taken. `rows` (rows
-// of a band) and `stride` (groups of a row: 40, 80 or 160) must hold while triangles are inside.
+// Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stands
+// still while the FIFO has no room for all groups in the lanes. Latency 21 clocks from a descriptor to its first group.
+// Throughput: the walker tests one group a clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row of the
+// band, and `triangle_odd`, the parity of the band's number, come with each triangle. `odd` is the parity of the band that is
+// drawn. Triangles of the next band are accepted and prepared, but wait until `odd` is the parity of their band. `idle` is low
+// from the clock after a descriptor of the drawn band is taken until the last group of that band is taken. `rows` (rows of a
+// band) and `stride` (groups of a row: 40, 80 or 160) must hold while triangles are inside. `events` come one clock late.
 
 `default_nettype none
 
@@ -50,22 +53,31 @@ module triangle_raster #(
     output logic [8*18-1:0]                group_codes,
     output logic [8*16-1:0]                group_colours
 );
-    logic                   walker_idle, lanes_idle, shades_idle, waits;
+    logic                   walker_idle, lanes_idle, shades_idle, fifo_idle, waits;
     logic [1:0]             holds;
     logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
     logic [PLANES_BITS-1:0] placed_planes;
-    logic                   walking, walked_valid, walked_ready;
+    raster_pkg::placed_late_t placed_late;
+    logic                   walking, walked_valid, room;
     raster_pkg::candidate_t walked;
+    raster_pkg::late_t      walked_late;
     logic [VALUES_BITS-1:0] walked_light;
 
     assign waits = placed_odd != odd;
-    assign idle  = !holds[odd] && walker_idle && lanes_idle && shades_idle && !group_valid;
+    assign idle  = !holds[odd] && walker_idle && lanes_idle && shades_idle && fifo_idle;
+
+    logic counts_walking, counts_empty;
+
+    always_ff @(posedge clk) begin
+        counts_walking <= walking;
+        counts_empty   <= walking && !walked_valid;
+    end
 
     always_comb begin
         events = '0;
-        events.cycles_walking = walking;
-        events.cycles_empty   = walking && !(walked_valid && walked_ready);
+        events.cycles_walking = counts_walking;
+        events.cycles_empty   = counts_empty;
     end
 
     band_entry #(.SMOOTH(SMOOTH)) band_entry (
@@ -73,13 +85,14 @@ module triangle_raster #(
         .in_valid(triangle_valid), .in_ready(triangle_ready), .in_y0(triangle_y0), .in_odd(triangle_odd),
         .in_descriptor(triangle_descriptor), .in_planes(triangle_planes),
         .out_valid(placed_valid), .out_ready(placed_ready && !waits), .out_odd(placed_odd), .out_triangle(placed),
-        .out_planes(placed_planes)
+        .out_late(placed_late), .out_planes(placed_planes)
     );
 
     walker #(.SMOOTH(SMOOTH)) walker (
         .clk, .rst, .idle(walker_idle), .walking,
-        .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed), .in_planes(placed_planes),
-        .out_valid(walked_valid), .out_ready(walked_ready), .out_group(walked), .out_light(walked_light)
+        .in_valid(placed_valid && !waits), .in_ready(placed_ready), .in_triangle(placed),
+        .in_late(placed_late), .in_planes(placed_planes), .out_valid(walked_valid), .out_ready(room), .out_group(walked),
+        .out_late(walked_late), .out_light(walked_light)
     );
 
     typedef struct packed {
@@ -98,18 +111,18 @@ module triangle_raster #(
     logic [15:0]             found_colour;
     logic [COLOURS_BITS-1:0] made_colours, colours;
     logic [7:0][31:0]        early_depths;
-    logic                    found_valid, made_valid, made_ready;
+    logic                    found_valid, made_valid;
 
     lanes lanes (
         .clk, .rst, .stride, .idle(lanes_idle),
-        .in_valid(walked_valid), .in_ready(walked_ready), .in_group(walked),
-        .out_valid(found_valid), .out_ready(made_ready), .out_row(found.row), .out_line(found.line), .out_column(found.column),
+        .in_valid(walked_valid && room), .in_group(walked), .in_late(walked_late),
+        .out_valid(found_valid), .out_row(found.row), .out_line(found.line), .out_column(found.column),
         .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour), .early_depths
     );
 
     if (SMOOTH) begin : light
         lane_shades #(.GROUP_BITS(GROUP_BITS)) lane_shades (
-            .clk, .rst, .enable(made_ready), .idle(shades_idle),
+            .clk, .rst, .idle(shades_idle),
             .in_light({walked_light[128 +: 32], walked_light[64 +: 32], walked_light[0 +: 32]}),
             .in_step_x({walked_light[160 +: 32], walked_light[96 +: 32], walked_light[32 +: 32]}), .in_smooth(walked_light[192]),
             .in_depths(early_depths), .in_valid(found_valid), .in_group(found), .in_colour(found_colour),
@@ -127,8 +140,11 @@ module triangle_raster #(
         wire _unused = &{1'b0, walked_light, early_depths};
     end
 
-    skid_buffer #(.WIDTH(GROUP_BITS + COLOURS_BITS)) skid_buffer (
-        .clk, .rst, .in_valid(made_valid), .in_ready(made_ready), .in_data({made, made_colours}),
+    // Clocks from the walker to the FIFO.
+    localparam int unsigned FLIGHT = SMOOTH ? 11 : 5;
+
+    pipeline_fifo #(.WIDTH(GROUP_BITS + COLOURS_BITS), .DEPTH(SMOOTH ? 32 : 16), .FLIGHT(FLIGHT)) pipeline_fifo (
+        .clk, .rst, .idle(fifo_idle), .room, .in_valid(made_valid), .in_data({made, made_colours}),
         .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colours})
     );
 

@@ -29,9 +29,12 @@
 // The walker stays within group_left…group_right and the rows, so edge functions are evaluated at most one pixel outside of the
 // picture and fit 34 bits.
 //
-// Both streams are valid/ready; ready passes through combinationally, from the output to the input. Throughput one group a
-// clock, covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the clocks
-// that are spent on a group.
+// Both streams are valid/ready. `out_ready` is a register outside of the walker, and `in_ready` depends on it. Throughput one
+// group a clock, covered or not; the next triangle's first group follows the last one without a gap. `walking` is high in the
+// clocks that are spent on a group.
+//
+// Only the edge functions and the group's number affect the next move. Depth, line and colour make the same moves one clock
+// later, and light two clocks later.
 
 `default_nettype none
 
@@ -40,34 +43,35 @@ module walker #(
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1,
     localparam int unsigned VALUES_BITS = SMOOTH ? 193 : 1
 ) (
-    input  wire                      clk,
-    input  wire                      rst,
-    output logic                     idle,
-    output logic                     walking,
-    input  wire                      in_valid,
-    output logic                     in_ready,
-    input  wire raster_pkg::placed_t in_triangle,
-    input  wire  [PLANES_BITS-1:0]   in_planes,
-    output logic                     out_valid,
-    input  wire                      out_ready,
-    output raster_pkg::candidate_t   out_group,
-    // Light of the group, a clock after `out_group`: {smooth, blue, green, red}; each channel is {step_x, accumulator
+    input  wire                           clk,
+    input  wire                           rst,
+    output logic                          idle,
+    output logic                          walking,
+    input  wire                           in_valid,
+    output logic                          in_ready,
+    input  wire raster_pkg::placed_t      in_triangle,
+    input  wire raster_pkg::placed_late_t in_late,      // a clock after `in_triangle`
+    input  wire  [PLANES_BITS-1:0]        in_planes,    // a clock after `in_triangle`
+    output logic                          out_valid,
+    input  wire                           out_ready,
+    output raster_pkg::candidate_t        out_group,
+    output raster_pkg::late_t             out_late,     // a clock after `out_group`
+    // Light of the group, two clocks after `out_group`: {smooth, blue, green, red}; each channel is {step_x, accumulator
     // in lane 0}.
-    output logic [VALUES_BITS-1:0]   out_light
+    output logic [VALUES_BITS-1:0]        out_light
 );
     // The triangle.
-    logic [2:0][20:0] step_x, step_y;
-    logic [31:0]      depth_step_x, depth_step_y;
     logic [2:0][19:0] slope;
+    logic [2:0][20:0] step_y;
+    logic [2:0][24:0] beside_step;
     logic [2:0]       rises, falls;
     logic [7:0]       group_left, group_right;
-    logic [15:0]      colour;
 
     // The place.
-    logic [2:0][33:0] best, beside;
-    logic [31:0]      depth;
-    logic [7:0]       group, next_group;
-    logic [5:0]       line, rows_below;
+    logic [2:0][33:0] best;
+    logic [2:0]       beside_fails;
+    logic [7:0]       group, snapshot;
+    logic [5:0]       rows_below;
     logic             active, last_row;
 
     // Directions in which the walker may still move in this row: `seek_*` before the row's first group is found, `extend_*`
@@ -75,15 +79,13 @@ module walker #(
     logic seek_left, seek_right, extend_left, extend_right, resume;
 
     // The next move, decided from the signs of the edge functions and from the directions declared above.
-    logic [2:0]        best_fails, beside_fails;
+    logic [2:0]        best_fails;
     logic              fails, go_right, go_left, open_left, open_right;
     logic              extend, seek, left, leave;
+    raster_pkg::move_t move;
 
     always_comb begin
-        for (int k = 0; k < 3; k++) begin
-            best_fails[k]  = best[k][33];
-            beside_fails[k] = beside[k][33];
-        end
+        for (int k = 0; k < 3; k++) best_fails[k] = best[k][33];
     end
 
     assign fails      = best_fails != '0;
@@ -97,128 +99,83 @@ module walker #(
     assign seek   = resume || go_right && !go_left && seek_right || go_left && !go_right && seek_left;
     assign leave  = !extend && !seek && last_row;
 
+    always_comb begin
+        if (extend || seek) move = left ? raster_pkg::LEFT : raster_pkg::RIGHT;
+        else                move = last_row ? raster_pkg::LOAD : raster_pkg::DOWN;
+    end
+
     assign idle     = !active;
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
 
     // While the walker seeks, the snapshot is the current group. It is kept while the walker extends from the first group
-    // of the row.
+    // of the row. `resume` and a move to the left by `extend` leave only the way from the snapshot to the right.
     logic keep;
 
     assign keep = extend || resume;
 
     for (genvar k = 0; k < 3; k++) begin : edges
-        logic [33:0] group_step, row_step, next_best, next_beside;
-
-        assign group_step = {{10{step_x[k][20]}}, step_x[k], 3'b000};
-        assign row_step   = {{13{step_y[k][20]}}, step_y[k]};
-
-        stepper best_stepper (
-            .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
-            .load_value(in_triangle.best[k]), .step_x(group_step), .step_y(row_step),
-            .current(best[k]), .next(next_best)
-        );
-        stepper beside_stepper (
-            .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
-            .load_value(in_triangle.beside[k]), .step_x(group_step), .step_y(row_step),
-            .current(beside[k]), .next(next_beside)
+        edge_stepper edge_stepper (
+            .clk, .advance(out_ready), .keep, .resume, .move,
+            .load_best(in_triangle.best[k]), .load_beside_fails(in_triangle.beside_fails[k]),
+            .rises(rises[k]), .slope(slope[k]), .step_y(step_y[k]), .beside_step(beside_step[k]),
+            .best(best[k]), .beside_fails(beside_fails[k])
         );
 
-        wire _unused = &{1'b0, next_best, next_beside};
-    end
-
-    logic [31:0] next_depth;
-
-    stepper #(.WIDTH(32), .LOW(16)) depth_stepper (
-        .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
-        .load_value(in_triangle.depth), .step_x({depth_step_x[28:0], 3'b000}), .step_y(depth_step_y),
-        .current(depth), .next(next_depth)
-    );
-
-    // Light does not affect the next move, so its accumulators make the same moves one clock later.
-    if (SMOOTH) begin : light
-        logic [PLANES_BITS-1:0] planes;
-        logic                   was_keep, was_extend, was_seek, was_left, was_last;
-
+        // The change of E' beside the group for one row down, and one group to the worse side.
         always_ff @(posedge clk) begin
-            if (out_ready) begin
-                {was_keep, was_extend, was_seek, was_left, was_last} <= {keep, extend, seek, left, last_row};
-                if (leave) planes <= in_planes;
-                out_light[192] <= planes[288];
-            end
+            if (out_ready && leave)
+                beside_step[k] <= 25'(signed'(in_triangle.step_y[k])) - {2'd0, in_triangle.slope[k], 3'd0};
         end
 
-        for (genvar k = 0; k < 3; k++) begin : channels
-            triangle_pkg::plane_t plane;
-            logic [31:0]          next_value;
-
-            assign plane = planes[96 * k +: 96];
-
-            stepper #(.WIDTH(32), .LOW(16)) light_stepper (
-                .clk, .advance(out_ready), .keep(was_keep), .extend(was_extend), .seek(was_seek), .left(was_left), .last(was_last),
-                .load_value(plane.start), .step_x({plane.step_x[28:0], 3'b000}), .step_y(plane.step_y),
-                .current(out_light[64 * k +: 32]), .next(next_value)
-            );
-
-            always_ff @(posedge clk) if (out_ready) out_light[64 * k + 32 +: 32] <= plane.step_x;
-
-            wire _unused = &{1'b0, next_value};
-        end
-    end else begin : flat
-        assign out_light = '0;
-
-        wire _unused = &{1'b0, in_planes};
+        assign out_group.best[k] = best[k][32:0];
     end
 
-    stepper #(.WIDTH(8), .LOW(4)) group_stepper (
-        .clk, .advance(out_ready), .keep, .extend, .seek, .left, .last(last_row),
-        .load_value(in_triangle.group_start), .step_x(8'd1), .step_y(8'd0),
-        .current(group), .next(next_group)
-    );
+    // Like the sums in edge_stepper, the numbers of all possible next groups and their comparisons with the bounds are computed at
+    // the same time as the move. A group to the left is never the rightmost one, nor a group to the right the leftmost one.
+    // Without a next triangle, no direction is open after LOAD: the walker stays idle, ready to load one.
+    logic [7:0] left_group, right_group, next_group;
+    logic       load_at_left, load_at_right, snapshot_at_left, snapshot_at_right, at_left, at_right;
 
-    logic at_left, at_right, seeks, fresh;
+    assign left_group    = group - 1'b1;
+    assign right_group   = (resume ? snapshot : group) + 1'b1;
+    assign load_at_left  = !in_valid || in_triangle.group_start == in_triangle.group_left;
+    assign load_at_right = !in_valid || in_triangle.group_start == in_triangle.group_right;
 
-    assign at_left  = next_group == (leave ? in_triangle.group_left : group_left);
-    assign at_right = next_group == (leave ? in_triangle.group_right : group_right);
-    assign seeks    = !extend && !resume;
-    assign fresh    = !extend && !seek;
+    always_comb begin
+        case (move)
+            raster_pkg::LEFT:  {at_left, at_right, next_group} = {left_group == group_left, 1'b0, left_group};
+            raster_pkg::RIGHT: {at_left, at_right, next_group} = {1'b0, right_group == group_right, right_group};
+            raster_pkg::DOWN:  {at_left, at_right, next_group} = {snapshot_at_left, snapshot_at_right, snapshot};
+            default:           {at_left, at_right, next_group} = {load_at_left, load_at_right, in_triangle.group_start};
+        endcase
+    end
 
     always_ff @(posedge clk) begin
         if (out_ready) begin
-            seek_left    <= seeks && (fresh || left) && !at_left;
-            seek_right   <= seeks && (fresh || !left) && !at_right;
-            extend_left  <= (seeks || left) && !at_left;
-            extend_right <= (seeks || !left) && !at_right;
+            group        <= next_group;
+            seek_left    <= !keep && move != raster_pkg::RIGHT && !at_left;
+            seek_right   <= !keep && move != raster_pkg::LEFT && !at_right;
+            extend_left  <= (!keep || left) && !at_left;
+            extend_right <= (!keep || !left) && !at_right;
             resume       <= extend && left && (resume || open_right && extend_right);
+            if (!keep) {snapshot_at_left, snapshot_at_right, snapshot} <= {at_left, at_right, next_group};
 
-            if (fresh && !last_row) begin
-                line       <= line + 1'b1;
+            if (move == raster_pkg::DOWN) begin
                 rows_below <= rows_below - 1'b1;
                 last_row   <= rows_below == 6'd1;
             end
 
             if (leave) begin
-                active       <= in_valid;
-                step_x       <= in_triangle.step_x;
-                step_y       <= in_triangle.step_y;
-                depth_step_x <= in_triangle.depth_step_x;
-                depth_step_y <= in_triangle.depth_step_y;
-                slope        <= in_triangle.slope;
-                rises        <= in_triangle.rises;
-                falls        <= in_triangle.falls;
-                group_left   <= in_triangle.group_left;
-                group_right  <= in_triangle.group_right;
-                colour       <= in_triangle.colour;
-                line         <= in_triangle.line;
-                rows_below   <= in_triangle.rows - 1'b1;
-                last_row     <= !in_valid || in_triangle.rows == 6'd1;
-            end
-            // Without a next triangle the walker stays idle, ready to load one.
-            if (leave && !in_valid) begin
-                seek_left    <= 1'b0;
-                seek_right   <= 1'b0;
-                extend_left  <= 1'b0;
-                extend_right <= 1'b0;
+                active      <= in_valid;
+                slope       <= in_triangle.slope;
+                step_y      <= in_triangle.step_y;
+                rises       <= in_triangle.rises;
+                falls       <= in_triangle.falls;
+                group_left  <= in_triangle.group_left;
+                group_right <= in_triangle.group_right;
+                rows_below  <= in_triangle.rows - 1'b1;
+                last_row    <= !in_valid || in_triangle.rows == 6'd1;
             end
         end
 
@@ -233,20 +190,66 @@ module walker #(
         end
     end
 
-    assign out_valid              = active && !fails;
-    assign out_group.line         = line;
-    assign out_group.group        = group;
-    assign out_group.slope        = slope;
-    assign out_group.rises        = rises;
-    assign out_group.depth        = depth;
-    assign out_group.depth_step_x = depth_step_x;
-    assign out_group.colour       = colour;
+    assign out_valid       = active && !fails;
+    assign out_group.group = group;
+    assign out_group.slope = slope;
+    assign out_group.rises = rises;
 
-    for (genvar k = 0; k < 3; k++) begin : values
-        assign out_group.best[k] = best[k][32:0];
+    // The move of the clock before, which depth, line and colour make now.
+    raster_pkg::move_t late_move;
+    logic              late_keep, late_resume, late_advance;
+    logic [31:0]       depth_step_y;
+
+    always_ff @(posedge clk) begin
+        {late_keep, late_resume, late_advance} <= {keep, resume, out_ready};
+        late_move <= move;
     end
 
-    wire _unused = &{1'b0, next_depth};
+    always_ff @(posedge clk) begin
+        if (late_advance && late_move == raster_pkg::DOWN) out_late.line <= out_late.line + 1'b1;
+        if (late_advance && late_move == raster_pkg::LOAD) begin
+            out_late.line         <= in_late.line;
+            out_late.depth_step_x <= in_late.depth_step_x;
+            depth_step_y          <= in_late.depth_step_y;
+            out_late.colour       <= in_late.colour;
+        end
+    end
+
+    stepper depth_stepper (
+        .clk, .advance(late_advance), .keep(late_keep), .resume(late_resume), .move(late_move), .load_value(in_late.depth),
+        .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
+    );
+
+    // The move of the clock before that, for light.
+    if (SMOOTH) begin : light
+        raster_pkg::move_t      light_move;
+        logic                   light_keep, light_resume, light_advance;
+        logic [PLANES_BITS-1:0] planes;
+
+        always_ff @(posedge clk) begin
+            {light_keep, light_resume, light_advance} <= {late_keep, late_resume, late_advance};
+            light_move <= late_move;
+            if (late_advance && late_move == raster_pkg::LOAD) planes <= in_planes;
+            out_light[192] <= planes[288];
+        end
+
+        for (genvar k = 0; k < 3; k++) begin : channels
+            triangle_pkg::plane_t plane;
+
+            assign plane = planes[96 * k +: 96];
+
+            stepper light_stepper (
+                .clk, .advance(light_advance), .keep(light_keep), .resume(light_resume), .move(light_move),
+                .load_value(plane.start), .step_x(plane.step_x), .step_y(plane.step_y), .current(out_light[64 * k +: 32])
+            );
+
+            always_ff @(posedge clk) out_light[64 * k + 32 +: 32] <= plane.step_x;
+        end
+    end else begin : flat
+        assign out_light = '0;
+
+        wire _unused = &{1'b0, in_planes};
+    end
 endmodule
 
 `default_nettype wire

@@ -1,0 +1,60 @@
+// A FIFO at the end of a pipeline that cannot be stopped. The start of the pipeline sends items only in clocks with `room`, so
+// that all items inside the pipeline find a place. No signal stops the stages between: only valid bits travel with the items.
+//
+//            ┌───────────────────────┐    ┌────────────┐
+//   start ──▶│ at most FLIGHT clocks │───▶│ FIFO       │──▶ out
+//     ▲      └───────────────────────┘    └────────────┘
+//     └───────────────── room ──────────────────┘
+//
+// FLIGHT: the number of clocks from the clock in which an item is sent to the clock in which it arrives here, `in_valid`. An
+// item may also be dropped on the way. `room` comes from a register. Between the count of an item and its effect on `room` are
+// two clocks, so `room` falls while FLIGHT + 2 places are still free.
+//
+// Latency 2 clocks, throughput one item a clock. DEPTH is a power of two; more than 2 * (FLIGHT + 2) places keep the output
+// busy while `room` comes back. `idle` is high while the FIFO is empty; it knows nothing of items on the way.
+
+`default_nettype none
+
+module pipeline_fifo #(
+    parameter int unsigned WIDTH  = 8,
+    parameter int unsigned DEPTH  = 16,
+    parameter int unsigned FLIGHT = 4
+) (
+    input  wire              clk,
+    input  wire              rst,
+    output logic             idle,
+    output logic             room,
+    input  wire              in_valid,
+    input  wire  [WIDTH-1:0] in_data,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [WIDTH-1:0] out_data
+);
+    localparam int unsigned LEVEL_BITS = $clog2(DEPTH + 2);
+    localparam int unsigned MOST       = DEPTH - FLIGHT - 2;
+
+    // Number of items in the FIFO, with that in its output register.
+    logic [LEVEL_BITS-1:0] level;
+    logic                  gone, in_ready;
+
+    assign idle = level == '0;
+    assign gone = out_valid && out_ready;
+
+    always_ff @(posedge clk) begin
+        level <= level + LEVEL_BITS'(in_valid) - LEVEL_BITS'(gone);
+        room  <= level <= LEVEL_BITS'(MOST);
+
+        if (rst) begin
+            level <= '0;
+            room  <= 1'b0;
+        end
+    end
+
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) fifo (
+        .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
+    );
+
+    wire _unused = &{1'b0, in_ready};
+endmodule
+
+`default_nettype wire
