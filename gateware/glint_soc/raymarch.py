@@ -12,6 +12,7 @@ from migen import Case, Cat, Constant, If, Instance, Mux, ResetSignal, Signal
 from .counters import Counters
 from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
 from .packed import Package, Struct
+from .parameters import Parameter
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"MARC", "big")
@@ -88,7 +89,7 @@ class Raymarcher(LiteXModule):
         self.ev.field = EventSourcePulse(name="field", description="The field of a frame has been drawn.")
         self.ev.finalize()
 
-        self._solid = CSRStorage(name="solid", fields=[
+        self._solid = Parameter(name="solid", fields=[
             CSRField("levels", size=6, offset=1, description="Levels of the sponge in use, the first level in bit 0."),
             CSRField("has", size=3, offset=8, description="Axes along which the box is bounded, x in bit 0."),
             CSRField("room", offset=11, description="The solid is the space outside of the box."),
@@ -102,9 +103,9 @@ class Raymarcher(LiteXModule):
                      values=[(str(number), flat.name, flat.text) for number, flat in enumerate(FLAT_FIELDS)],
                      description="Kind of the flat field."),
         ], description="The solid.")
-        self._cube_half = CSRStorage(22, name="cube_half", description="Half the side of the sponge's smallest solid cubes, u10.12.")
+        self._cube_half = Parameter(22, name="cube_half", description="Half the side of the sponge's smallest solid cubes, u10.12.")
         box_half = [self._register(f"half_{axis}", 22, f"Half the side of the box along {axis}, u10.12.") for axis in "xyz"]
-        self._tuning = CSRStorage(name="tuning", fields=[
+        self._tuning = Parameter(name="tuning", fields=[
             CSRField("threshold", size=16, offset=0, description="Threshold, u4.12: a ray hits where the distance is below "
                      "threshold + t * 2^-footprint."),
             CSRField("footprint", size=4, offset=16, description="Footprint, 7 to 15: the exponent of the part of the threshold "
@@ -112,8 +113,8 @@ class Raymarcher(LiteXModule):
             CSRField("cap", size=8, offset=20, description="Step limit, at least 1: evaluations after which a ray is undecided. "
                      "Fields with spheres take four times this limit."),
         ], description="Threshold and step limit of the rays.")
-        self._far = CSRStorage(23, name="far", description="Far limit of t, u11.12.")
-        self._near = CSRStorage(23, name="near", description="Depth of the near plane, or of the nearest corner of the bounding box "
+        self._far = Parameter(23, name="far", description="Far limit of t, u11.12.")
+        self._near = Parameter(23, name="near", description="Depth of the near plane, or of the nearest corner of the bounding box "
                                 "if larger, times 2^e, u11.12.")
         origins, outside, first = [], [], []
         for eye in ("left", "right"):
@@ -128,25 +129,25 @@ class Raymarcher(LiteXModule):
         down = [self._register(f"down_{axis}", 32, f"Change of D per line, {axis}, s2.30.") for axis in "xyz"]
         offset = [self._register(f"cone_offset_{axis}", 32, f"Change of D from a block's first pixel to its middle, {axis}, s2.30.")
                   for axis in "xyz"]
-        self._cone_spread = CSRStorage(14, name="cone_spread", description="Largest difference of D between the middle and any "
+        self._cone_spread = Parameter(14, name="cone_spread", description="Largest difference of D between the middle and any "
                                        "pixel of a block, u0.18.")
-        self._depth_scale = CSRStorage(name="depth_scale", fields=[
+        self._depth_scale = Parameter(name="depth_scale", fields=[
             CSRField("mantissa", size=17, offset=0, description="Mantissa, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=6, offset=17, description="Exponent, two's complement."),
         ], description="Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent.")
         palette = [self._register(f"colour_{number}", 24, f"Colour of {what}: red in bits 0 to 7, green, blue.")
                    for number, what in enumerate([*(f"faces whose normal points {way} {axis}" for axis in "xyz"
                                                     for way in ("against", "along")), "undecided rays", "the zenith"])]
-        self._horizon = CSRStorage(24, name="horizon", description="Colour of the horizon, and of the fog.")
-        self._fog_shift = CSRStorage(3, name="fog_shift", description="Exponent of the depth step of the fog: an entry covers "
+        self._horizon = Parameter(24, name="horizon", description="Colour of the horizon, and of the fog.")
+        self._fog_shift = Parameter(3, name="fog_shift", description="Exponent of the depth step of the fog: an entry covers "
                                      "2^fog_shift field units times 2^e.")
-        self._table = CSRStorage(name="table", fields=[
+        self._table = Parameter(name="table", fields=[
             CSRField("part", size=8, offset=0, description="Share, of 255."),
             CSRField("entry", size=9, offset=8, description="0 to 255: share hidden by fog, by depth. 256 to 511: share of light "
                      "left, by evaluations."),
         ], description="Writing sets an entry of the tables of fog and light.")
 
-        self._sphere = CSRStorage(name="sphere", fields=[
+        self._sphere = Parameter(name="sphere", fields=[
             CSRField("value", size=24, offset=0, description="Value of the constant."),
             CSRField("entry", size=6, offset=24, description="0 to 2: centre of a sphere, x, y, z, s9.12. 3: radius of the sphere, "
                      "u9.12. 4: inverse of the radius in bits 0 to 16, and its shift. 5: colour of the ambient light. 6: width of "
@@ -291,6 +292,6 @@ class Raymarcher(LiteXModule):
 
     def _register(self, name, size, description):
         """Adds a register and returns its content."""
-        register = CSRStorage(size, name=name, description=description)
+        register = Parameter(size, name=name, description=description)
         setattr(self, f"_{name}", register)
         return register.storage

@@ -9,6 +9,7 @@ from . import constants
 from .constants import DESCRIPTOR_BYTES
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
+from .parameters import Parameter
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
@@ -81,7 +82,7 @@ class TriangleEngine(LiteXModule):
         self.ev.finalize()
 
         # Registers with the parameters of the geometry pass, constant while the pass runs.
-        self._geometry = CSRStorage(name="geometry", fields=[
+        self._geometry = Parameter(name="geometry", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
@@ -89,40 +90,40 @@ class TriangleEngine(LiteXModule):
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must "
             "hold while it runs.")
         address = "Byte address, a multiple of 16, of"
-        self._mesh = CSRStorage(32, name="mesh", description=f"{address} the mesh's first chunk.")
-        self._mesh_bytes = CSRStorage(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
-        self._geometry_descriptors = CSRStorage(32, name="geometry_descriptors", description=f"{address} the descriptors, "
+        self._mesh = Parameter(32, name="mesh", description=f"{address} the mesh's first chunk.")
+        self._mesh_bytes = Parameter(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
+        self._geometry_descriptors = Parameter(32, name="geometry_descriptors", description=f"{address} the descriptors, "
                                                 "written by the pass.")
-        self._descriptor_limit = CSRStorage(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
+        self._descriptor_limit = Parameter(_COUNT_BITS, name="descriptor_limit", description="Most descriptors, "
                                              f"{DESCRIPTOR_BYTES['flat']} or {DESCRIPTOR_BYTES['smooth']} bytes each, see `caps`.")
-        self._geometry_lists = CSRStorage(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
-        self._list_shift = CSRStorage(5, name="list_shift", description="Entries of a band list: at most 4 << list_shift, "
+        self._geometry_lists = Parameter(32, name="geometry_lists", description=f"{address} the band lists, written by the pass.")
+        self._list_shift = Parameter(5, name="list_shift", description="Entries of a band list: at most 4 << list_shift, "
             "in both passes.")
-        self._exceptions = CSRStorage(32, name="exceptions", description=f"{address} the list of exceptions, written by the pass.")
-        self._exception_limit = CSRStorage(_COUNT_BITS, name="exception_limit", description="Most exceptions, 4 bytes each.")
-        self._scale_shift = CSRStorage(5, name="scale_shift", description="Scale shift f of rows U and V.")
+        self._exceptions = Parameter(32, name="exceptions", description=f"{address} the list of exceptions, written by the pass.")
+        self._exception_limit = Parameter(_COUNT_BITS, name="exception_limit", description="Most exceptions, 4 bytes each.")
+        self._scale_shift = Parameter(5, name="scale_shift", description="Scale shift f of rows U and V.")
         rows = {}
         for row, meaning in [("u", "U"), ("v", "V"), ("n", "n")]:
             for i, axis in enumerate("xyz"):
-                register = CSRStorage(25, name=f"row_{row}{i}", description=f"Row {meaning}, {axis}, two's complement.")
+                register = Parameter(25, name=f"row_{row}{i}", description=f"Row {meaning}, {axis}, two's complement.")
                 setattr(self, f"_row_{row}{i}", register)
                 rows.setdefault(row, []).append(register.storage)
         translation = {}
         for axis, what in [("x", "14 + f"), ("y", "14 + f"), ("z", "37")]:
-            low = CSRStorage(32, name=f"t{axis}_low", description=f"Translation t{axis}, {what} fraction bits: bits 0 to 31.")
-            high = CSRStorage(12, name=f"t{axis}_high", description=f"Translation t{axis}: bits 32 to 43.")
+            low = Parameter(32, name=f"t{axis}_low", description=f"Translation t{axis}, {what} fraction bits: bits 0 to 31.")
+            high = Parameter(12, name=f"t{axis}_high", description=f"Translation t{axis}: bits 32 to 43.")
             setattr(self, f"_t{axis}_low", low)
             setattr(self, f"_t{axis}_high", high)
             translation[axis] = Cat(low.storage, high.storage)
-        self._near_low = CSRStorage(32, name="near_low", description="Near plane, 37 fraction bits: bits 0 to 31.")
-        self._near_high = CSRStorage(7, name="near_high", description="Near plane: bits 32 to 38.")
-        self._depth_scale = CSRStorage(name="depth_scale", fields=[
+        self._near_low = Parameter(32, name="near_low", description="Near plane, 37 fraction bits: bits 0 to 31.")
+        self._near_high = Parameter(7, name="near_high", description="Near plane: bits 32 to 38.")
+        self._depth_scale = Parameter(name="depth_scale", fields=[
             CSRField("mantissa", size=17, offset=0, description="km, 2^16 to 2^17 - 1."),
             CSRField("exponent", size=4, offset=17, description="ke, two's complement."),
         ], description="Depth scale K = km * 2^ke.")
 
         # Registers with the parameters of the raster pass, constant while the pass runs.
-        self._raster = CSRStorage(name="raster", fields=[
+        self._raster = Parameter(name="raster", fields=[
             CSRField("start", offset=0, pulse=True, description="Write 1 to start."),
             CSRField("size", size=SIZES.bits, offset=1, values=SIZES.values, description="Size of the picture."),
             CSRField("first", offset=3, description="Draw the first set of lists."),
@@ -134,14 +135,14 @@ class TriangleEngine(LiteXModule):
                      "after a cancelled frame, after a change of size or `clear`, and after writes by the CPU."),
         ], description="Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold "
             "while it runs.")
-        self._frame = CSRStorage(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
-        self._depth = CSRStorage(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
-        self._clear = CSRStorage(16, name="clear", description="Background colour, RGB565.")
+        self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
+        self._depth = Parameter(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
+        self._clear = Parameter(16, name="clear", description="Background colour, RGB565.")
         for k, which in enumerate(["first", "second"]):
             for name, register in [
-                (f"lists_{k}", CSRStorage(32, name=f"lists_{k}", description=f"{address} the {which} set's lists.")),
-                (f"descriptors_{k}", CSRStorage(32, name=f"descriptors_{k}", description=f"{address} the {which} set's descriptors.")),
-                (f"count_{k}", CSRStorage(_COUNT_BITS, name=f"count_{k}", description=f"Descriptors of the {which} set.")),
+                (f"lists_{k}", Parameter(32, name=f"lists_{k}", description=f"{address} the {which} set's lists.")),
+                (f"descriptors_{k}", Parameter(32, name=f"descriptors_{k}", description=f"{address} the {which} set's descriptors.")),
+                (f"count_{k}", Parameter(_COUNT_BITS, name=f"count_{k}", description=f"Descriptors of the {which} set.")),
             ]:
                 setattr(self, f"_{name}", register)
 

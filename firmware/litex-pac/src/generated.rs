@@ -2838,7 +2838,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs.
+        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -2846,7 +2846,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_501c) }
         }
 
-        /// `mesh`, 32 bits: Byte address, a multiple of 16, of the mesh's first chunk.
+        /// `mesh`, 32 bits: Byte address, a multiple of 16, of the mesh's first chunk. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn mesh(&self) -> Register<u32, ReadWrite> {
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5020) }
         }
 
-        /// `mesh_bytes`, 32 bits: Length of all chunks of the mesh in bytes, a multiple of 16.
+        /// `mesh_bytes`, 32 bits: Length of all chunks of the mesh in bytes, a multiple of 16. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn mesh_bytes(&self) -> Register<u32, ReadWrite> {
@@ -2862,7 +2862,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5024) }
         }
 
-        /// `geometry_descriptors`, 32 bits: Byte address, a multiple of 16, of the descriptors, written by the pass.
+        /// `geometry_descriptors`, 32 bits: Byte address, a multiple of 16, of the descriptors, written by the pass. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry_descriptors(&self) -> Register<u32, ReadWrite> {
@@ -2870,7 +2870,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5028) }
         }
 
-        /// `descriptor_limit`, 20 bits: Most descriptors, 48 or 96 bytes each, see `caps`.
+        /// `descriptor_limit`, 20 bits: Most descriptors, 48 or 96 bytes each, see `caps`. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn descriptor_limit(&self) -> Register<u32, ReadWrite> {
@@ -2878,7 +2878,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_502c) }
         }
 
-        /// `geometry_lists`, 32 bits: Byte address, a multiple of 16, of the band lists, written by the pass.
+        /// `geometry_lists`, 32 bits: Byte address, a multiple of 16, of the band lists, written by the pass. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry_lists(&self) -> Register<u32, ReadWrite> {
@@ -2886,7 +2886,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5030) }
         }
 
-        /// `list_shift`, 5 bits: Entries of a band list: at most 4 \<\< list_shift, in both passes.
+        /// `list_shift`, 5 bits: Entries of a band list: at most 4 \<\< list_shift, in both passes. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn list_shift(&self) -> Register<u8, ReadWrite> {
@@ -2894,7 +2894,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5034) }
         }
 
-        /// `exceptions`, 32 bits: Byte address, a multiple of 16, of the list of exceptions, written by the pass.
+        /// `exceptions`, 32 bits: Byte address, a multiple of 16, of the list of exceptions, written by the pass. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn exceptions(&self) -> Register<u32, ReadWrite> {
@@ -2902,7 +2902,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5038) }
         }
 
-        /// `exception_limit`, 20 bits: Most exceptions, 4 bytes each.
+        /// `exception_limit`, 20 bits: Most exceptions, 4 bytes each. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn exception_limit(&self) -> Register<u32, ReadWrite> {
@@ -2910,7 +2910,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_503c) }
         }
 
-        /// `scale_shift`, 5 bits: Scale shift f of rows U and V.
+        /// `scale_shift`, 5 bits: Scale shift f of rows U and V. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn scale_shift(&self) -> Register<u8, ReadWrite> {
@@ -2918,7 +2918,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5040) }
         }
 
-        /// `row_u0`, 25 bits: Row U, x, two's complement.
+        /// `row_u0`, 25 bits: Row U, x, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_u0(&self) -> Register<u32, ReadWrite> {
@@ -2926,7 +2926,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5044) }
         }
 
-        /// `row_u1`, 25 bits: Row U, y, two's complement.
+        /// `row_u1`, 25 bits: Row U, y, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_u1(&self) -> Register<u32, ReadWrite> {
@@ -2934,7 +2934,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5048) }
         }
 
-        /// `row_u2`, 25 bits: Row U, z, two's complement.
+        /// `row_u2`, 25 bits: Row U, z, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_u2(&self) -> Register<u32, ReadWrite> {
@@ -2942,7 +2942,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_504c) }
         }
 
-        /// `row_v0`, 25 bits: Row V, x, two's complement.
+        /// `row_v0`, 25 bits: Row V, x, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_v0(&self) -> Register<u32, ReadWrite> {
@@ -2950,7 +2950,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5050) }
         }
 
-        /// `row_v1`, 25 bits: Row V, y, two's complement.
+        /// `row_v1`, 25 bits: Row V, y, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_v1(&self) -> Register<u32, ReadWrite> {
@@ -2958,7 +2958,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5054) }
         }
 
-        /// `row_v2`, 25 bits: Row V, z, two's complement.
+        /// `row_v2`, 25 bits: Row V, z, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_v2(&self) -> Register<u32, ReadWrite> {
@@ -2966,7 +2966,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5058) }
         }
 
-        /// `row_n0`, 25 bits: Row n, x, two's complement.
+        /// `row_n0`, 25 bits: Row n, x, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_n0(&self) -> Register<u32, ReadWrite> {
@@ -2974,7 +2974,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_505c) }
         }
 
-        /// `row_n1`, 25 bits: Row n, y, two's complement.
+        /// `row_n1`, 25 bits: Row n, y, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_n1(&self) -> Register<u32, ReadWrite> {
@@ -2982,7 +2982,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5060) }
         }
 
-        /// `row_n2`, 25 bits: Row n, z, two's complement.
+        /// `row_n2`, 25 bits: Row n, z, two's complement. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn row_n2(&self) -> Register<u32, ReadWrite> {
@@ -2990,7 +2990,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5064) }
         }
 
-        /// `tx_low`, 32 bits: Translation tx, 14 + f fraction bits: bits 0 to 31.
+        /// `tx_low`, 32 bits: Translation tx, 14 + f fraction bits: bits 0 to 31. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tx_low(&self) -> Register<u32, ReadWrite> {
@@ -2998,7 +2998,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5068) }
         }
 
-        /// `tx_high`, 12 bits: Translation tx: bits 32 to 43.
+        /// `tx_high`, 12 bits: Translation tx: bits 32 to 43. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tx_high(&self) -> Register<u16, ReadWrite> {
@@ -3006,7 +3006,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_506c) }
         }
 
-        /// `ty_low`, 32 bits: Translation ty, 14 + f fraction bits: bits 0 to 31.
+        /// `ty_low`, 32 bits: Translation ty, 14 + f fraction bits: bits 0 to 31. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn ty_low(&self) -> Register<u32, ReadWrite> {
@@ -3014,7 +3014,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5070) }
         }
 
-        /// `ty_high`, 12 bits: Translation ty: bits 32 to 43.
+        /// `ty_high`, 12 bits: Translation ty: bits 32 to 43. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn ty_high(&self) -> Register<u16, ReadWrite> {
@@ -3022,7 +3022,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5074) }
         }
 
-        /// `tz_low`, 32 bits: Translation tz, 37 fraction bits: bits 0 to 31.
+        /// `tz_low`, 32 bits: Translation tz, 37 fraction bits: bits 0 to 31. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tz_low(&self) -> Register<u32, ReadWrite> {
@@ -3030,7 +3030,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5078) }
         }
 
-        /// `tz_high`, 12 bits: Translation tz: bits 32 to 43.
+        /// `tz_high`, 12 bits: Translation tz: bits 32 to 43. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tz_high(&self) -> Register<u16, ReadWrite> {
@@ -3038,7 +3038,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_507c) }
         }
 
-        /// `near_low`, 32 bits: Near plane, 37 fraction bits: bits 0 to 31.
+        /// `near_low`, 32 bits: Near plane, 37 fraction bits: bits 0 to 31. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn near_low(&self) -> Register<u32, ReadWrite> {
@@ -3046,7 +3046,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5080) }
         }
 
-        /// `near_high`, 7 bits: Near plane: bits 32 to 38.
+        /// `near_high`, 7 bits: Near plane: bits 32 to 38. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn near_high(&self) -> Register<u8, ReadWrite> {
@@ -3054,7 +3054,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5084) }
         }
 
-        /// `depth_scale`, 21 bits: Depth scale K = km * 2^ke.
+        /// `depth_scale`, 21 bits: Depth scale K = km * 2^ke. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
@@ -3062,7 +3062,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5088) }
         }
 
-        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs.
+        /// `raster`, 8 bits: Start of the raster pass: a frame from descriptors and band lists. The registers down to `count_1` must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn raster(&self) -> Register<Raster, ReadWrite> {
@@ -3070,7 +3070,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_508c) }
         }
 
-        /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame, RGB565, written by the pass.
+        /// `frame`, 32 bits: Byte address, a multiple of 16, of the frame, RGB565, written by the pass. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn frame(&self) -> Register<u32, ReadWrite> {
@@ -3078,7 +3078,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5090) }
         }
 
-        /// `depth`, 32 bits: Byte address, a multiple of 16, of the depth codes, 32 bits each, written by the pass.
+        /// `depth`, 32 bits: Byte address, a multiple of 16, of the depth codes, 32 bits each, written by the pass. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn depth(&self) -> Register<u32, ReadWrite> {
@@ -3086,7 +3086,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5094) }
         }
 
-        /// `clear`, 16 bits: Background colour, RGB565.
+        /// `clear`, 16 bits: Background colour, RGB565. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn clear(&self) -> Register<u16, ReadWrite> {
@@ -3094,7 +3094,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5098) }
         }
 
-        /// `lists_0`, 32 bits: Byte address, a multiple of 16, of the first set's lists.
+        /// `lists_0`, 32 bits: Byte address, a multiple of 16, of the first set's lists. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn lists_0(&self) -> Register<u32, ReadWrite> {
@@ -3102,7 +3102,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_509c) }
         }
 
-        /// `descriptors_0`, 32 bits: Byte address, a multiple of 16, of the first set's descriptors.
+        /// `descriptors_0`, 32 bits: Byte address, a multiple of 16, of the first set's descriptors. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn descriptors_0(&self) -> Register<u32, ReadWrite> {
@@ -3110,7 +3110,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50a0) }
         }
 
-        /// `count_0`, 20 bits: Descriptors of the first set.
+        /// `count_0`, 20 bits: Descriptors of the first set. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn count_0(&self) -> Register<u32, ReadWrite> {
@@ -3118,7 +3118,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50a4) }
         }
 
-        /// `lists_1`, 32 bits: Byte address, a multiple of 16, of the second set's lists.
+        /// `lists_1`, 32 bits: Byte address, a multiple of 16, of the second set's lists. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn lists_1(&self) -> Register<u32, ReadWrite> {
@@ -3126,7 +3126,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50a8) }
         }
 
-        /// `descriptors_1`, 32 bits: Byte address, a multiple of 16, of the second set's descriptors.
+        /// `descriptors_1`, 32 bits: Byte address, a multiple of 16, of the second set's descriptors. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn descriptors_1(&self) -> Register<u32, ReadWrite> {
@@ -3134,7 +3134,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50ac) }
         }
 
-        /// `count_1`, 20 bits: Descriptors of the second set.
+        /// `count_1`, 20 bits: Descriptors of the second set. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn count_1(&self) -> Register<u32, ReadWrite> {
@@ -4108,7 +4108,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5818) }
         }
 
-        /// `solid`, 24 bits: The solid.
+        /// `solid`, 24 bits: The solid. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn solid(&self) -> Register<Solid, ReadWrite> {
@@ -4116,7 +4116,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_581c) }
         }
 
-        /// `cube_half`, 22 bits: Half the side of the sponge's smallest solid cubes, u10.12.
+        /// `cube_half`, 22 bits: Half the side of the sponge's smallest solid cubes, u10.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cube_half(&self) -> Register<u32, ReadWrite> {
@@ -4124,7 +4124,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5820) }
         }
 
-        /// `half_x`, 22 bits: Half the side of the box along x, u10.12.
+        /// `half_x`, 22 bits: Half the side of the box along x, u10.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_x(&self) -> Register<u32, ReadWrite> {
@@ -4132,7 +4132,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5824) }
         }
 
-        /// `half_y`, 22 bits: Half the side of the box along y, u10.12.
+        /// `half_y`, 22 bits: Half the side of the box along y, u10.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_y(&self) -> Register<u32, ReadWrite> {
@@ -4140,7 +4140,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5828) }
         }
 
-        /// `half_z`, 22 bits: Half the side of the box along z, u10.12.
+        /// `half_z`, 22 bits: Half the side of the box along z, u10.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn half_z(&self) -> Register<u32, ReadWrite> {
@@ -4148,7 +4148,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_582c) }
         }
 
-        /// `tuning`, 28 bits: Threshold and step limit of the rays.
+        /// `tuning`, 28 bits: Threshold and step limit of the rays. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn tuning(&self) -> Register<Tuning, ReadWrite> {
@@ -4156,7 +4156,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5830) }
         }
 
-        /// `far`, 23 bits: Far limit of t, u11.12.
+        /// `far`, 23 bits: Far limit of t, u11.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn far(&self) -> Register<u32, ReadWrite> {
@@ -4164,7 +4164,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5834) }
         }
 
-        /// `near`, 23 bits: Depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12.
+        /// `near`, 23 bits: Depth of the near plane, or of the nearest corner of the bounding box if larger, times 2^e, u11.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn near(&self) -> Register<u32, ReadWrite> {
@@ -4172,7 +4172,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5838) }
         }
 
-        /// `origin_left_x`, 25 bits: Position of the left eye, x, s13.12.
+        /// `origin_left_x`, 25 bits: Position of the left eye, x, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_left_x(&self) -> Register<u32, ReadWrite> {
@@ -4180,7 +4180,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_583c) }
         }
 
-        /// `outside_left_x`, 24 bits: Distance of the left eye outside of the bounding box along x, u12.12.
+        /// `outside_left_x`, 24 bits: Distance of the left eye outside of the bounding box along x, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_left_x(&self) -> Register<u32, ReadWrite> {
@@ -4188,7 +4188,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5840) }
         }
 
-        /// `first_left_x`, 32 bits: D of the left eye's first ray, x, s2.30.
+        /// `first_left_x`, 32 bits: D of the left eye's first ray, x, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_left_x(&self) -> Register<u32, ReadWrite> {
@@ -4196,7 +4196,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5844) }
         }
 
-        /// `origin_left_y`, 25 bits: Position of the left eye, y, s13.12.
+        /// `origin_left_y`, 25 bits: Position of the left eye, y, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_left_y(&self) -> Register<u32, ReadWrite> {
@@ -4204,7 +4204,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5848) }
         }
 
-        /// `outside_left_y`, 24 bits: Distance of the left eye outside of the bounding box along y, u12.12.
+        /// `outside_left_y`, 24 bits: Distance of the left eye outside of the bounding box along y, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_left_y(&self) -> Register<u32, ReadWrite> {
@@ -4212,7 +4212,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_584c) }
         }
 
-        /// `first_left_y`, 32 bits: D of the left eye's first ray, y, s2.30.
+        /// `first_left_y`, 32 bits: D of the left eye's first ray, y, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_left_y(&self) -> Register<u32, ReadWrite> {
@@ -4220,7 +4220,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5850) }
         }
 
-        /// `origin_left_z`, 25 bits: Position of the left eye, z, s13.12.
+        /// `origin_left_z`, 25 bits: Position of the left eye, z, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_left_z(&self) -> Register<u32, ReadWrite> {
@@ -4228,7 +4228,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5854) }
         }
 
-        /// `outside_left_z`, 24 bits: Distance of the left eye outside of the bounding box along z, u12.12.
+        /// `outside_left_z`, 24 bits: Distance of the left eye outside of the bounding box along z, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_left_z(&self) -> Register<u32, ReadWrite> {
@@ -4236,7 +4236,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5858) }
         }
 
-        /// `first_left_z`, 32 bits: D of the left eye's first ray, z, s2.30.
+        /// `first_left_z`, 32 bits: D of the left eye's first ray, z, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_left_z(&self) -> Register<u32, ReadWrite> {
@@ -4244,7 +4244,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_585c) }
         }
 
-        /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12.
+        /// `origin_right_x`, 25 bits: Position of the right eye, x, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_right_x(&self) -> Register<u32, ReadWrite> {
@@ -4252,7 +4252,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5860) }
         }
 
-        /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12.
+        /// `outside_right_x`, 24 bits: Distance of the right eye outside of the bounding box along x, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_right_x(&self) -> Register<u32, ReadWrite> {
@@ -4260,7 +4260,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5864) }
         }
 
-        /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30.
+        /// `first_right_x`, 32 bits: D of the right eye's first ray, x, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_right_x(&self) -> Register<u32, ReadWrite> {
@@ -4268,7 +4268,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5868) }
         }
 
-        /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12.
+        /// `origin_right_y`, 25 bits: Position of the right eye, y, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_right_y(&self) -> Register<u32, ReadWrite> {
@@ -4276,7 +4276,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_586c) }
         }
 
-        /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12.
+        /// `outside_right_y`, 24 bits: Distance of the right eye outside of the bounding box along y, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_right_y(&self) -> Register<u32, ReadWrite> {
@@ -4284,7 +4284,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5870) }
         }
 
-        /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30.
+        /// `first_right_y`, 32 bits: D of the right eye's first ray, y, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_right_y(&self) -> Register<u32, ReadWrite> {
@@ -4292,7 +4292,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5874) }
         }
 
-        /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12.
+        /// `origin_right_z`, 25 bits: Position of the right eye, z, s13.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn origin_right_z(&self) -> Register<u32, ReadWrite> {
@@ -4300,7 +4300,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5878) }
         }
 
-        /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12.
+        /// `outside_right_z`, 24 bits: Distance of the right eye outside of the bounding box along z, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn outside_right_z(&self) -> Register<u32, ReadWrite> {
@@ -4308,7 +4308,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_587c) }
         }
 
-        /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30.
+        /// `first_right_z`, 32 bits: D of the right eye's first ray, z, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn first_right_z(&self) -> Register<u32, ReadWrite> {
@@ -4316,7 +4316,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5880) }
         }
 
-        /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12.
+        /// `bounds_x`, 24 bits: Half the side of the bounding box along x, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_x(&self) -> Register<u32, ReadWrite> {
@@ -4324,7 +4324,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5884) }
         }
 
-        /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12.
+        /// `bounds_y`, 24 bits: Half the side of the bounding box along y, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_y(&self) -> Register<u32, ReadWrite> {
@@ -4332,7 +4332,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5888) }
         }
 
-        /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12.
+        /// `bounds_z`, 24 bits: Half the side of the bounding box along z, u12.12. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn bounds_z(&self) -> Register<u32, ReadWrite> {
@@ -4340,7 +4340,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_588c) }
         }
 
-        /// `across_x`, 32 bits: Change of D per column, x, s2.30.
+        /// `across_x`, 32 bits: Change of D per column, x, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn across_x(&self) -> Register<u32, ReadWrite> {
@@ -4348,7 +4348,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5890) }
         }
 
-        /// `across_y`, 32 bits: Change of D per column, y, s2.30.
+        /// `across_y`, 32 bits: Change of D per column, y, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn across_y(&self) -> Register<u32, ReadWrite> {
@@ -4356,7 +4356,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5894) }
         }
 
-        /// `across_z`, 32 bits: Change of D per column, z, s2.30.
+        /// `across_z`, 32 bits: Change of D per column, z, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn across_z(&self) -> Register<u32, ReadWrite> {
@@ -4364,7 +4364,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_5898) }
         }
 
-        /// `down_x`, 32 bits: Change of D per line, x, s2.30.
+        /// `down_x`, 32 bits: Change of D per line, x, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn down_x(&self) -> Register<u32, ReadWrite> {
@@ -4372,7 +4372,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_589c) }
         }
 
-        /// `down_y`, 32 bits: Change of D per line, y, s2.30.
+        /// `down_y`, 32 bits: Change of D per line, y, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn down_y(&self) -> Register<u32, ReadWrite> {
@@ -4380,7 +4380,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a0) }
         }
 
-        /// `down_z`, 32 bits: Change of D per line, z, s2.30.
+        /// `down_z`, 32 bits: Change of D per line, z, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn down_z(&self) -> Register<u32, ReadWrite> {
@@ -4388,7 +4388,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a4) }
         }
 
-        /// `cone_offset_x`, 32 bits: Change of D from a block's first pixel to its middle, x, s2.30.
+        /// `cone_offset_x`, 32 bits: Change of D from a block's first pixel to its middle, x, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cone_offset_x(&self) -> Register<u32, ReadWrite> {
@@ -4396,7 +4396,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58a8) }
         }
 
-        /// `cone_offset_y`, 32 bits: Change of D from a block's first pixel to its middle, y, s2.30.
+        /// `cone_offset_y`, 32 bits: Change of D from a block's first pixel to its middle, y, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cone_offset_y(&self) -> Register<u32, ReadWrite> {
@@ -4404,7 +4404,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58ac) }
         }
 
-        /// `cone_offset_z`, 32 bits: Change of D from a block's first pixel to its middle, z, s2.30.
+        /// `cone_offset_z`, 32 bits: Change of D from a block's first pixel to its middle, z, s2.30. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cone_offset_z(&self) -> Register<u32, ReadWrite> {
@@ -4412,7 +4412,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58b0) }
         }
 
-        /// `cone_spread`, 14 bits: Largest difference of D between the middle and any pixel of a block, u0.18.
+        /// `cone_spread`, 14 bits: Largest difference of D between the middle and any pixel of a block, u0.18. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn cone_spread(&self) -> Register<u16, ReadWrite> {
@@ -4420,7 +4420,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58b4) }
         }
 
-        /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent.
+        /// `depth_scale`, 23 bits: Scale K of depth codes, for depths in field units times 2^e: mantissa * 2^exponent. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn depth_scale(&self) -> Register<DepthScale, ReadWrite> {
@@ -4428,7 +4428,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58b8) }
         }
 
-        /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue.
+        /// `colour_0`, 24 bits: Colour of faces whose normal points against x: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_0(&self) -> Register<u32, ReadWrite> {
@@ -4436,7 +4436,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58bc) }
         }
 
-        /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue.
+        /// `colour_1`, 24 bits: Colour of faces whose normal points along x: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_1(&self) -> Register<u32, ReadWrite> {
@@ -4444,7 +4444,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58c0) }
         }
 
-        /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue.
+        /// `colour_2`, 24 bits: Colour of faces whose normal points against y: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_2(&self) -> Register<u32, ReadWrite> {
@@ -4452,7 +4452,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58c4) }
         }
 
-        /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue.
+        /// `colour_3`, 24 bits: Colour of faces whose normal points along y: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_3(&self) -> Register<u32, ReadWrite> {
@@ -4460,7 +4460,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58c8) }
         }
 
-        /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue.
+        /// `colour_4`, 24 bits: Colour of faces whose normal points against z: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_4(&self) -> Register<u32, ReadWrite> {
@@ -4468,7 +4468,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58cc) }
         }
 
-        /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue.
+        /// `colour_5`, 24 bits: Colour of faces whose normal points along z: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_5(&self) -> Register<u32, ReadWrite> {
@@ -4476,7 +4476,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58d0) }
         }
 
-        /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue.
+        /// `colour_6`, 24 bits: Colour of undecided rays: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_6(&self) -> Register<u32, ReadWrite> {
@@ -4484,7 +4484,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58d4) }
         }
 
-        /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue.
+        /// `colour_7`, 24 bits: Colour of the zenith: red in bits 0 to 7, green, blue. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour_7(&self) -> Register<u32, ReadWrite> {
@@ -4492,7 +4492,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58d8) }
         }
 
-        /// `horizon`, 24 bits: Colour of the horizon, and of the fog.
+        /// `horizon`, 24 bits: Colour of the horizon, and of the fog. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn horizon(&self) -> Register<u32, ReadWrite> {
@@ -4500,7 +4500,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58dc) }
         }
 
-        /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e.
+        /// `fog_shift`, 3 bits: Exponent of the depth step of the fog: an entry covers 2^fog_shift field units times 2^e. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn fog_shift(&self) -> Register<u8, ReadWrite> {
@@ -4508,7 +4508,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58e0) }
         }
 
-        /// `table`, 17 bits: Writing sets an entry of the tables of fog and light.
+        /// `table`, 17 bits: Writing sets an entry of the tables of fog and light. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn table(&self) -> Register<Table, ReadWrite> {
@@ -4516,7 +4516,7 @@ pub mod raymarch {
             unsafe { Register::at(0xf000_58e4) }
         }
 
-        /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces.
+        /// `sphere`, 30 bits: Writing sets a constant of spheres, lights or faces. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn sphere(&self) -> Register<Sphere, ReadWrite> {
