@@ -5,18 +5,28 @@ the counter in this clock. A module sets the members that it counts and leaves a
 its parts.
 """
 
+from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStatus
-from migen import Signal
+from migen import Array, If, Memory, Mux, Signal
 
 from .packed import Struct
 
+_BITS = 32
 
-class Counters:
+
+class Counters(LiteXModule):
     """The counters of `block`: their registers, which follow the registers that the block has so far, and their accumulators.
 
     `counters` maps each name to its text, or to a tuple of the text and the number of bits of the largest growth in a clock, if
-    that is more than 1. The RTL must drive `events`. A counter follows its event by two clocks. Differences of two readings are
-    modulo 2^32.
+    that is more than 1. The RTL must drive `events`. Differences of two readings are modulo 2^32; a reset does not clear a
+    counter. A counter follows its event by at most three clocks more than there are counters.
+
+    The counters are words of one LUT memory. A small register for each counter adds up the growth between two turns of this
+    counter, and one adder for all counters adds it to the word whose turn it is:
+
+        events ─▶ steps ─▶ grown[turn] ─▶ + ─▶ words[turn]
+                                          ▲        │
+                                          └────────┴──▶ read
     """
 
     def __init__(self, block, counters):
@@ -24,12 +34,33 @@ class Counters:
         for name, counter in counters.items():
             text, bits = counter if isinstance(counter, tuple) else (counter, 1)
             self.texts[name] = text
-            self.registers[name] = CSRStatus(32, name=name, description=f"{text.removesuffix('.')}, modulo 2^32.")
+            self.registers[name] = CSRStatus(_BITS, name=name, description=f"{text.removesuffix('.')}, modulo 2^{_BITS}.")
             setattr(block, f"_{name}", self.registers[name])
             members[name] = Signal(bits, name=f"event_{name}")
         self.events = Struct("events_t", "Growth of each counter in this clock.", members)
-        # `step` registers each event before its counter, because the 32-bit carry chain is a long path by itself, and events come
-        # from all parts of the block.
-        for name, event in members.items():
-            step, count = Signal(len(event), name=f"step_{name}"), self.registers[name].status
-            block.sync += [step.eq(event), count.eq(count + step)]
+
+        # # #
+
+        count = len(members)
+        words = Memory(_BITS, count)
+        total, read = words.get_port(write_capable=True, async_read=True), words.get_port(async_read=True)
+        self.specials += words, total, read
+        turn = Signal(max=count)
+        grown = []
+        self.sync += turn.eq(Mux(turn == count - 1, 0, turn + 1))
+        for place, (name, event) in enumerate(members.items()):
+            # `step` registers each event before its sum, because events come from all parts of the block.
+            step = Signal(len(event), name=f"step_{name}")
+            # A turn comes after `count` clocks.
+            growth = Signal(max=count * (2**len(event) - 1) + 1, name=f"grown_{name}")
+            grown.append(growth)
+            self.sync += [step.eq(event), growth.eq(Mux(turn == place, 0, growth) + step)]
+            self.comb += [
+                self.registers[name].status.eq(read.dat_r),
+                If(self.registers[name].we, read.adr.eq(place)),
+            ]
+        self.comb += [
+            total.adr.eq(turn),
+            total.we.eq(1),
+            total.dat_w.eq(total.dat_r + Array(grown)[turn]),
+        ]

@@ -24,6 +24,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
+import counters  # noqa: E402
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
 import netlist  # noqa: E402
@@ -83,6 +84,7 @@ def test():
     files = urbana.generate()
     others = {
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
+        **{f"counters: {name}": action for name, action in counters.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},

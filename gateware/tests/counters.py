@@ -1,0 +1,54 @@
+"""Test of the counters of a block: random events, and readings at random times."""
+
+import random
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect.csr_bus import CSRBank, Interface
+from migen import run_simulation
+
+from glint_soc.counters import Counters
+
+
+class _Block(LiteXModule):
+    """A block with counters and no other registers."""
+
+    def __init__(self):
+        self.counters = Counters(self, {"first": "Events.", "second": ("Items.", 3), "third": "Events."})
+        self.bank = CSRBank([csr for csr in self.get_csrs() if csr.name in self.counters.registers],
+                            bus=Interface(data_width=32))
+
+
+def readings():
+    """Checks that each reading is the sum of all events up to a time shortly before it, and that events of all sizes count."""
+    rng = random.Random(1)
+    block = _Block()
+    names = list(block.counters.registers)
+    sums, problems = {name: [0] for name in names}, []
+    bus = block.bank.bus
+
+    # A sum follows its event by as many clocks as there are counters, and three more.
+    late = len(names) + 3
+
+    def run():
+        for _ in range(500):
+            asked = rng.choice(names)
+            yield bus.adr.eq(names.index(asked))
+            yield bus.re.eq(1)
+            # The bus has the address in the next clock, and the value in the one after that.
+            for _ in range(2):
+                for name in names:
+                    event = block.counters.events[name]
+                    grown = rng.getrandbits(len(event)) if rng.random() < 0.7 else 0
+                    yield event.eq(grown)
+                    sums[name].append(sums[name][-1] + grown)
+                yield
+            value = (yield bus.dat_r)
+            earliest = sums[asked][max(len(sums[asked]) - 1 - late - 2, 0)]
+            if not earliest <= value <= sums[asked][-1]:
+                problems.append(f"{asked}: {value}, expected {earliest} to {sums[asked][-1]}")
+
+    run_simulation(block, run())
+    return problems[:5]
+
+
+CHECKS = {"random events": readings}
