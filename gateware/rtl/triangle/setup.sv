@@ -51,11 +51,11 @@ module setup #(
     output triangle_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
-    // Values that pass through all stages unchanged.
+    // Values that pass through all stages unchanged; x21 and y12 are the steps of edge 1.
     typedef struct packed {
         logic [7:0]  group_start, group_right, group_left;
         logic [9:0]  bottom, top;
-        logic [20:0] y20, x02, y01, x10;
+        logic [20:0] x21, y12, y20, x02, y01, x10;
     } passed_t;
 
     // Depth of vertex 0, and the centre of the start pixel relative to vertex 0, for the depth plane.
@@ -135,7 +135,7 @@ module setup #(
     end
 
     assign bias_1   = sum_x == '0 ? !sum_y[20] : !sum_x[20];
-    assign passed_1 = {t.group_start, t.group_right, t.group_left, t.bottom, t.top, t.y20, t.x02, t.y01, t.x10};
+    assign passed_1 = {t.group_start, t.group_right, t.group_left, t.bottom, t.top, -sum_y, -sum_x, t.y20, t.x02, t.y01, t.x10};
 
     setup_edges edges (
         .clk, .enable, .count, .px(origin_1.px), .py(origin_1.py), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20),
@@ -225,7 +225,6 @@ module setup #(
     logic        [15:0] lit_4;
     logic [2:0][33:0]   start_4;
     logic        [31:0] depth_start;
-    logic        [20:0] sum_x_4, sum_y_4, step_1_x_4, step_1_y_4;
 
     always_ff @(posedge clk) begin
         if (beat) begin
@@ -234,10 +233,6 @@ module setup #(
             lit_4      <= lit_3;
             start_4    <= start_3;
         end
-        sum_x_4    <= passed_4.y01 + passed_4.y20;
-        sum_y_4    <= passed_4.x10 + passed_4.x02;
-        step_1_x_4 <= -sum_x_4;
-        step_1_y_4 <= -sum_y_4;
     end
 
     setup_plane depth (
@@ -299,7 +294,7 @@ module setup #(
             out_descriptor.group_left   <= passed_4.group_left;
             out_descriptor.bottom       <= passed_4.bottom;
             out_descriptor.top          <= passed_4.top;
-            out_descriptor.steps        <= {passed_4.x02, passed_4.y20, step_1_y_4, step_1_x_4, passed_4.x10, passed_4.y01};
+            out_descriptor.steps        <= {passed_4.x02, passed_4.y20, passed_4.x21, passed_4.y12, passed_4.x10, passed_4.y01};
             out_descriptor.depth_step_y <= step_y;
             out_descriptor.depth_step_x <= step_x;
             out_descriptor.depth_start  <= depth_start;
