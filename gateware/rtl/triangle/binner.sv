@@ -14,9 +14,9 @@
 // Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the
 // input, so it moves a clock after its last word. `in_ready` is a register.
 //
-//   clock  1      2        3, 4, 5          6                           7, 8 …
-//          IDLE   LOCATE   WORD             ENTRY                       LOOK, ENTRY
-//                 band     3 words out      in_ready; the first band    each further band
+//   clock  1      2, 3, 4       5          6                 7, 8 …
+//          IDLE   WORD          LOOK       ENTRY             LOOK, ENTRY
+//                 3 words out   in_ready   the first band    each further band
 //
 // `restart` (while idle) empties all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths
 // and ends with `done`. Items for which there is no room are dropped, and `full` is set: the frame is then incomplete.
@@ -72,7 +72,7 @@ module binner #(
         entry_strobe = 16'hf << {lane, 2'b00};
     endfunction
 
-    typedef enum logic [3:0] {CLEAR, IDLE, LOCATE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
+    typedef enum logic [2:0] {CLEAR, IDLE, WORD, LOOK, ENTRY, LENGTHS, LENGTHS_WORD, DONE} state_t;
     state_t state;
 
     // For each list: its length, the first three entries of its incomplete last word, and its address. The addresses follow from
@@ -118,15 +118,16 @@ module binner #(
         endcase
     end
 
-    // The band of a row, two clocks later: first that of the first row of the descriptor at the input, when `top_comes[1]` is high,
-    // and from the first ENTRY clock on that of its last row. Bands of 24 and 12 rows have 3 times 8 and 4 rows; v/3 is
+    // The band of a row, two clocks later: first that of the first row of the descriptor at the input, when `top_comes[2]` is high,
+    // and from the first LOOK clock on that of its last row. Bands of 24 and 12 rows have 3 times 8 and 4 rows; v/3 is
     // v·171/512, which is exact for 8 bits, and 171 is 2·5·17 + 1.
     logic [9:0]           row;
     logic [7:0]           parts, parts_1;
     logic [10:0]          by_5;
     logic [14:0]          by_85;
     logic [15:0]          by_171;
-    logic [1:0]           top_comes, band_of_45;
+    logic [2:0]           top_comes;
+    logic [1:0]           band_of_45;
     logic [BAND_BITS-1:0] row_band;
 
     assign parts  = size == 2'd1 ? 8'(row[9:3]) : row[9:2];
@@ -136,7 +137,7 @@ module binner #(
     always_ff @(posedge clk) begin
         if (state == IDLE) row <= in_descriptor.top;
         if (state == WORD) row <= in_descriptor.bottom - 1'b1;
-        top_comes  <= {top_comes[0], state == LOCATE && !descriptors_full};
+        top_comes  <= {top_comes[1], top_comes[0] && !descriptors_full, state == IDLE && in_valid && !in_ready};
         parts_1    <= parts;
         by_85      <= 15'(by_5) + {by_5, 4'b0};
         band_of_45 <= 2'(row >= 10'd45) + 2'(row >= 10'd90) + 2'(row >= 10'd135);
@@ -181,7 +182,7 @@ module binner #(
             IDLE: begin
                 word <= '0;
                 if (in_valid) begin
-                    if (!in_ready) state <= LOCATE;
+                    if (!in_ready) state <= WORD;
                 end else if (exception_valid) begin
                     if (!write_valid) begin
                         exceptions   <= exceptions + COUNT_BITS'(!exceptions_full);
@@ -197,12 +198,11 @@ module binner #(
                     state <= LENGTHS;
                 end
             end
-            LOCATE: begin
-                full     <= full || descriptors_full;
-                in_ready <= descriptors_full;
-                state    <= descriptors_full ? IDLE : WORD;
-            end
-            WORD: if (free) begin
+            WORD: if (descriptors_full) begin
+                full     <= 1'b1;
+                in_ready <= 1'b1;
+                state    <= IDLE;
+            end else if (free) begin
                 write_valid     <= 1'b1;
                 write_addr      <= descriptor_word;
                 write_data      <= words[128 * word +: 128];
@@ -212,10 +212,10 @@ module binner #(
                 word            <= word + 1'b1;
                 if (word == WORD_BITS'(DESCRIPTOR_WORDS - 1)) begin
                     in_ready <= 1'b1;
-                    state    <= ENTRY;
+                    state    <= LOOK;
                 end
             end
-            // Waits one clock to read the next list's length and entries.
+            // Waits a clock to read the length and the last entries of the next list.
             LOOK: state <= ENTRY;
             ENTRY: if (free || !word_ends) begin
                 if (word_ends) begin
@@ -258,7 +258,7 @@ module binner #(
             end
             default: if (!finish) state <= IDLE;
         endcase
-        if (top_comes[1]) band <= row_band;
+        if (top_comes[2]) band <= row_band;
 
         if (rst || restart) begin
             state           <= CLEAR;
