@@ -5,7 +5,7 @@ from litedram.phy.s7ddrphy import A7DDRPHY
 from litex.gen import LiteXModule
 from litex.soc.cores.clock import S7IDELAYCTRL, S7MMCM, S7PLL
 from litex.soc.cores.video import VideoS7HDMIPHY
-from migen import ClockDomain, Signal
+from migen import ClockDomain, Constant, Signal
 
 from .scanout import VIDEO_LAYOUT
 from .soc import SYS_CLK_FREQ, GlintSoC
@@ -78,6 +78,16 @@ class CRG(LiteXModule):
         platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
 
 
+def _without_write_bitslip(strobe):
+    """Returns the strobe of a register of the PHY, but 0 for the one that shifts write data by a bit.
+
+    The BIOS never writes it, because this PHY has no calibration of the write latency. Without the strobe, synthesis removes a
+    multiplexer of eight inputs for each bit of the write data.
+    """
+    name, _ = strobe.backtrace[-1]
+    return Constant(0) if name == "wdly_dq_bitslip_re" else strobe
+
+
 class UrbanaSoC(GlintSoC):
     """The SoC of the Urbana board."""
 
@@ -87,7 +97,10 @@ class UrbanaSoC(GlintSoC):
                           fields=fields)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
-            sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ)
+            sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)
+        # The BIOS leaves the phases of commands as they are, so the controller needs no multiplexer for them.
+        self.ddrphy.settings.rdphase = self.ddrphy.settings.rdphase.reset.value
+        self.ddrphy.settings.wrphase = self.ddrphy.settings.wrphase.reset.value
         # The termination is set directly, because `add_electrical_settings` stores the value under a name that the initialisation
         # of the memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
