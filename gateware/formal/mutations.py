@@ -76,8 +76,8 @@ _FIFO = [
     _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
     _fifo("out_valid <= stored ||", "out_valid <= stored || in_valid ||", "order.nothing_made_up"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "1'b1", "order.nothing_too_many"),
-    _fifo("if (load && stored) ", "if (load && stored && !in_valid) ", "order.in_order"),
-    _fifo("if (in_valid && in_ready) head", "if (in_valid) head", "order.in_order"),
+    _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
+    _fifo("'(in_valid && in_ready)", "'(in_valid)", "order.in_order"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "head == '0", "order.taken_in_time"),
 ]
 
@@ -142,7 +142,7 @@ MUTATIONS = {
     "write_port": [
         _write("(cmd_ready && bursting)", "(cmd_ready)", "commands_in_order"),
         # Fault: a burst ends while a command waits.
-        _write("gathered == '0) ", "1'b1) ", "commands.valid_stays"),
+        _write("|| bursting && gathered != '0;", ";", "commands.valid_stays"),
         _write("(cmd_ready && bursting)", "(bursting)", "commands.payload_stable"),
         _write("(cmd_ready && bursting)", "(bursting)", "commands_in_order"),
         _write(".in_data   ({in_strobe, in_data})", ".in_data   ({in_strobe, in_data << 1})", "data_in_order"),
@@ -151,9 +151,9 @@ MUTATIONS = {
         _write(".out_ready (wdata_ready)", ".out_ready (1'b1)", "data_at_command"),
         _write(".in_valid  (in_valid),\n        .in_ready  (room)", ".in_valid  (1'b1),\n        .in_ready  (room)",
                "none_made_up"),
-        _write("waiting  <= move ? waiting + 1'b1", "waiting  <= move && !hurry ? waiting + 1'b1", "idle_is_empty"),
-        _write("|| hurry) bursting", ") bursting", "goes_in_a_hurry"),
-        _write("if (gathered >= COUNT_BITS'(BURST) || hurry)", "if (hurry)", "full_goes"),
+        _write("(move == gone ? '0 : move ?", "(move == gone ? '0 : move && !hurry ?", "idle_is_empty"),
+        _write("|| hurry ||", "||", "goes_in_a_hurry"),
+        _write("gathered >= COUNT_BITS'(BURST) || hurry", "hurry", "full_goes"),
     ],
     "band_extents": [
         Mutation("skid_buffer.sv", "!in_ready || !out_ready && out_valid;", "!in_ready;", "spans.valid_stays"),

@@ -35,9 +35,9 @@ module fifo #(
     assign load     = !out_valid || out_ready;
 
     always_ff @(posedge clk) begin
-        if (in_valid && in_ready) head <= head + 1'b1;
-        if (load && stored) tail <= tail + 1'b1;
-        // Written without a clock enable, since a flip-flop with an enable of its own takes a slice of the FPGA.
+        // Written without clock enables: flip-flops with an enable of their own take a slice of the FPGA.
+        head      <= head + (PLACE_BITS + 1)'(in_valid && in_ready);
+        tail      <= tail + (PLACE_BITS + 1)'(load && stored);
         out_valid <= stored || out_valid && !out_ready;
 
         if (rst) begin

@@ -99,11 +99,9 @@ module read_port #(
     assign idle  = asked == answered;
 
     always_ff @(posedge clk) begin
-        if (commands && moves) begin
-            owners[asked[OWNER_BITS-1:0]] <= turn;
-            asked <= asked + 1'b1;
-        end
-        if (rdata_valid) answered <= answered + 1'b1;
+        if (commands && moves) owners[asked[OWNER_BITS-1:0]] <= turn;
+        asked    <= asked + (OWNER_BITS + 1)'(commands && moves);
+        answered <= answered + (OWNER_BITS + 1)'(rdata_valid);
 
         if (rst) begin
             asked    <= '0;
@@ -133,9 +131,8 @@ module read_port #(
         // A place counts as free a clock after its word has left, so that `data_ready` ends at the FIFO.
         always_ff @(posedge clk) begin
             taken <= data_valid[i] && data_ready[i];
-            if (asks != taken) room <= asks ? room - 1'b1 : room + 1'b1;
-            if (room == '0)                       bursting <= 1'b0;
-            else if (room >= ROOM_BITS'(DEPTH/2)) bursting <= 1'b1;
+            room     <= room + (asks == taken ? '0 : asks ? '1 : ROOM_BITS'(1));
+            bursting <= room != '0 && (bursting || room >= ROOM_BITS'(DEPTH/2));
 
             if (rst || drop) begin
                 room     <= ROOM_BITS'(DEPTH);

@@ -79,13 +79,12 @@ module write_port #(
     assign idle      = waiting == '0;
 
     always_ff @(posedge clk) begin
-        if (gathered >= COUNT_BITS'(BURST) || hurry) bursting <= 1'b1;
-        else if (gathered == '0)                     bursting <= 1'b0;
+        bursting <= gathered >= COUNT_BITS'(BURST) || hurry || bursting && gathered != '0;
 
-        sent <= cmd_valid && cmd_ready;
-        gone <= wdata_valid && wdata_ready;
-        if (move != sent) gathered <= move ? gathered + 1'b1 : gathered - 1'b1;
-        if (move != gone) waiting  <= move ? waiting + 1'b1 : waiting - 1'b1;
+        sent     <= cmd_valid && cmd_ready;
+        gone     <= wdata_valid && wdata_ready;
+        gathered <= gathered + (move == sent ? '0 : move ? COUNT_BITS'(1) : '1);
+        waiting  <= waiting  + (move == gone ? '0 : move ? COUNT_BITS'(1) : '1);
 
         if (rst) begin
             bursting <= 1'b0;
