@@ -3,17 +3,18 @@
 //
 //                 ┌──────┐ miss                              ┌───────┐
 //   numbers ─────▶│ tags ├──────▶ addresses ─▶ memory ─words▶│       │
-//                 └──┬───┘                                   │ lines ├──▶ out
-//                    └─────────────▶ marks ─────────────────▶│       │
+//                 └──┬───┘                                   │ lines ├──▶ read ──▶ out
+//                    └─────────────▶ marks ──────── fill ───▶│       │
 //                                                            └───────┘
 //
 // The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order
-// of the numbers, and the last stage fills and reads lines in the same order. So a number that hits finds the descriptor of its
-// tag. The FIFO `marks` tells the last stage what to do for each item: pass the end of a band, read a line, or fill it. An item
-// without a descriptor (`in_end`) passes in order.
+// of the numbers, the second stage fills lines and the third reads them in the same order. So a number that hits finds the
+// descriptor of its tag. The FIFO `marks` tells the second stage what to do for each item: fill a line, or pass it on. Every
+// descriptor comes from its line, also one that missed, so no selection follows the block RAM. An item without a descriptor
+// (`in_end`) passes in order.
 //
-// Latency 7 clocks for a hit, and the latency of memory plus 8 clocks for a miss. Throughput a hit in 4 clocks, a miss in 5, or
-// in 8 with SMOOTH. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
+// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput an item in 4 clocks, with SMOOTH a
+// miss in 7. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
 // is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
@@ -131,25 +132,65 @@ module descriptor_cache #(
         if (rst) ask_valid <= 1'b0;
     end
 
-    logic                 marked, mark_hit;
+    logic                 marked, mark_end, mark_hit, mark_done, read_free;
     logic [LINE_BITS-1:0] mark_line;
 
     fifo #(.WIDTH(2 + LINE_BITS), .DEPTH(MARKS)) marks (
         .clk, .rst, .in_valid(passes), .in_ready(mark_ready), .in_data({is_end, hit, line}),
-        .out_valid(marked), .out_ready(out_valid && out_ready), .out_data({out_end, mark_hit, mark_line})
+        .out_valid(marked), .out_ready(mark_done && read_free), .out_data({mark_end, mark_hit, mark_line})
     );
 
-    // Last stage: the words of a descriptor that missed are collected from memory, and written to the cache line until the
-    // descriptor leaves; a descriptor that hit is read from its line.
-    (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
-    logic [128*WORDS-1:0]    lines [0:2**LINE_BITS-1];
-    logic [128*WORDS-1:0]    cached, descriptor;
-    logic                    fills, read;
-    logic [WORD_BITS-1:0]    words;
+    // Second stage: the words of a descriptor that missed go to its cache line, one a clock.
+    logic [WORD_BITS-1:0] words;
 
-    assign data_ready = marked && !out_end && !mark_hit && words != WORD_BITS'(WORDS);
-    assign out_valid  = marked && (out_end || words == WORD_BITS'(WORDS));
-    assign fills      = marked && !out_end && !mark_hit && words == WORD_BITS'(WORDS);
+    assign mark_done = mark_end || mark_hit || words == WORD_BITS'(WORDS);
+
+    always_ff @(posedge clk) begin
+        if (data_ready && data_valid) words <= words + 1'b1;
+        if (marked && mark_done && read_free) words <= '0;
+        if (rst) words <= '0;
+    end
+
+    // Third stage: each descriptor is read from its cache line, in the first clock (`reads`) of its item here. No line is written
+    // in that clock, and no later item's line before it.
+    logic                 read_valid, reads, read_end, moves;
+    logic [LINE_BITS-1:0] read_line;
+    logic [128*WORDS-1:0] cached, descriptor;
+
+    assign read_free  = !read_valid;
+    assign moves      = read_valid && !reads && !out_valid;
+    assign data_ready = marked && !mark_done && !reads;
+
+    for (genvar i = 0; i < WORDS; i++) begin : columns
+        (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
+        logic [127:0] lines [0:2**LINE_BITS-1];
+
+        always_ff @(posedge clk) begin
+            if (data_ready && data_valid && words == WORD_BITS'(i)) lines[mark_line] <= data;
+            if (reads) cached[128*i +: 128] <= lines[read_line];
+        end
+    end
+
+    always_ff @(posedge clk) begin
+        reads      <= marked && mark_done && read_free;
+        read_valid <= read_free ? marked && mark_done : !moves;
+        if (read_free) begin
+            read_end  <= mark_end;
+            read_line <= mark_line;
+        end
+
+        out_valid <= moves || out_valid && !out_ready;
+        if (!out_valid) begin
+            out_end    <= read_end;
+            descriptor <= cached;
+        end
+
+        if (rst) begin
+            reads      <= 1'b0;
+            read_valid <= 1'b0;
+            out_valid  <= 1'b0;
+        end
+    end
 
     assign out_descriptor = descriptor[383:0];
 
@@ -159,28 +200,6 @@ module descriptor_cache #(
         wire _unused = &{1'b0, descriptor[767:673]};
     end else begin : flat
         assign out_planes = '0;
-    end
-
-    always_ff @(posedge clk) begin
-        cached <= lines[mark_line];
-        if (fills) lines[mark_line] <= descriptor;
-    end
-
-    always_ff @(posedge clk) begin
-        read <= marked && mark_hit && !out_valid;
-        if (read) begin
-            words <= WORD_BITS'(WORDS);
-            read  <= 1'b0;
-        end
-        if (data_ready && data_valid) words <= words + 1'b1;
-        if (out_valid && out_ready) words <= '0;
-        for (int i = 0; i < WORDS; i++)
-            if (read || data_ready && data_valid && words == WORD_BITS'(i))
-                descriptor[128*i +: 128] <= read ? cached[128*i +: 128] : data;
-        if (rst) begin
-            words <= '0;
-            read  <= 1'b0;
-        end
     end
 endmodule
 

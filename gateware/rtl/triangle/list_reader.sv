@@ -9,7 +9,7 @@
 // Each part reads ahead of the next part as far as its FIFO has room, even past the ends of lists and bands: the lengths of up
 // to 16 bands, up to 8 jobs (a job is the list of one band) or 128 entries, and up to 10 descriptors (5 with SMOOTH). This
 // hides the latency of memory. Three clients of a read_port read the lengths of the lists, the lists, and the descriptors.
-// Throughput a descriptor in 5 clocks, or in 8 with SMOOTH; a list takes at least 4 clocks.
+// Throughput a descriptor in 4 clocks, or in 7 with SMOOTH; a list takes at least 4 clocks.
 //
 // `list_error` is high if since `start` a list was longer than the largest length and was read as empty, or an entry was not
 // below the number of descriptors in its set (`counts`). Only the low COUNT_BITS bits of an entry are used.
