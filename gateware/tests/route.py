@@ -77,11 +77,12 @@ def measure(name, seeds=SEEDS):
 
 
 def _measure(top, sources, parameters, seeds, folder):
-    set_parameters = size.set_parameters(top, parameters)
-    run_yosys(f"{set_parameters}hierarchy -check -top {top}; proc; select {top}; write_json -selected ports.json", sources, folder)
+    # A module with other parameters has another name at first.
+    choose = f"{size.set_parameters(top, parameters)}hierarchy -check -top {top}; rename -top {top};"
+    run_yosys(f"{choose} proc; select {top}; write_json -selected ports.json", sources, folder)
     ports = _ports(json.loads((folder / "ports.json").read_text()), top)
     (folder / "wrapper.v").write_text(wrapper(top, ports))
-    run_yosys(f"{set_parameters}read_verilog wrapper.v; hierarchy -check -top route_wrapper; proc; flatten; opt; wreduce; "
+    run_yosys(f"{choose} read_verilog wrapper.v; hierarchy -check -top route_wrapper; proc; flatten; opt; wreduce; "
               "opt_clean; write_json flat.json", sources, folder)
     flat = json.loads((folder / "flat.json").read_text())
     split_products(flat["modules"]["route_wrapper"])
