@@ -12,11 +12,16 @@
 // An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` carries for each coordinate the direction in which it
 // grows in the world, {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low,
 // points pass unchanged; `enable` must hold.
+//
+// The bits of a coordinate that are 0 in S/2 are only ever mirrored and exchanged. The LOW lowest ones do not pass this module:
+// they are ignored in `in` and 0 in `out`. `in_order` compares them for each pair of coordinates, without the mirrors: a
+// coordinate that is not positive in `in_grows` has been mirrored. With LOW = 0 `in_order` has every pair equal.
 
 `default_nettype none
 
 module menger_level #(
     parameter int unsigned BITS = 22,
+    parameter int unsigned LOW  = 11,
     // Side S of the cube that remains after the folds, an even number.
     parameter int          S    = 27 << 12
 ) (
@@ -24,34 +29,47 @@ module menger_level #(
     input  wire                         enable,
     input  wire  signed [2:0][BITS-1:0] in,
     input  wire         [2:0][2:0]      in_grows,
+    input  wire raymarch_pkg::order_t   in_order,
     output logic signed [2:0][BITS-1:0] out,
-    output logic        [2:0][2:0]      out_grows
+    output logic        [2:0][2:0]      out_grows,
+    output raymarch_pkg::order_t        out_order
 );
-    logic signed [BITS-1:0] x_1, y_1, z_1, x_2, y_2, z_2, big;
+    localparam int unsigned HIGH = BITS - LOW;
+    localparam int          SIDE = S >> LOW;
+
+    logic signed [HIGH-1:0] x_1, y_1, z_1, x_2, y_2, z_2, big, mirrored;
     logic [2:0][2:0]        grows_1, grows_2;
+    raymarch_pkg::order_t   order_1, order_2;
     logic                   z_over_x, z_over_y, x_over_y;
     logic [2:0]             low_2;
     logic                   big_is_x, big_is_z, mirror;
     logic [2:0]             big_grows;
 
-    function automatic logic signed [BITS-1:0] folded(input logic [BITS-1:0] k, input logic on);
-        folded = (k ^ {BITS{on && !k[BITS-1]}}) + (on ? BITS'(S) : '0);
+    function automatic logic signed [HIGH-1:0] folded(input logic [HIGH-1:0] k, input logic on);
+        folded = (k ^ {HIGH{on && !k[HIGH-1]}}) + (on ? HIGH'(SIDE) : '0);
+    endfunction
+
+    // Whether the coordinate {a, low bits} is above {b, low bits}.
+    function automatic logic above(input logic signed [HIGH-1:0] a, input logic signed [HIGH-1:0] b, input logic low_above);
+        above = $signed({a, low_above}) > $signed({b, 1'b0});
     endfunction
 
     always_ff @(posedge clk) begin
-        x_1 <= folded(in[0], enable);
-        y_1 <= folded(in[1], enable);
-        z_1 <= folded(in[2], enable);
+        x_1 <= folded(in[0][BITS-1:LOW], enable);
+        y_1 <= folded(in[1][BITS-1:LOW], enable);
+        z_1 <= folded(in[2][BITS-1:LOW], enable);
         for (int i = 0; i < 3; i++) grows_1[i] <= in_grows[i] ^ {2'b0, enable && !in[i][BITS-1]};
+        order_1 <= in_order;
 
         x_2      <= x_1;
         y_2      <= y_1;
         z_2      <= z_1;
         grows_2  <= grows_1;
-        z_over_x <= z_1 > x_1;
-        z_over_y <= z_1 > y_1;
-        x_over_y <= x_1 > y_1;
-        low_2    <= {z_1 < BITS'(S / 2), y_1 < BITS'(S / 2), x_1 < BITS'(S / 2)};
+        order_2  <= order_1;
+        z_over_x <= above(z_1, x_1, raymarch_pkg::low_above(order_1.z_x, grows_1[2][0], grows_1[0][0]));
+        z_over_y <= above(z_1, y_1, raymarch_pkg::low_above(order_1.z_y, grows_1[2][0], grows_1[1][0]));
+        x_over_y <= above(x_1, y_1, raymarch_pkg::low_above(order_1.x_y, grows_1[0][0], grows_1[1][0]));
+        low_2    <= {z_1 < HIGH'(SIDE / 2), y_1 < HIGH'(SIDE / 2), x_1 < HIGH'(SIDE / 2)};
     end
 
     always_comb begin
@@ -60,16 +78,32 @@ module menger_level #(
         big       = big_is_z ? z_2 : big_is_x ? x_2 : y_2;
         big_grows = big_is_z ? grows_2[2] : big_is_x ? grows_2[0] : grows_2[1];
         mirror    = enable && (big_is_z ? low_2[2] : big_is_x ? low_2[0] : low_2[1]);
+        // `mirror` implies `enable`, so this adds -SIDE if only `enable` is high.
+        mirrored  = (HIGH'(-SIDE) & {HIGH{enable ^ mirror}}) + (big ^ {HIGH{mirror}});
     end
 
     always_ff @(posedge clk) begin
-        out[0]       <= big_is_x ? y_2 : x_2;
-        out[1]       <= (enable && !mirror ? BITS'(-S) : '0) + (big ^ {BITS{mirror}});
-        out[2]       <= big_is_z ? y_2 : z_2;
+        out[0]       <= BITS'(big_is_x ? y_2 : x_2) << LOW;
+        out[1]       <= BITS'(mirrored) << LOW;
+        out[2]       <= BITS'(big_is_z ? y_2 : z_2) << LOW;
         out_grows[0] <= big_is_x ? grows_2[1] : grows_2[0];
         out_grows[1] <= big_grows ^ {2'b0, mirror};
         out_grows[2] <= big_is_z ? grows_2[1] : grows_2[2];
+
+        out_order <= order_2;
+        if (big_is_x) begin
+            out_order.z_x <= order_2.z_y;
+            out_order.z_y <= order_2.z_x;
+            out_order.x_y <= raymarch_pkg::swapped(order_2.x_y);
+        end
+        if (big_is_z) begin
+            out_order.z_x <= raymarch_pkg::swapped(order_2.x_y);
+            out_order.z_y <= raymarch_pkg::swapped(order_2.z_y);
+            out_order.x_y <= raymarch_pkg::swapped(order_2.z_x);
+        end
     end
+
+    wire _unused = &{1'b0, in};
 endmodule
 
 `default_nettype wire

@@ -70,6 +70,40 @@ package raymarch_pkg;
 
     localparam int unsigned NEAREST_BITS = POINT_BITS + 3;
 
+    // Comparison of the low bits of two coordinates a and b: a > b, a = b, a > ~b, a = ~b. From these follows the order of both
+    // after mirrors, which invert all bits of a coordinate.
+    typedef struct packed {
+        logic above;
+        logic equal;
+        logic above_mirror;
+        logic equal_mirror;
+    } pair_t;
+
+    // The comparisons of the low bits of three coordinates.
+    typedef struct packed {
+        pair_t z_x;
+        pair_t z_y;
+        pair_t x_y;
+    } order_t;
+
+    localparam int unsigned ORDER_BITS = 12;
+    localparam order_t ALL_EQUAL = {3{4'b0101}};
+
+    // Returns the comparison of b and a from that of a and b.
+    function automatic pair_t swapped(input pair_t pair);
+        swapped = {!pair.above && !pair.equal, pair.equal, pair.above_mirror, pair.equal_mirror};
+    endfunction
+
+    // Returns whether the low bits of a are above those of b. Those of a coordinate are mirrored if it is not positive.
+    function automatic logic low_above(input pair_t pair, input logic a_positive, input logic b_positive);
+        unique case ({a_positive, b_positive})
+            2'b11: low_above = pair.above;
+            2'b00: low_above = !pair.above && !pair.equal;
+            2'b10: low_above = pair.above_mirror;
+            2'b01: low_above = !pair.above_mirror && !pair.equal_mirror;
+        endcase
+    endfunction
+
     // Returns the number of low bits of an end_t that a lane stores, which depends on whether the build has spheres (`round`)
     // and fillets (`blend`).
     function automatic int unsigned end_bits(input bit round, input bit blend);
