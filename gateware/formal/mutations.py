@@ -127,7 +127,8 @@ MUTATIONS = {
     ],
     "ring_lane": [
         _ring("again || enter}", "again || in_valid}", "none_made_up"),
-        _ring("again ? last_cargo", "again && !in_valid ? last_cargo", "none_twice"),
+        _ring("if (!again) begin", "if (!again || in_valid) begin", "none_twice"),
+        _ring("SLOT_BITS'(SLOTS - 1)", "SLOT_BITS'(SLOTS - 2)", "none_made_up"),
         _ring("assign in_ready = !again && places", "assign in_ready = places", "none_lost"),
         _ring("!again && places != '0;", "!again;", "no_more_than_fit"),
         _ring("occupied[DISTANCE+2] && finished;", "occupied[DISTANCE+2] && finished && !in_valid;", "none_lost"),

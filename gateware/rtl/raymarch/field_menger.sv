@@ -53,9 +53,9 @@ module field_menger #(
         .clk, .enable(1'b1), .in({point[2][LOW-1:0], point[1][LOW-1:0], point[0][LOW-1:0]}), .out(low)
     );
 
-    // The low bits of a coordinate that grows in a given direction of the world.
-    function automatic logic [LOW-1:0] low_part(input logic [2:0][LOW-1:0] parts, input logic [2:0] direction);
-        low_part = (direction[2] ? parts[2] : direction[1] ? parts[1] : parts[0]) ^ {LOW{!direction[0]}};
+    // The low bits of a coordinate that grows in a given direction of the world, {axis, positive}.
+    function automatic logic [LOW-1:0] low_part(input logic [2:0][LOW-1:0] parts, input logic [2:0] grow);
+        low_part = (grow[2] ? parts[2] : grow[1] ? parts[1] : parts[0]) ^ {LOW{!grow[0]}};
     endfunction
 
     for (genvar i = 0; i < LEVELS; i++) begin : folds

@@ -64,24 +64,29 @@ module ring_lane #(
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // Data that circulate with a ray in addition to t.
+    // What stays as it is while a ray is in the ring. A place in LUT memory for each slot holds it, written when the ray enters
+    // the slot.
     typedef struct packed {
         raymarch_pkg::place_t                         place;
         logic [9:0]                     length;
         logic [2:0][raymarch_pkg::DIRECTION_BITS-1:0] direction;
     } cargo_t;
     localparam int unsigned CARGO_BITS = raymarch_pkg::PLACE_BITS + 10 + 3 * raymarch_pkg::DIRECTION_BITS;
+    localparam int unsigned SLOTS      = DISTANCE + 3;
+    localparam int unsigned SLOT_BITS  = $clog2(SLOTS);
 
     logic [DISTANCE+2:0] occupied;
     logic [COUNT_BITS-1:0] places;
     logic              enter, finished, again, ended, end_ready, gone_out;
 
     // The first stage of the ring, which receives new rays.
-    cargo_t            cargo;
+    logic              eye;
+    logic [2:0][raymarch_pkg::DIRECTION_BITS-1:0] direction;
+    logic [raymarch_pkg::SPREAD_BITS-1:0]         spread;
     logic [raymarch_pkg::T_BITS-1:0] t;
     logic [STEP_BITS-1:0] steps;
 
-    // The last stage of the ring, in which it is known whether the ray has ended.
+    // The last stage of the ring, in which it is known whether the ray has ended. `early_cargo` is one stage before it.
     cargo_t            early_cargo, last_cargo;
     logic [raymarch_pkg::T_BITS-1:0] last_t;
     logic [STEP_BITS-1:0] last_steps;
@@ -97,7 +102,6 @@ module ring_lane #(
 
     always_ff @(posedge clk) begin
         occupied <= {occupied[DISTANCE+1:0], again || enter};
-        cargo    <= again ? last_cargo : {in_ray.place, in_ray.length, in_ray.direction};
         t        <= again ? last_t : in_ray.start;
         steps    <= again ? last_steps : '0;
         if (enter != gone_out) places <= enter ? places - 1'b1 : places + 1'b1;
@@ -111,15 +115,41 @@ module ring_lane #(
         end
     end
 
+    // Numbers of the slots that are in the first stage, in the last one, and in the one before it.
+    logic [SLOT_BITS-1:0] first_slot, last_slot, early_slot;
+
+    always_ff @(posedge clk) begin
+        early_slot <= early_slot == SLOT_BITS'(SLOTS - 1) ? '0 : early_slot + 1'b1;
+        last_slot  <= early_slot;
+        first_slot <= last_slot;
+        if (rst) {early_slot, last_slot, first_slot} <= {SLOT_BITS'(2), SLOT_BITS'(1), SLOT_BITS'(0)};
+    end
+
+    // Each stage has a memory of its own for what it reads. A slot that stays empty may be written.
+    (* ram_style = "distributed" *) logic [CARGO_BITS-1:0] cargos [0:2**SLOT_BITS-1];
+    (* ram_style = "distributed" *) logic [1+raymarch_pkg::SPREAD_BITS+3*raymarch_pkg::DIRECTION_BITS-1:0] aims [0:2**SLOT_BITS-1];
+
+    assign early_cargo              = cargos[early_slot];
+    assign {eye, spread, direction} = aims[first_slot];
+
+    always_ff @(posedge clk) begin
+        last_cargo <= early_cargo;
+        if (!again) begin
+            cargos[last_slot] <= {in_ray.place, in_ray.length, in_ray.direction};
+            aims[last_slot]   <= {in_ray.place.eye, in_ray.spread, in_ray.direction};
+        end
+    end
+
     // The point o + t·d. The origin o of the eye is selected two clocks after the slot, when the product t·d is there.
     logic                  eye_2;
     logic [2:0]            backwards;
     logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
 
     if (STEREO) begin : two_eyes
-        delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable(1'b1), .in(cargo.place.eye), .out(eye_2));
+        delay #(.WIDTH(1), .CLOCKS(2)) eyes (.clk, .enable(1'b1), .in(eye), .out(eye_2));
     end else begin : one_eye
         assign eye_2 = 1'b0;
+        wire _unused = eye;
     end
 
     for (genvar i = 0; i < 3; i++) begin : axes
@@ -129,12 +159,12 @@ module ring_lane #(
         assign origin = STEREO && eye_2 ? origins[1][i] : origins[0][i];
 
         multiply_add #(.BITS(raymarch_pkg::WIDE_BITS + 17)) place (
-            .clk, .enable(1'b1), .a({2'b0, t}), .b(cargo.direction[i]), .c({origin, 17'b0}), .p(sum)
+            .clk, .enable(1'b1), .a({2'b0, t}), .b(direction[i]), .c({origin, 17'b0}), .p(sum)
         );
         assign point[i] = sum[raymarch_pkg::WIDE_BITS+16:17];
 
         delay #(.WIDTH(1), .CLOCKS(3)) sign (
-            .clk, .enable(1'b1), .in(cargo.direction[i][raymarch_pkg::DIRECTION_BITS-1]), .out(backwards[i])
+            .clk, .enable(1'b1), .in(direction[i][raymarch_pkg::DIRECTION_BITS-1]), .out(backwards[i])
         );
         wire _unused = &{1'b0, sum[16:0]};
     end
@@ -211,22 +241,9 @@ module ring_lane #(
     delay #(.WIDTH(raymarch_pkg::T_BITS), .CLOCKS(DISTANCE - 1)) way (.clk, .enable(1'b1), .in(t), .out(t_early));
     delay #(.WIDTH(STEP_BITS), .CLOCKS(DISTANCE)) counted (.clk, .enable(1'b1), .in(steps), .out(steps_1));
 
-    // The slope of a ray against a face perpendicular to a diagonal takes one more clock, so the direction is needed
-    // one clock earlier.
-    if (OCTANTS) begin : carried_early
-        delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 1)) carried (.clk, .enable(1'b1), .in(cargo), .out(early_cargo));
-        always_ff @(posedge clk) last_cargo <= early_cargo;
-    end else begin : carried_late
-        delay #(.WIDTH(CARGO_BITS), .CLOCKS(DISTANCE + 2)) carried (.clk, .enable(1'b1), .in(cargo), .out(last_cargo));
-        assign early_cargo = '0;
-    end
-
     if (PREPASS) begin : prepass
-        logic [raymarch_pkg::SPREAD_BITS-1:0] spread, last_spread, widens;
+        logic [raymarch_pkg::SPREAD_BITS-1:0] widens;
         logic signed [42:0]                product;
-
-        always_ff @(posedge clk) spread <= again ? last_spread : in_ray.spread;
-        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(DISTANCE + 2)) spreading (.clk, .enable(1'b1), .in(spread), .out(last_spread));
 
         assign widens = cones ? spread : 16'd1 << (5'd16 - {1'b0, tuning.footprint});
 
@@ -245,7 +262,7 @@ module ring_lane #(
         assign footprint  = tuning.footprint[3] ? {1'b0, t_early[22:8]} >> tuning.footprint[2:0] : t_early[22:7];
         assign wide       = 1'b0;
         assign from_early = {1'b0, t_early};
-        wire _unused = &{1'b0, cones, in_ray.spread, is_last_early};
+        wire _unused = &{1'b0, cones, spread, is_last_early};
     end
 
     always_ff @(posedge clk) begin
@@ -326,7 +343,8 @@ module ring_lane #(
     always_comb
         for (int i = 0; i < 3; i++) towards[i] = early_cargo.direction[i][17:7] ^ {11{surface_2[i]}};
 
-    // For a face perpendicular to a diagonal, `face_gap` and `slope` are both three quarters of their true values, which keeps
+    // The slope against a face perpendicular to a diagonal takes one more clock, so the direction is needed one clock earlier.
+    // For such a face, `face_gap` and `slope` are both three quarters of their true values, which keeps
     // the quotient: the slope is then the sum of three components divided by four, and needs no division by three.
     if (OCTANTS) begin : diagonals
         logic signed [11:0] x_y;
