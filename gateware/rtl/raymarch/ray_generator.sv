@@ -20,8 +20,8 @@
 // block use the depth that its cone has cleared as their near plane, if it is farther: this depth is requested by `number`, and
 // returned in `cleared` 2 clocks later. `fine` means 160 blocks in a line instead of 80.
 //
-// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 25
-// clocks, 28 with ROUND; throughput one ray a clock. The output is a valid/ready stream; a ray stays until its transfer.
+// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 26
+// clocks, 29 with ROUND; throughput one ray a clock. The output is a valid/ready stream; a ray stays until its transfer.
 // `rst` ends the frame.
 
 `default_nettype none
@@ -68,11 +68,11 @@ module ray_generator #(
     localparam int unsigned SUM  = ROUND ? 3 : 0;
     localparam int unsigned LAST = SUM + 23;
 
-    logic          begins, running, ends_line, ends_eye, ends_band, ends;
+    logic          starts, begins, loads, fresh, running, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
     raymarch_pkg::place_t place, place_0;
     logic [5:0]    band;
-    logic [2:0][31:0] d, row, next_row, step_across, step_down;
+    logic [2:0][31:0] d, inverted_row, inverted_start, step_across, step_down;
 
     // Increments of D from one column and from one line to the next, constant from the clock after `start`.
     if (PREPASS) begin : steps_of_blocks
@@ -91,29 +91,35 @@ module ray_generator #(
     assign ends_band = ends_eye && place.line == last_line;
     assign ends      = ends_band && band == last_band;
     assign valid[0]  = running;
-    assign busy      = begins || valid != '0 || out_valid;
+    assign busy      = starts || begins || valid != '0 || out_valid;
+
+    // `inverted_start` is ~D at the first column of the next line, which is that of the right eye if `next_eye` is high. It is
+    // `inverted_row`, ~(y·down), minus `first`: for Yosys the LUTs of a subtraction also select what is subtracted, while a sum
+    // takes LUTs of its own for that. Both are computed in the first two clocks of a line (`fresh` is high in the first one),
+    // so a line must have three columns.
+    logic next_eye;
+
+    assign next_eye = STEREO && stereo && !place.eye && !starts;
+    assign loads    = begins || running && enable && ends_line;
 
     always_ff @(posedge clk) begin
-        begins <= start;
-        if (start) begin
-            place    <= '0;
-            band     <= '0;
-            next_row <= PREPASS && cones ? offset : '0;
+        starts <= start;
+        begins <= starts;
+        fresh  <= loads;
+        if (start)                   inverted_row <= PREPASS && cones ? ~offset : '1;
+        else if (fresh && !next_eye) for (int i = 0; i < 3; i++) inverted_row[i] <= inverted_row[i] - step_down[i];
+        for (int i = 0; i < 3; i++) begin
+            inverted_start[i] <= inverted_row[i] - first[next_eye][i];
+            if (loads)                  d[i] <= ~inverted_start[i];
+            else if (running && enable) d[i] <= d[i] + step_across[i];
         end
-        if (begins || running && enable && ends_eye) begin
-            row <= next_row;
-            for (int i = 0; i < 3; i++) begin
-                d[i]        <= first[0][i] + next_row[i];
-                next_row[i] <= next_row[i] + step_down[i];
-            end
+        if (start) begin
+            place <= '0;
+            band  <= '0;
         end
         if (begins) running <= 1'b1;
         if (running && enable) begin
             place.column <= ends_line ? '0 : place.column + 1'b1;
-            for (int i = 0; i < 3; i++) begin
-                if (!ends_line)     d[i] <= d[i] + step_across[i];
-                else if (!ends_eye) d[i] <= first[1][i] + row[i];
-            end
             if (ends_line) place.eye <= !ends_eye;
             if (ends_eye) place.line <= ends_band ? '0 : place.line + 1'b1;
             if (ends_band) begin
@@ -125,6 +131,7 @@ module ray_generator #(
         if (enable) valid[LAST:1] <= valid[LAST-1:0];
 
         if (rst) begin
+            starts        <= 1'b0;
             begins        <= 1'b0;
             running       <= 1'b0;
             valid[LAST:1] <= '0;
@@ -266,16 +273,18 @@ module ray_generator #(
         // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse; 21 the sum of
         // both t, the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
-        logic [23:0]        outside_9, outside_16, left_17;
+        logic [23:0]        outside_9, outside_16;
+        logic [24:0]        left_17;
         logic signed [41:0] product_12, gone_16, product_20;
         logic [22:0]        t_13, t_15, t_20;
         logic [33:0]        sum;
-        logic               comes_20;
+        logic               comes_20, inside_20;
 
         assign outside_9 = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
         assign part_7    = direction_7[i][16:0] ^ {17{direction_7[i][17]}};
 
         delay #(.WIDTH(1), .CLOCKS(11)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_20));
+        delay #(.WIDTH(1), .CLOCKS(3)) beyond (.clk, .enable, .in(left_17[24]), .out(inside_20));
         delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable, .in(part_7), .out(part_13));
         delay #(.WIDTH(24), .CLOCKS(7)) outside_waits (.clk, .enable, .in(outside_9), .out(outside_16));
         delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable, .in(inverse_9[i]), .out(inverse_17));
@@ -289,20 +298,20 @@ module ray_generator #(
             .clk, .enable, .a({2'b0, t_13}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
         multiply_add #(.BITS(42)) rest (
-            .clk, .enable, .a({1'b0, left_17}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
+            .clk, .enable, .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
         // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
-        assign sum = 34'(t_20) + 34'(product_20[41:9]);
+        assign sum = 34'(t_20) + 34'(product_20[41:9] & {33{!inside_20}});
 
         always_ff @(posedge clk) begin
             if (enable) begin
                 t_13    <= product_12[31:9] | {23{product_12[41:32] != '0}};
-                left_17 <= 24'(gone_16[41:17]) >= outside_16 ? '0 : outside_16 - 24'(gone_16[41:17]) - 24'd1;
+                left_17 <= {1'b0, outside_16} + {1'b1, ~gone_16[40:17]};
                 entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
             end
         end
 
-        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[16:0], product_20[8:0]};
+        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], product_20[8:0]};
     end
 
     // In clock 21 the t of the near plane is there, in the same clock as those of the entries into the box.
