@@ -255,6 +255,13 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
     delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
 
+    // For each axis: the distance outside of the box, and the first t of the entry into it, by clock (the suffix of a name).
+    logic [2:0][23:0] outside_9, outside_16;
+    logic [2:0][22:0] t_13, t_20;
+
+    block_delay #(.WIDTH(72), .CLOCKS(7)) outside_waits (.clk, .enable, .in(outside_9), .out(outside_16));
+    block_delay #(.WIDTH(69), .CLOCKS(7)) t_waits (.clk, .enable, .in(t_13), .out(t_20));
+
     // Clocks 10 to 21 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
@@ -273,40 +280,37 @@ module ray_generator #(
         // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse; 21 the sum of
         // both t, the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
-        logic [23:0]        outside_9, outside_16;
         logic [24:0]        left_17;
         logic signed [41:0] product_12, gone_16, product_20;
-        logic [22:0]        t_13, t_15, t_20;
+        logic [22:0]        t_15;
         logic [33:0]        sum;
         logic               comes_20, inside_20;
 
-        assign outside_9 = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
+        assign outside_9[i] = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
         assign part_7    = direction_7[i][16:0] ^ {17{direction_7[i][17]}};
 
         delay #(.WIDTH(1), .CLOCKS(11)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_20));
         delay #(.WIDTH(1), .CLOCKS(3)) beyond (.clk, .enable, .in(left_17[24]), .out(inside_20));
         delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable, .in(part_7), .out(part_13));
-        delay #(.WIDTH(24), .CLOCKS(7)) outside_waits (.clk, .enable, .in(outside_9), .out(outside_16));
         delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable, .in(inverse_9[i]), .out(inverse_17));
-        delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(t_13), .out(t_15));
-        delay #(.WIDTH(23), .CLOCKS(5)) t_goes (.clk, .enable, .in(t_15), .out(t_20));
+        delay #(.WIDTH(23), .CLOCKS(2)) t_goes (.clk, .enable, .in(t_13[i]), .out(t_15));
 
         multiply_add #(.BITS(42)) entry (
-            .clk, .enable, .a({1'b0, outside_9}), .b({1'b0, inverse_9[i]}), .c('0), .p(product_12)
+            .clk, .enable, .a({1'b0, outside_9[i]}), .b({1'b0, inverse_9[i]}), .c('0), .p(product_12)
         );
         multiply_add #(.BITS(42)) covered (
-            .clk, .enable, .a({2'b0, t_13}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
+            .clk, .enable, .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
         multiply_add #(.BITS(42)) rest (
             .clk, .enable, .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
         // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
-        assign sum = 34'(t_20) + 34'(product_20[41:9] & {33{!inside_20}});
+        assign sum = 34'(t_20[i]) + 34'(product_20[41:9] & {33{!inside_20}});
 
         always_ff @(posedge clk) begin
             if (enable) begin
-                t_13    <= product_12[31:9] | {23{product_12[41:32] != '0}};
-                left_17 <= {1'b0, outside_16} + {1'b1, ~gone_16[40:17]};
+                t_13[i] <= product_12[31:9] | {23{product_12[41:32] != '0}};
+                left_17 <= {1'b0, outside_16[i]} + {1'b1, ~gone_16[40:17]};
                 entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
             end
         end
