@@ -17,7 +17,8 @@ module depth_code (
     output logic [17:0]       code
 );
     // Seed i of the Newton steps is nearest(2^10/(1 + (i + 1/2)/256)), which is nearest(2^19/(513 + 2·i)).
-    logic [9:0] seeds [256];
+    (* ram_style = "block" *)
+    logic [9:0] seeds [0:255];
 
     initial begin
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));

@@ -134,15 +134,18 @@ module ray_paint #(
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
     );
 
-    // By clock (the suffix of a name): 9 the colour of the surface, 10 the shares of light and fog in 256ths.
-    raymarch_pkg::state_t state_8, state_9;
-    logic [2:0]        surface_8;
+    // By clock (the suffix of a name): 7 the state and the surface of the end, 8 the colours between which the highest bit of the
+    // surface selects, 9 the colour of the surface, 10 the shares of light and fog in 256ths.
+    raymarch_pkg::state_t state_7, state_8, state_9;
+    logic [2:0]        surface_7;
+    logic              upper_8;
+    logic [23:0]       lower_colour_8, upper_colour_8, plain_8;
     logic [2:0][7:0]   colour_9, colour_10;
     logic [7:0]        fog_part;
     logic [8:0]        light_10, fog_10, fog_14;
 
-    delay #(.WIDTH(5), .CLOCKS(8)) ending (
-        .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_8, surface_8})
+    delay #(.WIDTH(5), .CLOCKS(7)) ending (
+        .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_7, surface_7})
     );
 
     // The end of a ray on a sphere or fillet comes with a colour that includes the light.
@@ -159,23 +162,33 @@ module ray_paint #(
         wire _unused = &{1'b0, in_end.round, in_colour, round};
     end
 
-    logic [7:0][23:0] six_colours;
-    logic [23:0]      plain_8;
+    function automatic logic [23:0] one_of_four(input logic [3:0][23:0] colours, input logic [1:0] number);
+        unique case (number)
+            2'd0: one_of_four = colours[0];
+            2'd1: one_of_four = colours[1];
+            2'd2: one_of_four = colours[2];
+            2'd3: one_of_four = colours[3];
+        endcase
+    endfunction
 
-    assign six_colours = {palette.zenith, palette.undecided, palette.faces[5:0]};
+    // The colour of an end without a hit is the last of the upper four colours for a miss, and the one before it for an
+    // undecided ray. With OCTANTS these colours are taken by the faces.
+    logic       hit_7;
+    logic [2:0] number_7;
 
-    if (OCTANTS) begin : eight_faces
-        always_comb
-            unique case (state_8)
-                raymarch_pkg::HIT:  plain_8 = palette.faces[surface_8];
-                raymarch_pkg::MISS: plain_8 = palette.zenith;
-                default:            plain_8 = palette.undecided;
-            endcase
-        wire _unused = &{1'b0, six_colours};
-    end else begin : six_faces
-        assign plain_8 = six_colours[state_8 == raymarch_pkg::HIT ? surface_8 : state_8 == raymarch_pkg::MISS ? 3'd7 : 3'd6];
-        wire _unused = &{1'b0, palette.faces[7:6]};
+    assign hit_7    = state_7 == raymarch_pkg::HIT;
+    assign number_7 = hit_7 ? surface_7 : {2'b11, state_7 == raymarch_pkg::MISS};
+
+    always_ff @(posedge clk) begin
+        if (enable) begin
+            state_8        <= state_7;
+            upper_8        <= number_7[2];
+            lower_colour_8 <= one_of_four(palette.faces[3:0], number_7[1:0]);
+            if (OCTANTS && hit_7) upper_colour_8 <= one_of_four(palette.faces[7:4], surface_7[1:0]);
+            else                  upper_colour_8 <= one_of_four({palette.zenith, palette.undecided, palette.faces[5:4]}, number_7[1:0]);
+        end
     end
+    assign plain_8 = upper_8 ? upper_colour_8 : lower_colour_8;
 
     assign fog_part = state_9 == raymarch_pkg::HIT ? fog_9 : ~height_9;
 
