@@ -19,7 +19,7 @@ class FlatField:
     expression of LEVELS. `ports` connects the ports other than `clk`, `point`, `distance` and `surface` to members of `solid_t`;
     `parameters` are the parameters of the instance. With `octants`, faces are perpendicular to the diagonals (±1, ±1, ±1), and
     `surface` is {z, y, x}, 1 where the normal is positive. Otherwise faces are perpendicular to the axes, and `surface` is
-    {axis, positive}.
+    {axis, positive}. `inside` is the name of a field whose module serves this field too, in builds with both.
     """
 
     name: str
@@ -28,13 +28,15 @@ class FlatField:
     ports: dict
     parameters: dict = field(default_factory=dict)
     octants: bool = False
+    inside: str = ""
 
+
+_BOX = {port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}
 
 FLAT_FIELDS = (
-    FlatField("menger", "sponges", clocks="3 * LEVELS + 3", parameters={"LEVELS": "LEVELS"},
-              ports={"levels": "solid.levels[LEVELS-1:0]", "half": "solid.cube_half"}),
-    FlatField("box", "boxes, cubes and planes", clocks="3",
-              ports={port: f"solid.{port}" for port in ("half", "has", "room", "repeated")}),
+    FlatField("menger", "sponges", clocks="3 * LEVELS + 3", parameters={"LEVELS": "LEVELS", "BOX": "(FIELDS & 2) != 0"},
+              ports={"is_box": "solid.kind == 2'd1", "levels": "solid.levels[LEVELS-1:0]", "cube_half": "solid.cube_half", **_BOX}),
+    FlatField("box", "boxes, cubes and planes", clocks="3", ports=_BOX, inside="menger"),
     FlatField("octahedron", "octahedra", clocks="5", ports={"size": "solid.half[0]"}, octants=True),
 )
 """All flat fields, by their numbers in `solid.kind`. Field 0 is the sponge; the build sets its number of levels."""
@@ -63,8 +65,11 @@ def files():
 
 
 def _package():
+    inside = "\n".join(
+        f"        if ((fields & {1 << _host(flat)}) != 0) instances = instances & ~32'd{1 << number};"
+        for number, flat in enumerate(FLAT_FIELDS) if flat.inside)
     clocks = "\n".join(
-        f"        if ((fields & {1 << number}) != 0 && {flat.clocks.replace('LEVELS', 'levels')} > flat_clocks) "
+        f"        if ((instances(fields) & {1 << number}) != 0 && {flat.clocks.replace('LEVELS', 'levels')} > flat_clocks) "
         f"flat_clocks = {flat.clocks.replace('LEVELS', 'levels')};" for number, flat in enumerate(FLAT_FIELDS))
     octants = [number for number, flat in enumerate(FLAT_FIELDS) if flat.octants]
     is_octant = " || ".join(f"kind == {_number(number)}" for number in octants) or "1'b0 && kind == '0"
@@ -87,16 +92,28 @@ package fields_pkg;
         has_octants = {is_octant};
     endfunction
 
-    // Clocks from a point to its distance, including the choice between several fields.
+    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
+    // field serves the rest.
+    function automatic int unsigned instances(input int unsigned fields);
+        instances = fields;
+{inside}
+    endfunction
+
+    // Clocks from a point to its distance, including the choice between several instances.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
 {clocks}
-        if ((fields & (fields - 1)) != 0) flat_clocks = flat_clocks + 1;
+        if ((instances(fields) & (instances(fields) - 1)) != 0) flat_clocks = flat_clocks + 1;
     endfunction
 endpackage
 
 `default_nettype wire
 """
+
+
+def _host(flat):
+    """Number of the field whose module serves a field in builds with both."""
+    return NAMES.index(flat.inside)
 
 
 def _number(number):
@@ -107,7 +124,7 @@ def _instance(number, flat):
     connections = "".join(f" .{port}({value})," for port, value in flat.ports.items())
     parameters = ", ".join(f".{name}({value})" for name, value in flat.parameters.items())
     return f"""
-    if ((FIELDS & {1 << number}) != 0) begin : {flat.name}
+    if ((INSTANCES & {1 << number}) != 0) begin : {flat.name}
         localparam int unsigned CLOCKS = {flat.clocks};
         logic [24:0] early;
 
@@ -126,14 +143,20 @@ def _instance(number, flat):
 """
 
 
+def _is_kind(number):
+    """Condition that a field, or one that its module serves, is drawn."""
+    served = [other for other, flat in enumerate(FLAT_FIELDS) if flat.inside == NAMES[number]]
+    return " || ".join(f"solid.kind == {_number(kind)}" for kind in (number, *served))
+
+
 def _module():
     instances = "".join(_instance(number, flat) for number, flat in enumerate(FLAT_FIELDS))
-    choice = "\n".join(f"        if (solid.kind == {_number(number)}) chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
+    choice = "\n".join(f"        if ({_is_kind(number)}) chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
     single = "\n".join(f"        chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
     return f"""{_HEADER}
 // The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
 //
-// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single field needs no choice.
+// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.
 // Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
 
 `default_nettype none
@@ -148,10 +171,11 @@ module flat_fields #(
     output logic signed [21:0]                 distance,
     output logic [2:0]                         surface
 );
-    localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
-    localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
+    localparam int unsigned INSTANCES = fields_pkg::instances(FIELDS);
+    localparam bit          CHOICE    = (INSTANCES & (INSTANCES - 1)) != 0;
+    localparam int unsigned KNOWN     = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each field.
+    // Distance and surface of each instance.
     logic [{len(FLAT_FIELDS) - 1}:0][24:0] found;
     logic [24:0] chosen;
 {instances}

@@ -7,27 +7,36 @@
 // The sides of the first four levels are integers. There the low LOW bits of a coordinate are only mirrored and change places,
 // so they wait outside of the levels, which need nothing of them but the order of each pair. Further levels get all bits.
 //
+// With BOX the module serves boxes too: while `is_box` is high, no level is in use, and the distance is that to a box
+// (field_box). A sponge then ends in the same logic, as a cube of half side `cube_half`.
+//
 // Latency 3 * LEVELS + 3 clocks, throughput one point a clock, no handshake. `levels` has a bit for each level in use, the
-// first level in bit 0; `half` is half the side of the smallest solid cubes. Both must hold.
+// first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are those of field_box. All
+// of them must hold, from two clocks before the first point.
 
 `default_nettype none
 
 module field_menger #(
-    parameter int unsigned LEVELS = 4
+    parameter int unsigned LEVELS = 4,
+    parameter bit          BOX    = 1'b0
 ) (
     input  wire                clk,
+    input  wire                is_box,
     input  wire  [LEVELS-1:0]  levels,
-    input  wire  [21:0]        half,
+    input  wire  [21:0]        cube_half,
+    input  wire  [2:0][21:0]   half,
+    input  wire  [2:0]         has,
+    input  wire                room,
+    input  wire                repeated,
     input  wire  [2:0][21:0]   point,
     output logic signed [21:0] distance,
     output logic [2:0]         surface
 );
-    // LOW: number of bits that are 0 in half the side of the cubes of each of the first SPLIT levels.
-    localparam int unsigned LOW   = 11;
+    // The low bits are 0 in half the side of the cubes of each of the first SPLIT levels.
+    localparam int unsigned LOW   = raymarch_pkg::LOW_BITS;
     localparam int unsigned SPLIT = LEVELS < 4 ? LEVELS : 4;
-    // Whether the low bits wait until the distance is computed, and the bits of a coordinate's size before that.
-    localparam bit          APART     = LEVELS == SPLIT;
-    localparam logic [20:0] HIGH_BITS = APART ? '1 << LOW : '1;
+    // Whether the low bits wait until the distance is computed.
+    localparam bit          APART = LEVELS == SPLIT && !BOX;
 
     // Coordinates between the levels, without their low bits in the first levels.
     logic [LEVELS:0][2:0][21:0]   points;
@@ -53,51 +62,58 @@ module field_menger #(
         .clk, .enable(1'b1), .in({point[2][LOW-1:0], point[1][LOW-1:0], point[0][LOW-1:0]}), .out(low)
     );
 
-    // The low bits of a coordinate that grows in a given direction of the world, {axis, positive}.
-    function automatic logic [LOW-1:0] low_part(input logic [2:0][LOW-1:0] parts, input logic [2:0] grow);
-        low_part = (grow[2] ? parts[2] : grow[1] ? parts[1] : parts[0]) ^ {LOW{!grow[0]}};
-    endfunction
+    logic [LEVELS-1:0] levels_in_use;
+
+    always_ff @(posedge clk) levels_in_use <= levels & {LEVELS{!BOX || !is_box}};
 
     for (genvar i = 0; i < LEVELS; i++) begin : folds
         // Side of the cubes of each level: 27, 9, 3, 1, 1/3, 1/9, to the nearest even multiple of 2^-12.
         localparam int S = i == 0 ? 27 << 12 : i == 1 ? 9 << 12 : i == 2 ? 3 << 12 : i == 3 ? 1 << 12 : i == 4 ? 1366 : 456;
         if (i == SPLIT) begin : together
-            always_comb for (int j = 0; j < 3; j++) entering[i][j] = points[i][j] | 22'(low_part(low, grows[i][j]));
+            always_comb for (int j = 0; j < 3; j++) entering[i][j] = points[i][j] | 22'(raymarch_pkg::low_part(low, grows[i][j]));
         end else begin : apart
             assign entering[i] = points[i];
         end
 
         menger_level #(.BITS(22), .LOW(i < SPLIT ? LOW : 0), .S(S)) level (
-            .clk, .enable(levels[i]), .in(entering[i]), .in_grows(grows[i]), .in_order(i < SPLIT ? orders[i] : raymarch_pkg::ALL_EQUAL),
+            .clk, .enable(levels_in_use[i]), .in(entering[i]), .in_grows(grows[i]), .in_order(i < SPLIT ? orders[i] : raymarch_pkg::ALL_EQUAL),
             .out(points[i+1]), .out_grows(grows[i+1]), .out_order(orders[i+1])
         );
     end
 
-    logic [2:0][20:0]     size_1, size_2;
-    logic [2:0][2:0]      grows_1, grows_2;
-    raymarch_pkg::order_t order_1;
-    logic                 z_over_x, z_over_y, x_over_y, big_is_z, big_is_x;
-    logic [2:0]           surface_2;
-    logic [20:0]          big;
+    if (BOX) begin : with_boxes
+        // The point folded by all levels, with all bits.
+        logic [65:0] folded, half_sides;
+        logic [8:0]  grows_late;
+        logic [2:0]  bounded, local_surface, growing;
+        logic        is_room, repeats;
 
-    assign big_is_z = z_over_x && z_over_y;
-    assign big_is_x = !big_is_z && x_over_y;
-    assign surface_2 = big_is_z ? grows_2[2] : big_is_x ? grows_2[0] : grows_2[1];
-    assign big       = (big_is_z ? size_2[2] : big_is_x ? size_2[0] : size_2[1]) | (APART ? 21'(low_part(low, surface_2)) : '0);
-
-    always_ff @(posedge clk) begin
-        for (int i = 0; i < 3; i++) begin
-            size_1[i]  <= points[LEVELS][i][20:0] ^ (HIGH_BITS & {21{points[LEVELS][i][21]}});
-            grows_1[i] <= grows[LEVELS][i] ^ {2'b0, points[LEVELS][i][21]};
+        for (genvar i = 0; i < 3; i++) begin : axes
+            assign folded[22*i +: 22] = points[LEVELS][i] | (LEVELS == SPLIT ? 22'(raymarch_pkg::low_part(low, grows[LEVELS][i])) : '0);
         end
-        order_1  <= orders[LEVELS];
-        size_2   <= size_1;
-        grows_2  <= grows_1;
-        z_over_x <= {size_1[2], raymarch_pkg::low_above(order_1.z_x, grows_1[2][0], grows_1[0][0])} > {size_1[0], 1'b0};
-        z_over_y <= {size_1[2], raymarch_pkg::low_above(order_1.z_y, grows_1[2][0], grows_1[1][0])} > {size_1[1], 1'b0};
-        x_over_y <= {size_1[0], raymarch_pkg::low_above(order_1.x_y, grows_1[0][0], grows_1[1][0])} > {size_1[1], 1'b0};
-        distance <= $signed({1'b0, big}) - $signed(half);
-        surface  <= surface_2;
+
+        always_ff @(posedge clk) begin
+            half_sides <= is_box ? half : {3{cube_half}};
+            bounded    <= has | {3{!is_box}};
+            is_room    <= room && is_box;
+            repeats    <= repeated && is_box;
+        end
+
+        field_box box (
+            .clk, .half(half_sides), .has(bounded), .room(is_room), .repeated(repeats), .point(folded), .distance, .surface(local_surface)
+        );
+        delay #(.WIDTH(9), .CLOCKS(3)) grows_wait (.clk, .enable(1'b1), .in(grows[LEVELS]), .out(grows_late));
+
+        // `local_surface` is a surface in the folded space.
+        assign growing = local_surface[2] ? grows_late[8:6] : local_surface[1] ? grows_late[5:3] : grows_late[2:0];
+        assign surface = growing ^ {2'b0, !local_surface[0]};
+        wire _unused = &{1'b0, orders[LEVELS]};
+    end else begin : sponges_alone
+        menger_cube #(.LOW(APART ? LOW : 0)) cube (
+            .clk, .half(cube_half), .point(points[LEVELS]), .grows(grows[LEVELS]), .order(orders[LEVELS]), .low(APART ? low : '0),
+            .distance, .surface
+        );
+        wire _unused = &{1'b0, is_box, half, has, room, repeated};
     end
 endmodule
 

@@ -17,13 +17,20 @@ package fields_pkg;
         has_octants = kind == 2'd2;
     endfunction
 
-    // Clocks from a point to its distance, including the choice between several fields.
+    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
+    // field serves the rest.
+    function automatic int unsigned instances(input int unsigned fields);
+        instances = fields;
+        if ((fields & 1) != 0) instances = instances & ~32'd2;
+    endfunction
+
+    // Clocks from a point to its distance, including the choice between several instances.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
-        if ((fields & 1) != 0 && 3 * levels + 3 > flat_clocks) flat_clocks = 3 * levels + 3;
-        if ((fields & 2) != 0 && 3 > flat_clocks) flat_clocks = 3;
-        if ((fields & 4) != 0 && 5 > flat_clocks) flat_clocks = 5;
-        if ((fields & (fields - 1)) != 0) flat_clocks = flat_clocks + 1;
+        if ((instances(fields) & 1) != 0 && 3 * levels + 3 > flat_clocks) flat_clocks = 3 * levels + 3;
+        if ((instances(fields) & 2) != 0 && 3 > flat_clocks) flat_clocks = 3;
+        if ((instances(fields) & 4) != 0 && 5 > flat_clocks) flat_clocks = 5;
+        if ((instances(fields) & (instances(fields) - 1)) != 0) flat_clocks = flat_clocks + 1;
     endfunction
 endpackage
 

@@ -1,7 +1,7 @@
 // Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit.
 // The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
 //
-// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single field needs no choice.
+// FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.
 // Latency fields_pkg::flat_clocks(LEVELS, FIELDS), throughput a point a clock, no handshake; `solid` holds.
 
 `default_nettype none
@@ -16,19 +16,20 @@ module flat_fields #(
     output logic signed [21:0]                 distance,
     output logic [2:0]                         surface
 );
-    localparam bit          CHOICE = (FIELDS & (FIELDS - 1)) != 0;
-    localparam int unsigned KNOWN  = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
+    localparam int unsigned INSTANCES = fields_pkg::instances(FIELDS);
+    localparam bit          CHOICE    = (INSTANCES & (INSTANCES - 1)) != 0;
+    localparam int unsigned KNOWN     = fields_pkg::flat_clocks(LEVELS, FIELDS) - (CHOICE ? 1 : 0);
 
-    // Distance and surface of each field.
+    // Distance and surface of each instance.
     logic [2:0][24:0] found;
     logic [24:0] chosen;
 
-    if ((FIELDS & 1) != 0) begin : menger
+    if ((INSTANCES & 1) != 0) begin : menger
         localparam int unsigned CLOCKS = 3 * LEVELS + 3;
         logic [24:0] early;
 
-        field_menger #(.LEVELS(LEVELS)) field (
-            .clk, .point, .levels(solid.levels[LEVELS-1:0]), .half(solid.cube_half),
+        field_menger #(.LEVELS(LEVELS), .BOX((FIELDS & 2) != 0)) field (
+            .clk, .point, .is_box(solid.kind == 2'd1), .levels(solid.levels[LEVELS-1:0]), .cube_half(solid.cube_half), .half(solid.half), .has(solid.has), .room(solid.room), .repeated(solid.repeated),
             .distance(early[24:3]), .surface(early[2:0])
         );
         if (KNOWN > CLOCKS) begin : late
@@ -40,7 +41,7 @@ module flat_fields #(
         assign found[0] = '0;
     end
 
-    if ((FIELDS & 2) != 0) begin : box
+    if ((INSTANCES & 2) != 0) begin : box
         localparam int unsigned CLOCKS = 3;
         logic [24:0] early;
 
@@ -57,7 +58,7 @@ module flat_fields #(
         assign found[1] = '0;
     end
 
-    if ((FIELDS & 4) != 0) begin : octahedron
+    if ((INSTANCES & 4) != 0) begin : octahedron
         localparam int unsigned CLOCKS = 5;
         logic [24:0] early;
 
@@ -77,7 +78,7 @@ module flat_fields #(
     if (CHOICE) begin : choice
         always_comb begin
             chosen = '0;
-            if (solid.kind == 2'd0) chosen = chosen | found[0];
+            if (solid.kind == 2'd0 || solid.kind == 2'd1) chosen = chosen | found[0];
             if (solid.kind == 2'd1) chosen = chosen | found[1];
             if (solid.kind == 2'd2) chosen = chosen | found[2];
         end

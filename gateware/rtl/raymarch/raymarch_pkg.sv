@@ -87,11 +87,18 @@ package raymarch_pkg;
     } order_t;
 
     localparam int unsigned ORDER_BITS = 12;
+    // Number of these low bits.
+    localparam int unsigned LOW_BITS   = 11;
     localparam order_t ALL_EQUAL = {3{4'b0101}};
 
     // Returns the comparison of b and a from that of a and b.
     function automatic pair_t swapped(input pair_t pair);
         swapped = {!pair.above && !pair.equal, pair.equal, pair.above_mirror, pair.equal_mirror};
+    endfunction
+
+    // Returns the low bits of the coordinate that grows in the direction `grow` of the world, {axis, positive}.
+    function automatic logic [LOW_BITS-1:0] low_part(input logic [2:0][LOW_BITS-1:0] low, input logic [2:0] grow);
+        low_part = (grow[2] ? low[2] : grow[1] ? low[1] : low[0]) ^ {LOW_BITS{!grow[0]}};
     endfunction
 
     // Returns whether the low bits of a are above those of b. Those of a coordinate are mirrored if it is not positive.
