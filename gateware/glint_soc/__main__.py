@@ -12,15 +12,16 @@ from litex.soc.integration.builder import Builder
 from . import description, packages, register_map
 from .raymarch import BUILDS
 from .register_map import OPTIONAL_BLOCKS
+from .soc import SYS_CLK_FREQ
 
 
-def make_soc(board, build_id, blocks, smooth=False, fields=None):
+def make_soc(board, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
     """Returns the SoC of `board`, not yet finalized."""
     if board == "virtual":
         from .virtual import VirtualSoC
-        return VirtualSoC(build_id, blocks, smooth, fields)
+        return VirtualSoC(build_id, blocks, smooth, fields, sys_clk_freq)
     from .urbana import UrbanaSoC
-    return UrbanaSoC(build_id, blocks, smooth, fields)
+    return UrbanaSoC(build_id, blocks, smooth, fields, sys_clk_freq)
 
 
 def main():
@@ -33,6 +34,8 @@ def main():
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", choices=list(BUILDS),
                         help="build of the raymarcher (default: all; for the urbana, with less room: faces)")
+    parser.add_argument("--clock", type=float, default=SYS_CLK_FREQ / 1e6, metavar="MHZ",
+                        help="frequency of the system clock (default: %(default)s)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
@@ -48,7 +51,7 @@ def main():
         parser.error(f"{path} differs from the descriptions: `{packages.WRITER}` writes it")
 
     fields = BUILDS[arguments.fields or {"virtual": "all", "urbana": "faces"}[arguments.board]]
-    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields)
+    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields, arguments.clock * 1e6)
     soc.finalize()
     register_map.check_subset(soc, full)
     output = arguments.output.resolve()

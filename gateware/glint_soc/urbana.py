@@ -91,20 +91,20 @@ def _without_write_bitslip(strobe):
 class UrbanaSoC(GlintSoC):
     """The SoC of the Urbana board."""
 
-    def __init__(self, build_id, blocks, smooth=False, fields=None):
+    def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform, SYS_CLK_FREQ), build_id, blocks, uart_name="serial", smooth=smooth,
-                          fields=fields)
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
+                          fields=fields, sys_clk_freq=sys_clk_freq)
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
-            sys_clk_freq=SYS_CLK_FREQ, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)
+            sys_clk_freq=sys_clk_freq, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)
         # The BIOS leaves the phases of commands as they are, so the controller needs no multiplexer for them.
         self.ddrphy.settings.rdphase = self.ddrphy.settings.rdphase.reset.value
         self.ddrphy.settings.wrphase = self.ddrphy.settings.wrphase.reset.value
         # The termination is set directly, because `add_electrical_settings` stores the value under a name that the initialisation
         # of the memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
-        self.add_dram(self.ddrphy, MT41K64M16(SYS_CLK_FREQ, "1:4"))
+        self.add_dram(self.ddrphy, MT41K64M16(sys_clk_freq, "1:4"))
         for name in {"triangle", "raymarch"} & self.blocks:
             self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
         if "scanout" in self.blocks:

@@ -85,11 +85,12 @@ class CRG(LiteXModule):
 class VirtualSoC(GlintSoC):
     """SoC of the virtual board."""
 
-    def __init__(self, build_id, blocks, smooth=False, fields=None):
+    def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, fields=fields)
-        module = MT41K64M16(SYS_CLK_FREQ, "1:4")
-        self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=SYS_CLK_FREQ)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, fields=fields,
+                          sys_clk_freq=sys_clk_freq)
+        module = MT41K64M16(sys_clk_freq, "1:4")
+        self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=sys_clk_freq)
         self._name_banks()
         # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
         self.rom.mem.init = None

@@ -9,6 +9,7 @@ from litex.soc.integration.builder import Builder
 
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
+from glint_soc.virtual import VirtualSoC
 
 from tools import BUILD, TESTS, ToolError, run_yosys
 
@@ -16,8 +17,18 @@ _OUTPUT = BUILD / "urbana"
 _GATEWARE = _OUTPUT / "gateware"
 _PINS = TESTS / "urbana_pins.csv"
 
-# Clocks that the FPGA's MMCMs and PLLs must generate exactly: frequency in MHz and phase in degrees.
-_CLOCKS = Counter({(81.25, 0): 1, (325.0, 0): 1, (325.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1})
+# Clocks that the FPGA's MMCMs and PLLs must generate exactly, by the frequency of the system clock in MHz: frequency in MHz and
+# phase in degrees.
+_CLOCKS = {
+    81.25: Counter({(81.25, 0): 1, (325.0, 0): 1, (325.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1}),
+    100: Counter({(100.0, 0): 1, (400.0, 0): 1, (400.0, 90): 1, (200.0, 0): 1, (74.25, 0): 1, (371.25, 0): 1}),
+}
+
+# Numbers that follow from a system clock of 100 MHz: 115200 baud as a share of 2^32, and clocks of a third of a bit of I2C.
+_NUMBERS_100_MHZ = ["23'd4947802", ".PHASE    (7'd84)"]
+
+# Clocks of 100 MHz between two refreshes of the memory: 64 ms for 8192 rows, rounded up.
+_REFRESH_100_MHZ = 782
 
 _CONSTRAINTS = [
     "create_clock -name clk100 -period 10.0 [get_ports clk100]",
@@ -32,9 +43,12 @@ _CONSTRAINTS = [
 
 def generate():
     """Elaborates the board (no BIOS, no vendor tool) and returns its XDC, Verilog and Vivado script as text."""
-    soc = UrbanaSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
-    Builder(soc, output_dir=str(_OUTPUT), compile_software=False, compile_gateware=False).build()
-    return tuple((_GATEWARE / f"glint_urbana.{kind}").read_text() for kind in ("xdc", "v", "tcl"))
+    return _elaborate(UrbanaSoC(build_id=0, blocks=OPTIONAL_BLOCKS), _OUTPUT)
+
+
+def _elaborate(soc, output):
+    Builder(soc, output_dir=str(output), compile_software=False, compile_gateware=False).build()
+    return tuple((output / "gateware" / f"glint_urbana.{kind}").read_text() for kind in ("xdc", "v", "tcl"))
 
 
 def check_pins(xdc, verilog, _script):
@@ -83,9 +97,9 @@ def check_constraints(xdc, _verilog, script):
     return problems
 
 
-def check_clocks(_xdc, verilog, _script):
+def check_clocks(_xdc, verilog, _script, megahertz=81.25):
     """Checks that the MMCMs and PLLs give exactly the clocks in `_CLOCKS`, with parameters in the range of the FPGA."""
-    problems = []
+    problems, expected = [], _CLOCKS[megahertz]
     found = Counter()
     for kind, text in re.findall(r"^(MMCME2_ADV|PLLE2_ADV) #\((.*?)^\) ", verilog, re.M | re.S):
         parameters = {name: float(value) for name, value in
@@ -100,8 +114,24 @@ def check_clocks(_xdc, verilog, _script):
         for name, divide in parameters.items():
             if output := re.fullmatch(r"CLKOUT(\d)_DIVIDE(_F)?", name):
                 found[vco / divide, int(parameters[f"CLKOUT{output[1]}_PHASE"])] += 1
-    if found != _CLOCKS:
-        problems.append(f"expected the clocks (MHz, phase) {sorted(_CLOCKS)}, got {sorted(found.elements())}")
+    if found != expected:
+        problems.append(f"expected the clocks (MHz, phase) {sorted(expected)}, got {sorted(found.elements())}")
+    return problems
+
+
+def check_100_mhz(*_files):
+    """Checks that all that depends on the system clock follows its frequency, on both boards."""
+    urbana, virtual = (board(build_id=0, blocks=OPTIONAL_BLOCKS, sys_clk_freq=100e6) for board in (UrbanaSoC, VirtualSoC))
+    files = _elaborate(urbana, _OUTPUT.with_name("urbana_100_mhz"))
+    virtual.finalize()
+    problems = check_clocks(*files, megahertz=100)
+    problems += [f"{number} is not in the Verilog" for number in _NUMBERS_100_MHZ if number not in files[1]]
+    for soc in urbana, virtual:
+        name, refresh = type(soc).__name__, soc.sdram.controller.settings.timing.tREFI
+        if refresh != _REFRESH_100_MHZ:
+            problems.append(f"{name}: a refresh every {refresh} clocks")
+        if soc.constants["CONFIG_CLOCK_FREQUENCY"] != 100_000_000:
+            problems.append(f"{name}: {soc.constants['CONFIG_CLOCK_FREQUENCY']} Hz")
     return problems
 
 
@@ -132,5 +162,6 @@ CHECKS = {
     "pins as in the table, both ways": check_pins,
     "constraints and script": check_constraints,
     "clocks exact": check_clocks,
+    "100 MHz": check_100_mhz,
     "design complete": check_complete,
 }

@@ -12,8 +12,15 @@ use embedded_hal::delay::DelayNs;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 
-/// Clock cycles of the SoC per second.
-pub const FREQUENCY: u32 = CONFIG_CLOCK_FREQUENCY;
+/// Clock cycles per second of the SoC that the firmware is built for: `cargo xtask firmware` sets the variable for a SoC with
+/// another clock than the one in the register access crate.
+pub const FREQUENCY: u32 = match option_env!("GLINT_CLOCK_FREQUENCY") {
+    Some(text) => match u32::from_str_radix(text, 10) {
+        Ok(frequency) => frequency,
+        Err(_) => panic!("GLINT_CLOCK_FREQUENCY: expected a number of Hz"),
+    },
+    None => CONFIG_CLOCK_FREQUENCY,
+};
 
 /// Number of clock cycles in 4 µs, which the assertion below shows to be a whole number.
 const QUARTERS: u64 = FREQUENCY as u64 / 250_000;

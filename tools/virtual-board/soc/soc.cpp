@@ -25,9 +25,11 @@ extern "C" const uint8_t glint_bios_end[] __attribute__((visibility("hidden")));
 
 namespace {
 
-// Ratio of the clocks' frequencies: pix_clk / sys_clk = 74.25 MHz / 81.25 MHz = 297 / 325.
-constexpr uint32_t PIXEL_TICKS = 297;
-constexpr uint32_t PIXEL_PERIOD = 325;
+// Ratio of the clocks' frequencies: pix_clk / sys_clk = PIXEL_TICKS / PIXEL_PERIOD, in units of 250 kHz.
+constexpr uint32_t CLOCK_UNIT = 250'000;
+constexpr uint32_t PIXEL_TICKS = 74'250'000 / CLOCK_UNIT;
+constexpr uint32_t PIXEL_PERIOD = CONFIG_CLOCK_FREQUENCY / CLOCK_UNIT;
+static_assert(CONFIG_CLOCK_FREQUENCY % CLOCK_UNIT == 0 && PIXEL_TICKS < PIXEL_PERIOD);
 
 // Cycles after which a store of the CPU has reached memory, even behind a line fill of the instruction cache and a refresh.
 constexpr uint64_t SETTLE_CYCLES = 1000;

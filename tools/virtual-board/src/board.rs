@@ -14,8 +14,8 @@ use crate::{Error, Monitor, Picture, TimingError, boot};
 /// Cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
 
-/// Cycles of two video frames and one slice (`SLICE`); a frame takes 1650 × 750 ticks of the pixel clock.
-const TWO_FRAMES: u64 = 2 * 1650 * 750 * 325 / 297 + SLICE;
+/// Ticks of the pixel clock, of 74.25 MHz, in two video frames.
+const TICKS_OF_TWO_FRAMES: u64 = 2 * 1650 * 750;
 
 /// How a board starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -316,14 +316,15 @@ impl VirtualBoard {
         let was_on = self.monitor.is_on();
         self.monitor.turn_on();
         self.monitor.take_picture();
-        let shown = self.run_until(TWO_FRAMES, |board| board.monitor.has_picture());
+        let two_frames = TICKS_OF_TWO_FRAMES * u64::from(self.clock_hz()) / 74_250_000 + SLICE;
+        let shown = self.run_until(two_frames, |board| board.monitor.has_picture());
         if !was_on {
             self.monitor.turn_off();
         }
         let picture = self.monitor.take_picture();
         picture.filter(|_| shown).ok_or_else(|| Error::Timeout {
             expected: "a frame on the monitor".to_owned(),
-            cycles: TWO_FRAMES,
+            cycles: two_frames,
             got: self
                 .monitor
                 .errors()

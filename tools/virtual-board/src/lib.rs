@@ -16,11 +16,11 @@
 //! ```
 //!
 //! # Time
-//! One cycle is one period of the SoC's system clock, 1/81.25 MHz; the pixel clock has exactly 297/325 of its frequency.
+//! One cycle is one period of the SoC's system clock, by default 1/81.25 MHz; the pixel clock has exactly 74.25 MHz.
 //! Nothing depends on wall time: equal calls give equal boards, cycle by cycle.
 //!
 //! # Limits
-//! The UART moves one byte per cycle, where a serial line needs 7053 cycles, so output arrives earlier than on a real board.
+//! The UART moves one byte per cycle, where a serial line needs 7053 cycles of 1/81.25 MHz, so output arrives earlier than on a real board.
 //! Waveforms need the library built by `cargo xtask gateware --waveforms`.
 
 mod board;

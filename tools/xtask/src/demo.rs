@@ -14,7 +14,7 @@ use crate::{bootstrap, firmware, paths, run};
 pub fn demo(arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
-    firmware::build(&[])?;
+    firmware::build(Board::Virtual, &[])?;
     tool("glint", "glint", "demo", arguments)
 }
 
@@ -39,7 +39,7 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
                 .current_dir(paths::root()),
         )?;
     }
-    firmware::build(&["peers"])?;
+    firmware::build(Board::Virtual, &["peers"])?;
     tool("glint-reference", "report", name, arguments)
 }
 

@@ -10,17 +10,18 @@ use object::elf::PT_LOAD;
 use object::read::elf::{ElfFile32, ProgramHeader};
 use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
 
+use crate::gateware::Board;
 use crate::{paths, run};
 
 /// Rust target of the soft core.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// Builds the firmware with `features` and returns its image, `target/firmware/glint.bin`, or `glint-FEATURE….bin` with
+/// Builds the firmware for the clock of `board` with `features` and returns its image, `target/firmware/glint.bin`, or `glint-FEATURE….bin` with
 /// features. The ELF file is in the same folder.
 ///
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
-pub fn build(features: &[&str]) -> Result<PathBuf> {
+pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
     let name = [&["glint"], features].concat().join("-");
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");
@@ -34,6 +35,9 @@ pub fn build(features: &[&str]) -> Result<PathBuf> {
         TARGET,
     ]);
     cargo.arg("--features").arg(features.join(","));
+    if let Some(clock) = board.clock()? {
+        cargo.env("GLINT_CLOCK_FREQUENCY", clock.to_string());
+    }
     if features.contains(&"peers") {
         // Benchmarked functions of other crates that are generic are compiled in the firmware's crate, so it gets the same
         // optimization level as those crates.

@@ -39,8 +39,11 @@ enum Task {
         /// Fields of the raymarcher [default: all; faces for the urbana, which has no room for more]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
+        /// Frequency of the system clock; `cargo xtask firmware` then builds for it [default: 81.25]
+        #[arg(long, value_name = "MHZ")]
+        clock: Option<String>,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["smooth", "fields"])]
+        #[arg(long, conflicts_with_all = ["smooth", "fields", "clock"])]
         waveforms: bool,
     },
     /// Generate the register access crate and the register map from the SoC's description
@@ -51,6 +54,9 @@ enum Task {
     },
     /// Build the firmware
     Firmware {
+        /// Board whose last gateware build states the frequency of the clock
+        #[arg(long, value_enum, default_value = "virtual")]
+        board: gateware::Board,
         /// Cargo features of the firmware; `peers` lets the console command `bench` measure other crates too
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
@@ -103,6 +109,7 @@ fn main() -> Result<()> {
             board,
             smooth,
             fields,
+            clock,
             waveforms,
         } => {
             let mut options = vec![];
@@ -112,6 +119,9 @@ fn main() -> Result<()> {
             if let Some(fields) = fields {
                 options.extend(["--fields", fields.name()]);
             }
+            if let Some(clock) = &clock {
+                options.extend(["--clock", clock]);
+            }
             gateware::build_with(board, &options)?;
             if waveforms {
                 gateware::build_with_waveforms()?;
@@ -119,9 +129,9 @@ fn main() -> Result<()> {
             Ok(())
         }
         Task::Pac { check } => pac::generate(check),
-        Task::Firmware { features } => {
+        Task::Firmware { board, features } => {
             let features: Vec<_> = features.iter().map(String::as_str).collect();
-            firmware::build(&features).map(|_| ())
+            firmware::build(board, &features).map(|_| ())
         }
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test => test::test(),

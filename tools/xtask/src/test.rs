@@ -35,8 +35,8 @@ pub fn test() -> Result<()> {
             results.add(resources::check_own_blocks().map(|()| 1));
             results.add(resources::check_clock_rates().map(|()| 1));
         });
-        firmware::build(&[])?;
-        firmware::build(&["peers"])?;
+        firmware::build(Board::Virtual, &[])?;
+        firmware::build(Board::Virtual, &["peers"])?;
         results.add(pac::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
