@@ -7,7 +7,7 @@ module edge_stepper (
     input  wire                     clk,
     input  wire                     advance,
     input  wire                     keep,
-    input  wire                     resume,
+    input  wire                     next_resume,
     input  wire raster_pkg::move_t  move,
     input  wire  [33:0]             load_best,
     input  wire                     load_beside_fails,

@@ -14,7 +14,8 @@
 // `keep` preserves the snapshot; without `keep` the snapshot takes the new value. Sums are modulo 2^34.
 //
 // `move` is the last signal to arrive in the walker's critical loop. So all sums are computed at the same time as the move, and
-// the move only selects one of them. Latency 1 clock, throughput a move a clock.
+// the move only selects one of them. For the same reason `resume` comes a clock ahead, as `next_resume`. Latency 1 clock,
+// throughput a move a clock.
 
 `default_nettype none
 
@@ -22,7 +23,7 @@ module edge_stepper (
     input  wire                     clk,
     input  wire                     advance,
     input  wire                     keep,
-    input  wire                     resume,
+    input  wire                     next_resume,
     input  wire raster_pkg::move_t  move,
     input  wire  [33:0]             load_best,
     input  wire                     load_beside_fails,
@@ -38,8 +39,15 @@ module edge_stepper (
     logic [29:0] not_beyond;
     logic        sideways, select, next_beside_fails;
 
-    assign better_from = resume && rises ? snapshot : best;
-    assign worse_from  = resume && !rises ? snapshot : best;
+    // `resume`, for the side that is to the right.
+    logic better_resumes, worse_resumes;
+
+    always_ff @(posedge clk) begin
+        if (advance) {better_resumes, worse_resumes} <= {next_resume && rises, next_resume && !rises};
+    end
+
+    assign better_from = better_resumes ? snapshot : best;
+    assign worse_from  = worse_resumes ? snapshot : best;
 
     // A difference a - b is computed as the inverse of b + ~a, so that one operand of each adder comes from a register: then a sum
     // takes one LUT for each bit.

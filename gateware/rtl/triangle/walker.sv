@@ -76,7 +76,7 @@ module walker #(
 
     // Directions in which the walker may still move in this row: `seek_*` before the row's first group is found, `extend_*`
     // from that group on. `resume` is high while groups to the right of the snapshot remain to be visited.
-    logic seek_left, seek_right, extend_left, extend_right, resume;
+    logic seek_left, seek_right, extend_left, extend_right, resume, next_resume;
 
     // The next move, decided from the signs of the edge functions and from the directions declared above.
     logic [2:0]        best_fails;
@@ -104,6 +104,8 @@ module walker #(
         else                move = last_row ? raster_pkg::LOAD : raster_pkg::DOWN;
     end
 
+    assign next_resume = extend && left && (resume || open_right && extend_right);
+
     assign idle     = !active;
     assign walking  = active && out_ready;
     assign in_ready = leave && out_ready;
@@ -116,7 +118,7 @@ module walker #(
 
     for (genvar k = 0; k < 3; k++) begin : edges
         edge_stepper edge_stepper (
-            .clk, .advance(out_ready), .keep, .resume, .move,
+            .clk, .advance(out_ready), .keep, .next_resume, .move,
             .load_best(in_triangle.best[k]), .load_beside_fails(in_triangle.beside_fails[k]),
             .rises(rises[k]), .slope(slope[k]), .step_y(step_y[k]), .beside_step(beside_step[k]),
             .best(best[k]), .beside_fails(beside_fails[k])
@@ -158,7 +160,7 @@ module walker #(
             seek_right   <= !keep && move != raster_pkg::LEFT && !at_right;
             extend_left  <= (!keep || left) && !at_left;
             extend_right <= (!keep || !left) && !at_right;
-            resume       <= extend && left && (resume || open_right && extend_right);
+            resume       <= next_resume;
             if (!keep) {snapshot_at_left, snapshot_at_right, snapshot} <= {at_left, at_right, next_group};
 
             if (move == raster_pkg::DOWN) begin
