@@ -224,13 +224,13 @@ MUTATIONS = {
     "band_entry": [
         _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
         _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
-        _entry("            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;\n", "", "nothing_made_up"),
+        _entry("pass == ROWS_KNOWN && count == '0;", "1'b0;", "nothing_made_up"),
         # Fault: the next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
         _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
         _entry("if (moved) out_late", "out_late", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),
-        _entry("!busy || pass == LAST;", "1'b1;", "nothing_too_many"),
+        _entry("in_ready ? !in_valid :", "in_ready ? 1'b1 :", "nothing_too_many"),
         _entry("(ending != '0 || held_valid) && held_odd", "held_valid && held_odd", "held_is_told"),
         _entry("{ending[2:1], busy && pass == LAST}", "{ending[2:1], busy && pass == LAST && in_valid}", "shown_in_time"),
         _entry("end else if (advance) begin", "end else if (advance && out_ready) begin", "taken_in_time"),

@@ -51,13 +51,13 @@ module band_entry #(
     output logic [PLANES_BITS-1:0]         out_planes
 );
     localparam logic [31:0] HALF_A_CODE = 32'd1 << 13;
-    localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST = 3'd7;
+    localparam logic [2:0]  STALLS = 3'd3, ROWS_KNOWN = 3'd4, LAST_BUT_ONE = 3'd6, LAST = 3'd7;
 
     // Stages of a triangle: first its passes (`busy`), then three clocks in which the last products arrive (`ending`), then the
     // held stage, in which it waits for the output register.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
-    logic        busy, odd, held_valid, held_odd, advance, next_free, moved;
+    logic        busy, dropped, odd, held_valid, held_odd, advance, next_free, moved;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
@@ -65,7 +65,6 @@ module band_entry #(
     // triangle has left the held stage.
     assign advance   = pass != STALLS || !held_valid || !out_valid;
     assign next_free = !out_valid || out_ready;
-    assign in_ready  = !busy || pass == LAST;
 
     for (genvar b = 0; b < 2; b++) begin : bands
         assign holds[b] = busy && odd == 1'(b) || (ending != '0 || held_valid) && held_odd == 1'(b)
@@ -77,6 +76,8 @@ module band_entry #(
     logic [10:0] above, below;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
+
+    assign dropped = pass == ROWS_KNOWN && count == '0;
 
     assign above  = {1'b0, y0} - {1'b0, triangle.top};
     assign offset = above[10] ? '0 : above[9:0];
@@ -221,6 +222,9 @@ module band_entry #(
     always_ff @(posedge clk) begin
         ending <= {ending[2:1], busy && pass == LAST};
 
+        // High while no triangle is in its passes, and in the last pass.
+        in_ready <= in_ready ? !in_valid : dropped || pass == LAST_BUT_ONE;
+
         if (in_ready) begin
             triangle <= in_descriptor;
             y0       <= in_y0;
@@ -229,7 +233,7 @@ module band_entry #(
             pass     <= '0;
         end else if (advance) begin
             pass <= pass + 1'b1;
-            if (pass == ROWS_KNOWN && count == '0) busy <= 1'b0;
+            if (dropped) busy <= 1'b0;
         end
 
         if (next_free) begin
@@ -243,6 +247,7 @@ module band_entry #(
         if (ending[3]) held_valid <= 1'b1;
 
         if (rst) begin
+            in_ready   <= 1'b1;
             busy       <= 1'b0;
             ending     <= '0;
             held_valid <= 1'b0;
