@@ -71,9 +71,9 @@ module band_entry #(
                         || out_valid && out_odd == 1'(b);
     end
 
-    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last one,
-    // and their number.
-    logic [10:0] above, below;
+    // Rows of the triangle, counted from the first row of the band: its first row, the row after its last one, and their
+    // number. `above_1` is `above` a clock later.
+    logic [10:0] above, above_1, below;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
 
@@ -83,10 +83,11 @@ module band_entry #(
     assign offset = above[10] ? '0 : above[9:0];
 
     always_ff @(posedge clk) begin
-        below <= {1'b0, triangle.bottom} - {1'b0, y0};
-        first <= !above[10] ? '0 : (-above > 11'(rows)) ? rows : 6'(-above);
-        past  <= below[10] ? '0 : (below > 11'(rows)) ? rows : below[5:0];
-        count <= past > first ? past - first : '0;
+        above_1 <= above;
+        below   <= {1'b0, triangle.bottom} - {1'b0, y0};
+        first   <= !above_1[10] ? '0 : (-above_1 > 11'(rows)) ? rows : 6'(-above_1);
+        past    <= below[10] ? '0 : (below > 11'(rows)) ? rows : below[5:0];
+        count   <= past > first ? past - first : '0;
     end
 
     // The horizontal step of the edge that the current pass uses, with its sign and magnitude.
