@@ -1,1 +1,1 @@
-"""The Glint SoC: one description, built for the virtual board and for the RealDigital Urbana."""
+"""The Glint SoC: one description, built for the virtual board, the RealDigital Urbana and the Radiona ULX3S."""

@@ -12,30 +12,30 @@ from litex.soc.integration.builder import Builder
 from . import description, packages, register_map
 from .raymarch import BUILDS
 from .register_map import OPTIONAL_BLOCKS
-from .soc import SYS_CLK_FREQ
 
 
-def make_soc(board, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+def make_soc(board, build_id, blocks, **options):
     """Returns the SoC of `board`, not yet finalized."""
     if board == "virtual":
-        from .virtual import VirtualSoC
-        return VirtualSoC(build_id, blocks, smooth, fields, sys_clk_freq)
-    from .urbana import UrbanaSoC
-    return UrbanaSoC(build_id, blocks, smooth, fields, sys_clk_freq)
+        from .virtual import VirtualSoC as BoardSoC
+    elif board == "urbana":
+        from .urbana import UrbanaSoC as BoardSoC
+    else:
+        from .ulx3s import Ulx3sSoC as BoardSoC
+    return BoardSoC(build_id, blocks, **options)
 
 
 def main():
     """Parses the command line and builds the gateware."""
     parser = argparse.ArgumentParser(prog="python -m glint_soc", description=__doc__)
-    parser.add_argument("--board", choices=["virtual", "urbana"], required=True)
+    parser.add_argument("--board", choices=["virtual", "urbana", "ulx3s"], required=True)
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")
     parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
                         help="optional blocks of this build (default: all)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", choices=list(BUILDS),
-                        help="build of the raymarcher (default: all; for the urbana, with less room: faces)")
-    parser.add_argument("--clock", type=float, default=SYS_CLK_FREQ / 1e6, metavar="MHZ",
-                        help="frequency of the system clock (default: %(default)s)")
+                        help="build of the raymarcher (default: all; for a board with an FPGA: faces)")
+    parser.add_argument("--clock", type=float, metavar="MHZ", help="frequency of the system clock (default: the board's)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
@@ -50,8 +50,11 @@ def main():
     for path in packages.stale(full):
         parser.error(f"{path} differs from the descriptions: `{packages.WRITER}` writes it")
 
-    fields = BUILDS[arguments.fields or {"virtual": "all", "urbana": "faces"}[arguments.board]]
-    soc = make_soc(arguments.board, build_id, arguments.blocks, arguments.smooth, fields, arguments.clock * 1e6)
+    options = {"smooth": arguments.smooth,
+               "fields": BUILDS[arguments.fields or ("all" if arguments.board == "virtual" else "faces")]}
+    if arguments.clock:
+        options["sys_clk_freq"] = arguments.clock * 1e6
+    soc = make_soc(arguments.board, build_id, arguments.blocks, **options)
     soc.finalize()
     register_map.check_subset(soc, full)
     output = arguments.output.resolve()
@@ -60,7 +63,7 @@ def main():
         # Link-time optimisation inlines the calls in the loop of the BIOS's serial boot, so that the loop stays in the
         # instruction cache.
         bios_lto=True,
-        # The vendor tool is run by hand, on a computer where it is installed.
+        # The tools of the FPGA are run separately: by `gateware/ecp5`, or by hand on a computer with the vendor tool.
         compile_gateware=False)
     builder.build()
     # The SVD and CSV files that the builder writes contain the build time, so equal SoCs would give different files.

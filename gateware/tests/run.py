@@ -1,4 +1,4 @@
-"""Tests of the gateware that need no SoC: lint, models for the tests in Rust, and the Urbana's generated files.
+"""Tests of the gateware that need no SoC: lint, models for the tests in Rust, and the boards' generated files.
 
     python gateware/tests/run.py           runs everything, one line a test; ends with 1 if anything failed
     python gateware/tests/run.py --models [NAME ...]
@@ -31,6 +31,7 @@ import netlist  # noqa: E402
 import route  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
+import ulx3s  # noqa: E402
 import urbana  # noqa: E402
 from glint_soc import packages  # noqa: E402
 from modules import MODULES  # noqa: E402
@@ -81,7 +82,6 @@ def test():
     """Runs all checks and returns the number of those that failed."""
     prepare(YOSYS)
     failures = run_all(module_checks())
-    files = urbana.generate()
     others = {
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
         **{f"counters: {name}": action for name, action in counters.CHECKS.items()},
@@ -90,9 +90,16 @@ def test():
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},
         **{f"netlists: {name}": action for name, action in netlist.CHECKS.items()},
         **{f"clock rates: {name}": action for name, action in route.CHECKS.items()},
-        **{f"urbana: {name}": partial(action, *files) for name, action in urbana.CHECKS.items()},
+        **board_checks("urbana", urbana),
+        **board_checks("ulx3s", ulx3s),
     }
     return failures + sum(check(name, action) for name, action in others.items())
+
+
+def board_checks(name, board):
+    """Returns the checks of a board's generated files by name, after generating these."""
+    files = board.generate()
+    return {f"{name}: {check_name}": partial(action, *files) for check_name, action in board.CHECKS.items()}
 
 
 def run_lint(module, parameters):

@@ -1,6 +1,5 @@
 """Checks the generated files of the Urbana board against facts that were recorded independently of its platform file."""
 
-import csv
 import math
 import re
 from collections import Counter
@@ -11,6 +10,7 @@ from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
 from glint_soc.virtual import VirtualSoC
 
+import boards
 from tools import BUILD, TESTS, ToolError, run_yosys
 
 _OUTPUT = BUILD / "urbana"
@@ -53,39 +53,10 @@ def _elaborate(soc, output):
 
 def check_pins(xdc, verilog, _script):
     """Checks that the ports of the design have exactly the pins and properties of urbana_pins.csv, and no pin is used twice."""
-    with open(_PINS, newline="") as file:
-        table = {row["signal"]: row for row in csv.DictReader(file)}
-    ports = {}
+    found = {}
     for key, value, port in re.findall(r"^set_property (\S+) (\S+) \[get_ports \{(.+)\}\]$", xdc, re.M):
-        ports.setdefault(port, {})[key] = value
-
-    problems = []
-    for port, properties in ports.items():
-        row = table.get(port)
-        if row is None:
-            problems.append(f"{port} is in the XDC but not in {_PINS.name}")
-            continue
-        expected = {"LOC": row["pin"], "IOSTANDARD": row["iostandard"]}
-        expected |= dict(item.split("=") for item in row["properties"].split())
-        if properties != expected:
-            problems.append(f"{port}: expected {expected}, the XDC has {properties}")
-    in_design = _ports(verilog)
-    problems += [f"{port} is a port of the design without a pin" for port in in_design - ports.keys()]
-    problems += [f"{port} has a pin but is no port of the design" for port in ports.keys() - in_design]
-    pins = Counter(row["pin"] for row in table.values())
-    problems += [f"pin {pin} is in the table {count} times" for pin, count in pins.items() if count > 1]
-    if not ports:
-        problems.append("no pin found in the XDC")
-    return problems
-
-
-def _ports(verilog):
-    """Returns the ports of the top module, one name per bit."""
-    header = re.search(r"^module glint_urbana \((.*?)^\);", verilog, re.M | re.S).group(1)
-    ports = set()
-    for width, name in re.findall(r"^\s*(?:input|output|inout)\s+(?:wire|reg)\s+(?:\[(\d+):0\])?\s*(\w+),?$", header, re.M):
-        ports |= {f"{name}[{bit}]" for bit in range(int(width) + 1)} if width else {name}
-    return ports
+        found.setdefault(port, {})[key] = value
+    return boards.check_pins(found, _PINS, boards.ports(verilog, "glint_urbana"))
 
 
 def check_constraints(xdc, _verilog, script):

@@ -16,13 +16,56 @@ use crate::{paths, run};
 /// Rust target of the soft core.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// Builds the firmware for the clock of `board` with `features` and returns its image, `target/firmware/glint.bin`, or `glint-FEATURE….bin` with
-/// features. The ELF file is in the same folder.
+/// What the firmware must know of a board's SoC and does not read from its registers.
+struct Machine {
+    /// Clock cycles per second; `None` for the clock of the register access crate.
+    clock: Option<u64>,
+    /// Size of main memory in bytes.
+    main_ram: u64,
+}
+
+impl Machine {
+    /// The SoC of `board`. The virtual board's and the Urbana's are in the register access crate; the description of any other is
+    /// an output of its gateware build.
+    fn of(board: Board) -> Result<Self> {
+        if board != Board::Ulx3s {
+            return Ok(Self {
+                clock: board.clock()?,
+                main_ram: MAIN_RAM.size.into(),
+            });
+        }
+        let path = board.folder().join("csr.json");
+        let text = fs::read_to_string(&path).with_context(|| {
+            format!(
+                "reading {} (`cargo xtask gateware --board {}` makes it)",
+                path.display(),
+                board.name()
+            )
+        })?;
+        let soc: serde_json::Value = serde_json::from_str(&text)?;
+        let number = |pointer: &str| {
+            let value = soc.pointer(pointer).and_then(serde_json::Value::as_u64);
+            value.with_context(|| format!("{}: no number at {pointer}", path.display()))
+        };
+        Ok(Self {
+            clock: Some(number("/constants/config_clock_frequency")?),
+            main_ram: number("/memories/main_ram/size")?,
+        })
+    }
+}
+
+/// Builds the firmware for `board` with `features` and returns its image: `target/firmware/glint.bin` for the virtual board and the
+/// Urbana, `glint-BOARD.bin` for another board, `glint-FEATURE….bin` with features. The ELF file is in the same folder.
 ///
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
-    let name = [&["glint"], features].concat().join("-");
+    let machine = Machine::of(board)?;
+    let names: &[&str] = match board {
+        Board::Virtual | Board::Urbana => &["glint"],
+        Board::Ulx3s => &["glint", board.name()],
+    };
+    let name = [names, features].concat().join("-");
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");
     cargo.args([
@@ -35,7 +78,8 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
         TARGET,
     ]);
     cargo.arg("--features").arg(features.join(","));
-    if let Some(clock) = board.clock()? {
+    cargo.env("GLINT_MAIN_RAM_MB", (machine.main_ram >> 20).to_string());
+    if let Some(clock) = machine.clock {
         cargo.env("GLINT_CLOCK_FREQUENCY", clock.to_string());
     }
     if features.contains(&"peers") {
@@ -56,7 +100,8 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
 
     let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware"))
         .context("reading the firmware")?;
-    let (image, sizes) = image(&elf).with_context(|| format!("firmware {name}"))?;
+    let (image, sizes) =
+        image(&elf, machine.main_ram).with_context(|| format!("firmware {name}"))?;
     let folder = paths::target().join("firmware");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     let path = folder.join(&name).with_extension("bin");
@@ -75,12 +120,12 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// Returns the image of an ELF file, which starts at the base of main memory, and a text that lists the image's sections.
-fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
+fn image(elf: &[u8], main_ram: u64) -> Result<(Vec<u8>, String)> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
     let (base, end) = (
         u64::from(MAIN_RAM.base),
-        u64::from(MAIN_RAM.base) + u64::from(MAIN_RAM.size),
+        u64::from(MAIN_RAM.base) + main_ram,
     );
     ensure!(
         file.entry() == base,
@@ -93,10 +138,10 @@ fn image(elf: &[u8]) -> Result<(Vec<u8>, String)> {
             .map(|symbol| symbol.address())
             .with_context(|| format!("no symbol {name}"))
     };
-    let windows_end = symbol("_mesh_b")? + symbol("_mesh_size")?;
+    let windows_end = symbol("_lists")? + symbol("_lists_size")?;
     ensure!(
         windows_end <= end,
-        "memory.x ends at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"
+        "the windows end at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"
     );
 
     let fast = symbol("_fast")?..symbol("_fast")? + symbol("_fast_size")?;
@@ -158,7 +203,7 @@ mod tests {
 
     use crate::paths;
 
-    /// Lists origin and length of each memory window of `memory.x`, in the notation of docs/architecture.md.
+    /// Lists origin and length of each memory window of a file of `firmware/windows`, in the notation of the documents.
     fn windows(memory_x: &str) -> Vec<(String, String)> {
         let windows = memory_x.lines().filter_map(|line| {
             let (_, rest) = line.split_once(": ORIGIN = 0x")?;
@@ -172,17 +217,23 @@ mod tests {
     }
 
     #[test]
-    fn the_documented_memory_map_is_that_of_memory_x() {
-        let read = |path| fs::read_to_string(paths::root().join(path)).unwrap();
-        let windows = windows(&read("memory.x"));
-        let documented = read("docs/architecture.md");
-        assert_eq!(windows.len(), 9, "{windows:?}");
-        for (origin, length) in windows.iter().filter(|(_, length)| length.ends_with("MB")) {
-            let row = format!("| {origin} | {length} |");
-            assert!(
-                documented.contains(&row),
-                "docs/architecture.md has no row `{row}`"
-            );
+    fn the_documented_memory_maps_are_those_of_the_linker() {
+        let read = |path: &str| fs::read_to_string(paths::root().join(path)).unwrap();
+        for (file, page) in [
+            ("128.x", "docs/architecture.md"),
+            ("32.x", "docs/boards.md"),
+        ] {
+            let windows = windows(&read(&format!("firmware/windows/{file}")));
+            assert_eq!(windows.len(), 9, "{windows:?}");
+            let documented = read(page);
+            // The last window is in the SRAM, which the text mentions.
+            for (origin, length) in windows
+                .iter()
+                .filter(|(origin, _)| origin.starts_with("0x4"))
+            {
+                let row = format!("| {origin} | {length} |");
+                assert!(documented.contains(&row), "{page} has no row `{row}`");
+            }
         }
     }
 }

@@ -1,7 +1,8 @@
 //! `cargo xtask gateware`: the SoC of a board, and the virtual board's library.
 //!
 //! LiteX writes Verilog, the BIOS and the SoC's description to `target/gateware/BOARD`. For the virtual board, `gateware/verilate`
-//! makes `libglint_soc.so` of the Verilog. Each part is skipped if its inputs have not changed.
+//! makes `libglint_soc.so` of the Verilog; for the ULX3S, `gateware/ecp5` makes a bitstream. Each part is skipped if its inputs
+//! have not changed.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -21,19 +22,22 @@ pub enum Board {
     Virtual,
     /// The RealDigital Urbana: Verilog, constraints and a Vivado script.
     Urbana,
+    /// The Radiona ULX3S with an LFE5U-85F: a bitstream.
+    Ulx3s,
 }
 
 impl Board {
     /// Name in paths and on the command line of `glint_soc`.
-    fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Virtual => "virtual",
             Self::Urbana => "urbana",
+            Self::Ulx3s => "ulx3s",
         }
     }
 
     /// Build folder.
-    fn folder(self) -> PathBuf {
+    pub fn folder(self) -> PathBuf {
         paths::target().join("gateware").join(self.name())
     }
 
@@ -79,6 +83,28 @@ impl Fields {
     }
 }
 
+/// An optional block: `OPTIONAL_BLOCKS` of `glint_soc/register_map.py`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Block {
+    /// The scan-out
+    Scanout,
+    /// The triangle engine
+    Triangle,
+    /// The raymarcher, which needs the triangle engine
+    Raymarch,
+}
+
+impl Block {
+    /// Name on the command line of `glint_soc`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scanout => "scanout",
+            Self::Triangle => "triangle",
+            Self::Raymarch => "raymarch",
+        }
+    }
+}
+
 /// Builds the gateware of `board`, if out of date.
 ///
 /// # Errors
@@ -94,10 +120,11 @@ pub fn build(board: Board) -> Result<()> {
 pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     let folder = board.folder();
     generate(board, &folder, options)?;
-    if board == Board::Virtual {
-        verilate(&folder, Waveforms::Without)?;
+    match board {
+        Board::Virtual => verilate(&folder, Waveforms::Without),
+        Board::Urbana => Ok(()),
+        Board::Ulx3s => make_bitstream(&folder),
     }
-    Ok(())
 }
 
 /// Builds the virtual board with the raymarcher of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, and leaves the
@@ -186,6 +213,39 @@ fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
             .env("PYTHONPATH", paths::root().join("gateware"))
             .env("PYTHONDONTWRITEBYTECODE", "1"),
     )
+}
+
+/// Makes a bitstream of the output of [`generate`], and prints its summary.
+fn make_bitstream(folder: &Path) -> Result<()> {
+    let gateware = paths::root().join("gateware");
+    let stamp = folder.join("bitstream.stamp");
+    let generated = folder.join("generated.stamp");
+    let inputs = fingerprint(&[gateware.join("ecp5"), generated], "")?;
+    let summary = folder.join("bitstream.txt");
+    if !is_current(&stamp, &inputs) || !summary.exists() {
+        for (step, name) in [
+            ("synthesis", "synthesis (ulx3s)"),
+            ("route", "place and route (ulx3s)"),
+            ("bitstream", "bitstream (ulx3s)"),
+        ] {
+            run::step(
+                name,
+                Command::new(paths::venv_program("python"))
+                    .args(["-m", "ecp5", step])
+                    .arg(folder)
+                    .current_dir(folder)
+                    .env("PYTHONPATH", &gateware)
+                    .env("PYTHONDONTWRITEBYTECODE", "1"),
+            )?;
+        }
+        fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))?;
+    }
+    let text =
+        fs::read_to_string(&summary).with_context(|| format!("reading {}", summary.display()))?;
+    for line in text.lines() {
+        run::print_progress(&format!("  {line}"));
+    }
+    Ok(())
 }
 
 /// Returns a hash, as text, of `salt` and of the paths and contents of all files below `roots`.

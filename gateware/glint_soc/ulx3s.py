@@ -1,0 +1,76 @@
+"""The Radiona ULX3S: ECP5 clocks, SDR SDRAM at the system clock, HDMI from the scan-out."""
+
+from litedram.modules import MT48LC16M16
+from litedram.phy import GENSDRPHY
+from litex.build.io import DDROutput
+from litex.gen import LiteXModule
+from litex.soc.cores.clock import ECP5PLL
+from migen import ClockDomain, ClockSignal, Signal
+from migen.genlib.resetsync import AsyncResetSynchronizer
+
+from .ecp5_hdmi import Ecp5HDMI
+from .soc import GlintSoC
+from .ulx3s_platform import Platform
+from .video import CEA_640X480
+
+SYS_CLK_FREQ = 40e6
+"""System clock in Hz, which is also the clock of the memory."""
+
+_CLK25_FREQ = 25e6
+
+
+class _PLL(ECP5PLL):
+    """A PLL whose outputs, and the one for its feedback, stay below the largest frequency of an output: half of the VCO's."""
+
+    clko_div_range = (2, 128 + 1)
+
+
+class CRG(LiteXModule):
+    """Clocks and resets: `sys` with the clock of the memory, `pix` with its TMDS clock.
+
+    No divider of one PLL makes 25.2 MHz from 25 MHz, so the PLL of the video follows that of the system. `rst` restarts the
+    system but neither PLL: the picture goes black and the monitor keeps its lock.
+    """
+
+    def __init__(self, platform, sys_clk_freq):
+        self.rst = Signal()
+        self.cd_sys = ClockDomain()
+        self.cd_sys_ps = ClockDomain(reset_less=True)
+        self.cd_por = ClockDomain(reset_less=True)
+        self.cd_pix = ClockDomain()
+        self.cd_pix5x = ClockDomain()
+
+        # # #
+
+        self.sys_pll = sys_pll = _PLL()
+        sys_pll.register_clkin(platform.request("clk25"), _CLK25_FREQ)
+        sys_pll.create_clkout(self.cd_sys, sys_clk_freq, margin=0, with_reset=False)
+        # The memory takes commands and data a quarter of a clock after they have changed.
+        sys_pll.create_clkout(self.cd_sys_ps, sys_clk_freq, phase=90, margin=0, with_reset=False)
+        restart = Signal()
+        self.comb += self.cd_por.clk.eq(self.cd_sys.clk)
+        self.sync.por += restart.eq(self.rst)
+        self.specials += AsyncResetSynchronizer(self.cd_sys, ~sys_pll.locked | restart)
+        self.specials += DDROutput(1, 0, platform.request("sdram_clock"), ClockSignal("sys_ps"))
+
+        self.pixel_pll = pixel_pll = _PLL()
+        self.comb += pixel_pll.reset.eq(~sys_pll.locked)
+        pixel_pll.register_clkin(self.cd_sys.clk, sys_clk_freq)
+        pixel_pll.create_clkout(self.cd_pix, CEA_640X480.clk_freq, margin=0)
+        pixel_pll.create_clkout(self.cd_pix5x, 5 * CEA_640X480.clk_freq, margin=0)
+
+
+class Ulx3sSoC(GlintSoC):
+    """The SoC on the board."""
+
+    def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+        platform = Platform()
+        GlintSoC.__init__(self, platform, CRG(platform, sys_clk_freq), build_id, blocks, uart_name="serial", smooth=smooth,
+                          fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
+        self.sdrphy = GENSDRPHY(platform.request("sdram"), sys_clk_freq)
+        self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
+        for name in {"triangle", "raymarch"} & self.blocks:
+            self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
+        self.comb += platform.request("wifi_gpio0").eq(1)
+        if "scanout" in self.blocks:
+            self.hdmi = Ecp5HDMI(self.scanout.video, platform.request("hdmi_out"), self.mode.sync_low)
