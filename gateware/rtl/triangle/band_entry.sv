@@ -72,8 +72,8 @@ module band_entry #(
     end
 
     // Rows of the triangle, counted from the first row of the band: its first row, the row after its last one, and their
-    // number. `above_1` is `above` a clock later.
-    logic [10:0] above, above_1, below;
+    // number. Before that, `top` and `bottom` are not limited to the rows of the band.
+    logic [10:0] above, top, bottom;
     logic [9:0]  offset;
     logic [5:0]  first, past, count;
 
@@ -83,11 +83,11 @@ module band_entry #(
     assign offset = above[10] ? '0 : above[9:0];
 
     always_ff @(posedge clk) begin
-        above_1 <= above;
-        below   <= {1'b0, triangle.bottom} - {1'b0, y0};
-        first   <= !above_1[10] ? '0 : (-above_1 > 11'(rows)) ? rows : 6'(-above_1);
-        past    <= below[10] ? '0 : (below > 11'(rows)) ? rows : below[5:0];
-        count   <= past > first ? past - first : '0;
+        top    <= {1'b0, triangle.top} - {1'b0, y0};
+        bottom <= {1'b0, triangle.bottom} - {1'b0, y0};
+        first  <= top[10] ? '0 : (top > 11'(rows)) ? rows : top[5:0];
+        past   <= bottom[10] ? '0 : (bottom > 11'(rows)) ? rows : bottom[5:0];
+        count  <= past > first ? past - first : '0;
     end
 
     // The horizontal step of the edge that the current pass uses, with its sign and magnitude.

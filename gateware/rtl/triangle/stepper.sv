@@ -25,12 +25,13 @@ module stepper (
     input  wire  [31:0]             step_y,
     output logic [31:0]             current
 );
-    logic [31:0] snapshot, from, group_step, step, next;
-    logic        negate, below;
+    logic [31:0] snapshot, from, group_step, less, next;
+    logic        borrow, below;
 
     assign group_step = {step_x[28:0], 3'b000};
-    assign negate     = move == raster_pkg::LEFT;
 
+    // All sums are differences, from - less - borrow: Yosys may exchange the operands of an addition, and needs a third LUT for
+    // each bit then.
     always_comb begin
         case (move)
             raster_pkg::LEFT:  from = current;
@@ -39,15 +40,14 @@ module stepper (
             default:           from = load_value;
         endcase
         case (move)
-            raster_pkg::LEFT:  step = ~group_step;
-            raster_pkg::RIGHT: step = group_step;
-            raster_pkg::DOWN:  step = step_y;
-            default:           step = '0;
+            raster_pkg::LEFT:  {less, borrow} = {group_step, 1'b0};
+            raster_pkg::RIGHT: {less, borrow} = {~group_step, 1'b1};
+            raster_pkg::DOWN:  {less, borrow} = {~step_y, 1'b1};
+            default:           {less, borrow} = '0;
         endcase
     end
 
-    // The added bit below the lowest bit makes the carry in: for a subtraction it is 1 in both summands.
-    assign {next, below} = {from, negate} + {step, negate};
+    assign {next, below} = {from, 1'b0} - {less, borrow};
 
     always_ff @(posedge clk) begin
         if (advance) current <= next;
