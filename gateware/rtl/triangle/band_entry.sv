@@ -90,18 +90,23 @@ module band_entry #(
         count  <= past > first ? past - first : '0;
     end
 
-    // The horizontal step of the edge that the current pass uses, with its sign and magnitude.
+    // The horizontal step of the edge that the current pass uses, selected one clock ahead, with its sign and magnitude.
     logic [2:0][20:0] step_x, step_y;
     logic [20:0]      step;
     logic             rises, falls;
     logic [19:0]      slope;
 
+    always_ff @(posedge clk) begin
+        if (advance) begin
+            case (pass)
+                3'd1:    step <= step_x[0];
+                3'd2:    step <= step_x[1];
+                default: step <= step_x[2];
+            endcase
+        end
+    end
+
     always_comb begin
-        case (pass)
-            3'd2:    step = step_x[0];
-            3'd3:    step = step_x[1];
-            default: step = step_x[2];
-        endcase
         falls = step[20];
         rises = !falls && step != '0;
         slope = falls ? 20'(-step) : step[19:0];
