@@ -4,6 +4,7 @@ A board adds its platform, its clocks (domains `sys` and `pix`), its memory with
 which firmware can see, are here.
 """
 
+import litedram.core
 from litedram.core.controller import ControllerSettings
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
@@ -15,6 +16,7 @@ from .i2c import I2CMaster
 from .identity import Identity
 from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
+from .memory_crossbar import MemoryCrossbar
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
 from .triangle import TriangleEngine
@@ -92,10 +94,11 @@ class GlintSoC(SoCCore):
     def add_dram(self, phy, module):
         """Adds the controller of the memory `module` over the board's PHY, then the blocks that access memory."""
         # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory turns less often between reads and writes, which
-        # takes a dozen clocks each time. A port changes to another bank only when its commands are done, so a shorter queue of
-        # commands shortens that wait.
+        # takes a dozen clocks each time.
+        # LiteX has no parameter for the class of the crossbar.
+        litedram.core.LiteDRAMCrossbar = MemoryCrossbar
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
-                       controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=4))
+                       controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
         size = module.nbanks * module.nrows * module.ncols * phy.settings.databits // 8
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=size, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")

@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 import counters  # noqa: E402
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
+import memory_crossbar  # noqa: E402
 import netlist  # noqa: E402
 import route  # noqa: E402
 import size  # noqa: E402
@@ -86,6 +87,7 @@ def test():
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
         **{f"counters: {name}": action for name, action in counters.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
+        **{f"memory crossbar: {name}": action for name, action in memory_crossbar.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},
         **{f"netlists: {name}": action for name, action in netlist.CHECKS.items()},

@@ -1,0 +1,129 @@
+"""Crossbar of the memory: shares LiteDRAM's controller among the ports, one command a clock."""
+
+from functools import reduce
+from operator import or_
+
+from litedram.core.crossbar import LiteDRAMCrossbar
+from migen import Array, Cat, If, Mux, Signal
+from migen.genlib import roundrobin
+
+
+class MemoryCrossbar(LiteDRAMCrossbar):
+    """Replaces LiteDRAM's crossbar, whose ports it offers (`get_port`).
+
+    LiteDRAM's crossbar has an arbiter and a multiplexer of all ports for each bank. Memory takes one command a clock in the end,
+    so here one arbiter passes one command a clock to the queues of the bank machines:
+
+        ports ─▶ requests ─▶ turn ─▶ command ─▶ queues of the bank machines
+                    ▲                                     │
+                    └── bank and number of the commands ◀─┤ done
+                        of each port                      │
+        ports ◀── delays as long as those of the data ◀───┘
+
+    Data of a port come and go in the order of its commands. So a port uses one bank at a time, and a bank serves one port at a
+    time. A port changes to another bank when all its commands are done, and keeps its bank until then and while it has commands
+    for it, as in LiteDRAM. A bank executes its commands in the order in which they were taken from the ports.
+
+    Latency: none from a port to the queue, one clock for a port that asks anew. `cmd.ready` follows from `cmd.addr` and registers.
+    """
+
+    def do_finalize(self):
+        controller, ports = self.controller, self.masters
+        settings = controller.settings
+        if settings.address_mapping != "ROW_BANK_COL" or self.nranks != 1:
+            raise ValueError("expected one rank of memory and addresses ROW_BANK_COL")
+        column_bits = settings.geom.colbits - controller.address_align
+        banks = [getattr(controller, f"bank{number}") for number in range(self.nbanks)]
+        # The queues have room for all commands of a port. With fewer, a port waits less for its last command before it changes to
+        # another bank; a command takes four clocks at least from its port until it is done.
+        most = 5
+        if most > self.cmd_buffer_depth:
+            raise ValueError(f"expected queues of {most} commands, got {self.cmd_buffer_depth}")
+
+        # The bank of the command that is done: the multiplexer has at most one in a clock.
+        done, done_read, done_write = Signal(self.bank_bits), Signal(), Signal()
+        self.comb += [
+            done.eq(reduce(or_, (Mux(bank.rdata_valid | bank.wdata_ready, number, 0) for number, bank in enumerate(banks)))),
+            done_read.eq(reduce(or_, (bank.rdata_valid for bank in banks))),
+            done_write.eq(reduce(or_, (bank.wdata_ready for bank in banks))),
+        ]
+
+        # Banks that a port owns, and the port whose turn it is.
+        owned = Signal(self.nbanks)
+        turn = Signal(max=max(len(ports), 2))
+        wanted, allowed, answered, released = [], [], [], []
+        for number, port in enumerate(ports):
+            # The bank that the port owns, and the number of its commands there that are not done.
+            owner, place = Signal(), Signal(self.bank_bits)
+            count, empty, full = Signal(max=most + 1), Signal(reset=1), Signal()
+            bank, stays, may, taken, ended, leaves = Signal(self.bank_bits), Signal(), Signal(), Signal(), Signal(), Signal()
+            self.comb += [
+                bank.eq(port.get_bank_address(self.bank_bits, column_bits)),
+                stays.eq(owner & (place == bank)),
+                may.eq(Mux(stays, ~full, empty & ~Array(owned[i] for i in range(self.nbanks))[bank])),
+                port.cmd.ready.eq((turn == number) & may),
+                taken.eq(port.cmd.valid & port.cmd.ready),
+                ended.eq(~empty & (place == done) & (done_read | done_write)),
+                # Without a command for its bank, the port leaves it to others.
+                leaves.eq(owner & empty & ~(port.cmd.valid & stays)),
+            ]
+            self.sync += [
+                If(taken, place.eq(bank), owner.eq(1)).Elif(leaves, owner.eq(0)),
+                If(taken & ~ended,
+                    count.eq(count + 1),
+                    empty.eq(0),
+                    full.eq(count == most - 1),
+                ).Elif(ended & ~taken,
+                    count.eq(count - 1),
+                    empty.eq(count == 1),
+                    full.eq(0),
+                ),
+            ]
+            wanted.append(bank)
+            allowed.append(port.cmd.valid & may)
+            answered.append(ended)
+            released.append(Mux(leaves, 1 << place, 0))
+
+        # Passes the command of the port whose turn it is. The next turn is that of the next port with a command that is allowed,
+        # unless the command that passes takes its bank.
+        self.arbiter = arbiter = roundrobin.RoundRobin(len(ports), roundrobin.SP_CE)
+        self.submodules += arbiter
+        valid, bank = Signal(), Signal(self.bank_bits)
+        passed, is_write, address = Signal(self.nbanks), Signal(), Signal(self.rca_bits)
+        self.comb += [
+            arbiter.request.eq(Cat(*(may & ~(valid & (bank == other)) for may, other in zip(allowed, wanted)))),
+            arbiter.ce.eq(1),
+            turn.eq(arbiter.grant),
+            valid.eq(Array(allowed)[turn]),
+            bank.eq(Array(wanted)[turn]),
+            passed.eq(Mux(valid, 1 << bank, 0)),
+            is_write.eq(Array(port.cmd.we for port in ports)[turn]),
+            address.eq(Array(port.get_row_column_address(self.bank_bits, self.rca_bits, column_bits) for port in ports)[turn]),
+        ]
+        self.sync += owned.eq((owned & ~reduce(or_, released)) | passed)
+        for number, machine in enumerate(banks):
+            self.comb += [machine.valid.eq(passed[number]), machine.we.eq(is_write), machine.addr.eq(address)]
+
+        writers, writer = [], 0
+        for port, ended in zip(ports, answered):
+            if port.mode != "write":
+                self.comb += port.rdata.valid.eq(self._delayed(ended & done_read, self.read_latency))
+                self.comb += port.rdata.data.eq(controller.rdata)
+            if port.mode != "read":
+                self.comb += port.wdata.ready.eq(self._delayed(ended & done_write, self.write_latency))
+                writer |= Mux(ended, len(writers), 0)
+                writers.append(port)
+        # Memory ignores data and strobes that no port writes, so they may be those of any port.
+        writer = self._delayed(writer, self.write_latency)
+        self.comb += [
+            controller.wdata.eq(Array(port.wdata.data for port in writers)[writer]),
+            controller.wdata_we.eq(Array(port.wdata.we for port in writers)[writer]),
+        ]
+
+    def _delayed(self, value, clocks):
+        """Returns `value` as it was `clocks` ago."""
+        for _ in range(clocks):
+            later = Signal.like(value)
+            self.sync += later.eq(value)
+            value = later
+        return value
