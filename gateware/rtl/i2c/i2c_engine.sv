@@ -100,7 +100,8 @@ module i2c_engine #(
     logic [PHASE_BITS-1:0] phase;
     logic                  held, expired, waiting;
     logic [STRETCH_BITS:0] stretched;
-    logic                  last_byte, ninth;
+    // `started`: SDA is low after a start condition. In LOW without one, the engine clocks a device that pulls SDA low.
+    logic                  last_byte, ninth, started;
     logic                  again, due, late, begins;
     logic [23:0]           elapsed;
     logic [3:0]            rounds;
@@ -121,6 +122,7 @@ module i2c_engine #(
     spike_filter sda_filter (.clk, .rst, .level(sda_in), .filtered(sda));
 
     assign operation = error != NONE ? STOP : command.operation;
+    assign started   = !sda_out;
     assign last_byte = command.operation != READ || bytes == command.argument;
     assign ninth     = clocks == LAST_CLOCK;
     assign held      = scl_out && !scl;
@@ -136,7 +138,7 @@ module i2c_engine #(
     always_comb begin
         taken = 1'b0;
         if (error == NONE) case (state)
-            LOW:     taken = expired && (command.operation == START || ninth && last_byte);
+            LOW:     taken = expired && (command.operation == START ? started : ninth && last_byte);
             FREE:    taken = expired;
             default: taken = 1'b0;
         endcase
@@ -167,13 +169,12 @@ module i2c_engine #(
                 case (operation)
                     START: begin
                         addressing <= 1'b1;
-                        clocks     <= clocks + 1'b1;
                         if (sda) begin
                             sda_out <= 1'b0;
                             state   <= FALL;
                         end else begin
                             scl_out <= 1'b0;
-                            state   <= SET;
+                            state   <= LOW;
                             if (clocks == LAST_CLOCK + 1'b1) begin
                                 error   <= DATA;
                                 scl_out <= 1'b1;
@@ -205,7 +206,7 @@ module i2c_engine #(
                 state  <= SET;
                 clocks <= clocks + 1'b1;
                 if (operation != START && !ninth) sda_out <= shift[8];
-                if (operation == START || ninth) begin
+                if (operation == START ? started : ninth) begin
                     state <= HELD;
                     bytes <= last_byte ? '0 : bytes + 1'b1;
                 end
