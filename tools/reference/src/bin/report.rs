@@ -47,6 +47,9 @@ enum Page {
         /// Measure only errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
+        /// Measure only one study: fraction, cap, threshold, norm, end, prepass or normal
+        #[arg(long, value_name = "NAME", conflicts_with_all = ["quick", "json"])]
+        study: Option<String>,
         #[command(flatten)]
         output: Output,
     },
@@ -126,7 +129,16 @@ fn main() -> Result<()> {
             only,
             output,
         } => measure_triangle(quick, only.as_deref(), &output),
-        Page::Raymarch { quick, output } => measure_raymarch(quick, &output),
+        Page::Raymarch {
+            quick,
+            study: None,
+            output,
+        } => measure_raymarch(quick, &output),
+        Page::Raymarch {
+            study: Some(study),
+            output,
+            ..
+        } => measure_studies(Some(&study), &output),
         Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Pages { out } => {
@@ -176,10 +188,17 @@ fn measure_raymarch(quick: bool, output: &Output) -> Result<()> {
     if !quick {
         let rates = raymarch::rates::measure()?;
         write_csv(&rates, &folder.join("raymarch-rates.csv"))?;
-        raymarch::studies::measure(|name, trials| {
-            write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
-        })?;
+        return measure_studies(None, output);
     }
+    written("raymarch", &folder, pages::raymarch::rebuild)
+}
+
+/// Measures all studies of the raymarcher, or one, and rebuilds the page.
+fn measure_studies(only: Option<&str>, output: &Output) -> Result<()> {
+    let folder = output.folder(false)?;
+    raymarch::studies::measure(only, |name, trials| {
+        write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
+    })?;
     written("raymarch", &folder, pages::raymarch::rebuild)
 }
 

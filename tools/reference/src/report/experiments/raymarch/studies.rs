@@ -1,6 +1,6 @@
 //! Experiments: studies of raymarching, each of which shows the effect of a parameter on errors, evaluations and clocks.
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
 
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
@@ -26,15 +26,28 @@ const STUDIES: [(&str, Study); 7] = [
     ("normal", normals),
 ];
 
-/// Runs all studies. As soon as a study is complete, `finished` is called with its name and trials.
+/// Runs all studies, or only the one with the name `only`. As soon as a study is complete, `finished` is called with its name and
+/// trials.
 ///
 /// # Errors
-/// When `finished` fails.
-pub fn measure(finished: impl Fn(&str, &[Trial]) -> Result<()> + Sync) -> Result<()> {
+/// When no study has the name, or `finished` fails.
+pub fn measure(
+    only: Option<&str>,
+    finished: impl Fn(&str, &[Trial]) -> Result<()> + Sync,
+) -> Result<()> {
+    let selected = |(name, _): &&(&str, Study)| only.is_none_or(|only| *name == only);
+    let studies: Vec<_> = STUDIES.iter().filter(selected).copied().collect();
+    if studies.is_empty() {
+        let names = STUDIES.map(|(name, _)| name).join(" ");
+        bail!(
+            "unknown study {}: expected one of {names}",
+            only.unwrap_or_default()
+        );
+    }
     let commit = Provenance::find().commit;
     let subjects = raymarched::sponges(SMALL);
-    let bar = progress::bar(STUDIES.len() as u64)?;
-    soc::two_at_a_time(&STUDIES, |(name, study)| {
+    let bar = progress::bar(studies.len() as u64)?;
+    soc::two_at_a_time(&studies, |(name, study)| {
         finished(name, &study(&Views::new(&subjects, bar.clone(), &commit)))?;
         bar.inc(1);
         Ok(())
