@@ -48,9 +48,10 @@ class Netlist:
                     self._loads[bit].append((pin, name))
 
     @classmethod
-    def read(cls, path, top):
-        """A module of a file of Yosys."""
-        return cls(json.loads(path.read_text())["modules"][top])
+    def read(cls, path):
+        """The top module of a file of Yosys."""
+        (top,) = (module for module in json.loads(path.read_text())["modules"].values() if "top" in module["attributes"])
+        return cls(top)
 
     def name(self, bit):
         """The name of a net in the source code, or None. Of the names of a net that crosses instances, the one in the file of the
@@ -158,7 +159,7 @@ def check_placement():
     folder = BUILD / "placement_sample"
     run_yosys("synth_xilinx -family xc7 -top placement_sample -flatten; select placement_sample; "
               "write_json -selected netlist.json", [TESTS / "placement_sample.sv"], folder)
-    netlist = Netlist.read(folder / "netlist.json", "placement_sample")
+    netlist = Netlist.read(folder / "netlist.json")
     # Of the flip-flops that an enable without a name controls, any may describe it.
     fan_outs = sorted((re.sub(r"\[\d\]", "", name), loads) for name, loads in netlist.fan_outs(4))
     counts = placement(netlist, 1, 2)

@@ -91,7 +91,7 @@ def _measure(top, sources, parameters, seeds, folder):
     runs = [_route(folder, seed) for seed in seeds]
     median = sorted(runs, key=lambda run: run["mhz"])[len(runs) // 2]
     return {"nextpnr": version(NEXTPNR), "seeds": [run["mhz"] for run in runs], "mhz": median["mhz"],
-            "path": worst_path(median["path"], Netlist.read(folder / "netlist.json", "route_wrapper"))}
+            "path": worst_path(median["path"], Netlist.read(folder / "netlist.json"))}
 
 
 def _block(name):

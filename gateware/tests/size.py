@@ -32,7 +32,7 @@ _MARKS, _PADS = {"$scopeinfo"}, {"BUFG", "IBUF", "OBUF"}
 # kind would cut a path, so none is allowed.
 _SCRIPT = """synth_xilinx -family xc7 -top {top} -flatten;
 tee -q -o {folder}/cells.json stat -json;
-select {top}; write_json -selected {folder}/netlist.json; select -clear;
+select A:top; write_json -selected {folder}/netlist.json; select -clear;
 techmap -map {reads}; opt_clean;
 select -assert-none t:RAM32* t:RAM64* t:RAM128* t:RAM256* t:RAM512*;
 delete t:* t:LUT* %d t:INV %d t:CARRY4 %d t:MUXF* %d t:$lut %d;
@@ -71,7 +71,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
     run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
     resources = sort_cells(stat["design"]["num_cells_by_type"], ignored)
-    design = netlist.Netlist.read(mapped, top)
+    design = netlist.Netlist.read(mapped)
     return {"yosys": stat["creator"].split(" (")[0], **resources, "path": longest_path(path.read_text()),
             **netlist.placement(design, _luts(resources), resources["carry4"]),
             "instances": [_instance(path, kinds) for path, kinds in sorted(design.instances(is_flat_source=name == SOC).items())]}
