@@ -6,13 +6,15 @@
 //! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
 
 pub use ::fixed;
-use ::fixed::types::extra::{U14, U23, U28, U30, U32};
+use ::fixed::types::extra::{U14, U23, U24, U28, U30, U32};
 use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32};
 
 /// Format of positions and normals: units of 2^−14, in [−2, 2).
 pub type Q2_14 = FixedI16<U14>;
 /// Format of a camera's basis: units of 2^−23, in [−2, 2), 25 bits in a 32-bit word.
 pub type Q2_23 = FixedI32<U23>;
+/// Format of the entries of a model matrix: units of 2^−24, in [−128, 128).
+pub type Q8_24 = FixedI32<U24>;
 /// Format of sines and cosines: units of 2^−30, in [−2, 2).
 pub type Q2_30 = FixedI32<U30>;
 /// Format of positions in the world, such as an eye: units of 2^−32.

@@ -24,6 +24,7 @@ pub mod imu;
 pub mod light;
 #[rustfmt::skip]
 pub mod machine;
+pub mod matrix;
 pub mod mesh;
 pub mod mpu6050;
 pub mod orientation;
@@ -31,4 +32,5 @@ pub mod picture;
 pub mod polar;
 pub mod stereo;
 pub mod trig;
+pub mod vector;
 pub mod wire;

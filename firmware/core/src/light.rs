@@ -11,6 +11,7 @@ use heapless::Vec;
 use crate::choice::choices;
 use crate::field::MAX_SPHERES;
 use crate::fixed::Q32_32;
+use crate::vector::unit;
 
 /// Red, green and blue, 8 bits each.
 pub type Rgb = [u8; 3];
@@ -40,25 +41,11 @@ impl Light {
     /// # Errors
     /// All components of the direction are 0.
     pub fn new(towards: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
-        let magnitudes = towards.map(|x| x.to_bits().unsigned_abs());
-        let largest = magnitudes.into_iter().max().unwrap_or(0);
-        let Some(lead) = largest.checked_ilog2() else {
-            return Err(LightError::Nowhere);
-        };
-        // The components are scaled so that the largest has 31 bits; the sum of their squares then has at most 64 bits.
-        let scaled = magnitudes.map(|x| {
-            if lead < 30 {
-                x << (30 - lead)
-            } else {
-                x >> (lead - 30)
-            }
-        });
-        let length = scaled.map(|x| x * x).iter().sum::<u64>().isqrt();
-        let unit = scaled.map(|x| ((x << 15) / length + 1) >> 1);
-        let signed = |i: usize| unit[i] as i16 * towards[i].signum().to_num::<i16>();
+        let direction = unit::<14>(towards.map(Q32_32::to_bits)).ok_or(LightError::Nowhere)?;
         Ok(Self {
             towards,
-            direction: [0, 1, 2].map(signed),
+            // A component is at most 2^14 in magnitude.
+            direction: direction.map(|x| x as i16),
             colour,
         })
     }

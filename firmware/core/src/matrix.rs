@@ -1,0 +1,325 @@
+//! Model matrices: the place of an object in the world.
+//!
+//! A [`Matrix`] maps a point P of a mesh to the point A·P + t of the world, with the 3×3 matrix A and the translation t in
+//! Q8.24. Every matrix is in range and not singular: a constructor or an operation whose result is not is refused with the row.
+//! No operation saturates.
+
+use core::fmt;
+
+use crate::choice::choices;
+use crate::fixed::{Q2_30, Q8_24, Turns};
+use crate::trig::sin_cos_q30;
+use crate::vector::{cross, dot, unit};
+
+/// Largest magnitude of an entry of the 3×3 matrix.
+pub const MAX_ENTRY: Q8_24 = Q8_24::lit("16");
+/// Largest magnitude of a component of the translation, in world units.
+pub const MAX_TRANSLATION: Q8_24 = Q8_24::lit("32");
+/// Smallest length of a row of the 3×3 matrix.
+pub const MIN_ROW: Q8_24 = Q8_24::lit("0.001");
+/// Smallest sine of the angle between a row and the rows before it, 2^−10 in units of 2^−30.
+const MIN_SINE: i64 = 1 << 20;
+
+/// An axis of the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The first axis.
+    X,
+    /// The second axis.
+    Y,
+    /// The third axis, which points up.
+    Z,
+}
+
+choices!(Axis {
+    X: "x",
+    Y: "y",
+    Z: "z"
+});
+
+/// A checked model matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Matrix {
+    linear: [[Q8_24; 3]; 3],
+    translation: [Q8_24; 3],
+    mirrors: bool,
+}
+
+impl Matrix {
+    /// The matrix that leaves every point in place.
+    pub const IDENTITY: Self = {
+        let [zero, one] = [Q8_24::ZERO, Q8_24::ONE];
+        Self {
+            linear: [[one, zero, zero], [zero, one, zero], [zero, zero, one]],
+            translation: [zero; 3],
+            mirrors: false,
+        }
+    };
+
+    /// Makes a matrix from its rows and its translation, after checking them.
+    ///
+    /// Entries are within ±[`MAX_ENTRY`], the translation is within ±[`MAX_TRANSLATION`], every row is at least [`MIN_ROW`] long, and
+    /// the sine of the angle between a row and the plane or line through the rows before it is at least 2^−10.
+    ///
+    /// # Errors
+    /// The first row that violates a condition.
+    pub fn new_checked(
+        linear: [[Q8_24; 3]; 3],
+        translation: [Q8_24; 3],
+    ) -> Result<Self, MatrixError> {
+        let mut directions = [[0; 3]; 3];
+        for (row, entries) in linear.into_iter().enumerate() {
+            if entries
+                .iter()
+                .any(|x| x.unsigned_abs() > MAX_ENTRY.unsigned_abs())
+            {
+                return Err(MatrixError::Entry { row, entries });
+            }
+            let distance = translation[row];
+            if distance.unsigned_abs() > MAX_TRANSLATION.unsigned_abs() {
+                return Err(MatrixError::Translation { row, distance });
+            }
+            let bits = entries.map(Q8_24::to_bits);
+            directions[row] = match unit::<30>(bits.map(i64::from)) {
+                Some(direction) if is_long(bits) => direction,
+                _ => return Err(MatrixError::Short { row, entries }),
+            };
+        }
+        let [first, second, third] = directions;
+        let normal = cross(first, second).map(|x| (x >> 30) as i32);
+        if dot(normal, normal) < MIN_SINE * MIN_SINE {
+            return Err(MatrixError::Singular { row: 1 });
+        }
+        let volume = dot(normal, third) >> 30;
+        if volume.abs() < MIN_SINE {
+            return Err(MatrixError::Singular { row: 2 });
+        }
+        Ok(Self {
+            linear,
+            translation,
+            mirrors: volume < 0,
+        })
+    }
+
+    /// The rotation about `axis` by `angle`: x turns to y about the z axis, y to z about the x axis, and z to x about the y axis.
+    ///
+    /// Quarter turns are exact; the error of other entries is at most 0.51 units (2^−24).
+    pub fn rotation(axis: Axis, angle: Turns) -> Self {
+        let narrow = |x: Q2_30| Q8_24::from_bits((x.to_bits() + (1 << 5)) >> 6);
+        let (sin, cos) = sin_cos_q30(angle);
+        // The sine is rounded as a magnitude and then negated, so that the matrix of −angle is exactly the transpose.
+        let sin = if sin < 0 { -narrow(-sin) } else { narrow(sin) };
+        let cos = if cos < 0 { -narrow(-cos) } else { narrow(cos) };
+        let (i, j) = match axis {
+            Axis::X => (1, 2),
+            Axis::Y => (2, 0),
+            Axis::Z => (0, 1),
+        };
+        let mut rotation = Self::IDENTITY;
+        rotation.linear[i][i] = cos;
+        rotation.linear[j][j] = cos;
+        rotation.linear[i][j] = -sin;
+        rotation.linear[j][i] = sin;
+        rotation
+    }
+
+    /// The scaling by a factor for each axis, exactly. A negative factor mirrors.
+    ///
+    /// # Errors
+    /// A factor is not between 0.001 and 16 in magnitude.
+    pub fn scale([x, y, z]: [Q8_24; 3]) -> Result<Self, MatrixError> {
+        let zero = Q8_24::ZERO;
+        Self::new_checked(
+            [[x, zero, zero], [zero, y, zero], [zero, zero, z]],
+            [zero; 3],
+        )
+    }
+
+    /// The translation by a vector, in world units, exactly.
+    ///
+    /// # Errors
+    /// A component exceeds 32 in magnitude.
+    pub fn translation(by: [Q8_24; 3]) -> Result<Self, MatrixError> {
+        Self::new_checked(Self::IDENTITY.linear, by)
+    }
+
+    /// Returns the matrix that applies this matrix first and `next` second. The error of each number is at most half a unit
+    /// (2^−25): it is rounded once, to nearest.
+    ///
+    /// # Errors
+    /// The result is out of range or singular.
+    pub fn then(&self, next: &Self) -> Result<Self, MatrixError> {
+        // An entry is at most 2^28 and a component of the translation at most 2^29, so the sums are below 2^59. The result is at most
+        // 3·16·32 + 32, which is not in the range of Q8.24; it saturates there, far out of the range of a matrix.
+        let product = |row: [Q8_24; 3], column: [Q8_24; 3], addend: Q8_24| {
+            let sum: i64 = core::iter::zip(row, column)
+                .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
+                .sum();
+            let sum = sum + (i64::from(addend.to_bits()) << 24);
+            let rounded = (sum + (1 << 23)) >> 24;
+            Q8_24::from_bits(rounded.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+        };
+        let [a, b, c] = self.linear;
+        let columns = [0, 1, 2].map(|j| [a[j], b[j], c[j]]);
+        Self::new_checked(
+            next.linear
+                .map(|row| columns.map(|column| product(row, column, Q8_24::ZERO))),
+            [0, 1, 2].map(|i| product(next.linear[i], self.translation, next.translation[i])),
+        )
+    }
+
+    /// The rows of the 3×3 matrix A.
+    pub const fn linear(&self) -> [[Q8_24; 3]; 3] {
+        self.linear
+    }
+
+    /// The translation t in world units: the place of the mesh's origin.
+    pub const fn place(&self) -> [Q8_24; 3] {
+        self.translation
+    }
+
+    /// Whether the determinant is negative, so that the mirror image of the mesh is seen: a front face is then clockwise.
+    pub const fn mirrors(&self) -> bool {
+        self.mirrors
+    }
+
+    /// The matrix for the normals of the mesh.
+    pub fn normals(&self) -> Normals {
+        let rows = self.linear.map(|row| row.map(Q8_24::to_bits));
+        let [a, b, c] = rows;
+        // Entries are at most 2^28, and so each product of two is at most 2^57.
+        let mut cofactors = [cross(b, c), cross(c, a), cross(a, b)];
+        let largest = cofactors
+            .as_flattened()
+            .iter()
+            .fold(1, |largest, x| largest | x.unsigned_abs());
+        let cut = largest.ilog2().saturating_sub(LEAD);
+        let raise = LEAD.saturating_sub(largest.ilog2());
+        for x in cofactors.as_flattened_mut() {
+            *x = (*x >> cut) << raise;
+            if self.mirrors {
+                *x = -*x;
+            }
+        }
+        Normals {
+            cofactors,
+            rotation: rotation_of(rows),
+        }
+    }
+}
+
+/// Number of the highest bit of the largest cofactor. Normals have components below 2^15, so products stay below 2^62.
+const LEAD: u32 = 44;
+
+/// Whether a row is at least [`MIN_ROW`] long.
+fn is_long(row: [i32; 3]) -> bool {
+    dot(row, row) >= i64::from(MIN_ROW.to_bits()).pow(2)
+}
+
+/// Returns A/s for a matrix A that is a rotation or a reflection times one scale s, in units of 2^−30; `None` for any other.
+///
+/// The squares of the lengths may differ by a part of 2^−12, and so may the scalar products from 0.
+fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
+    let [a, b, c] = rows;
+    let square = dot(a, a);
+    let is_small = |x: i64| x.abs() <= square >> 13;
+    let is_even = is_small(dot(b, b) - square) && is_small(dot(c, c) - square);
+    let is_square = [dot(a, b), dot(b, c), dot(c, a)].into_iter().all(is_small);
+    if !(is_even && is_square) {
+        return None;
+    }
+    let direction = |row: [i32; 3]| unit::<30>(row.map(i64::from));
+    Some([direction(a)?, direction(b)?, direction(c)?])
+}
+
+/// The matrix for the normals of a mesh: the inverse transpose of A, up to a positive factor.
+///
+/// It is the matrix of the cofactors of A with the sign of the determinant, so nothing is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Normals {
+    /// The highest bit of the largest cofactor has the number `LEAD`.
+    cofactors: [[i64; 3]; 3],
+    /// A divided by its scale, Q2.30, if A is a rotation or a reflection times one scale.
+    rotation: Option<[[i32; 3]; 3]>,
+}
+
+impl Normals {
+    /// Transforms a normal (s2.14) and scales it to length 1, s2.14; the zero vector stays.
+    ///
+    /// The error of each component is at most 0.51 units (2^−14).
+    pub fn apply(&self, normal: [i16; 3]) -> [i16; 3] {
+        let turned = self.cofactors.map(|row| {
+            core::iter::zip(row, normal)
+                .map(|(a, b)| a * i64::from(b))
+                .sum()
+        });
+        unit::<14>(turned).map_or([0; 3], |x| x.map(|x| x as i16))
+    }
+
+    /// A divided by its scale, Q2.30, if A is a rotation or a reflection times one scale, within a part of 2^−12; otherwise
+    /// `None`. Its transpose brings the direction of a light to the mesh, and the normals of the mesh stay as they are.
+    pub const fn rotation(&self) -> Option<&[[i32; 3]; 3]> {
+        self.rotation.as_ref()
+    }
+}
+
+/// Reason why numbers are not a model matrix. Rows count from 0 here, and from 1 in the message.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatrixError {
+    /// An entry of the 3×3 matrix is out of range.
+    Entry {
+        /// The row.
+        row: usize,
+        /// Entries of the row.
+        entries: [Q8_24; 3],
+    },
+    /// A component of the translation is out of range.
+    Translation {
+        /// The row.
+        row: usize,
+        /// The component.
+        distance: Q8_24,
+    },
+    /// A row of the 3×3 matrix is shorter than [`MIN_ROW`].
+    Short {
+        /// The row.
+        row: usize,
+        /// Entries of the row.
+        entries: [Q8_24; 3],
+    },
+    /// A row of the 3×3 matrix is, nearly, a sum of multiples of the rows before it.
+    Singular {
+        /// The row.
+        row: usize,
+    },
+}
+
+impl fmt::Display for MatrixError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let (Self::Entry { row, .. }
+        | Self::Translation { row, .. }
+        | Self::Short { row, .. }
+        | Self::Singular { row }) = self;
+        write!(f, "matrix row {}: ", row + 1)?;
+        match self {
+            Self::Entry {
+                entries: [x, y, z], ..
+            } => write!(f, "({x}, {y}, {z}): expected entries within ±{MAX_ENTRY}"),
+            Self::Translation { distance, .. } => write!(
+                f,
+                "translation {distance}: expected within ±{MAX_TRANSLATION}"
+            ),
+            Self::Short {
+                entries: [x, y, z], ..
+            } => write!(
+                f,
+                "({x}, {y}, {z}): expected a length of at least {MIN_ROW}"
+            ),
+            Self::Singular { .. } => f.write_str(
+                "singular: expected an angle of at least 0.056 degrees to the rows before it",
+            ),
+        }
+    }
+}
+
+impl core::error::Error for MatrixError {}

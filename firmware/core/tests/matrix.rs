@@ -1,0 +1,256 @@
+//! Model matrices compared with computations in f64.
+
+use std::f64::consts::TAU;
+
+use glint_core::fixed::{Q8_24, Turns};
+use glint_core::matrix::{Axis, MAX_ENTRY, MIN_ROW, Matrix, MatrixError};
+use proptest::prelude::*;
+
+type Rows = [[f64; 3]; 3];
+
+/// Half a unit of Q8.24.
+const HALF_UNIT: f64 = 1.0 / 33_554_432.0;
+
+fn number(x: f64) -> Q8_24 {
+    Q8_24::from_num(x)
+}
+
+fn rows(matrix: &Matrix) -> Rows {
+    matrix.linear().map(|row| row.map(Q8_24::to_num))
+}
+
+fn place(matrix: &Matrix) -> [f64; 3] {
+    matrix.place().map(Q8_24::to_num)
+}
+
+fn times(a: Rows, b: Rows) -> Rows {
+    a.map(|row| [0, 1, 2].map(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
+}
+
+fn applied(a: Rows, p: [f64; 3]) -> [f64; 3] {
+    a.map(|row| (0..3).map(|k| row[k] * p[k]).sum())
+}
+
+/// The inverse transpose, by Cramer's rule.
+fn inverse_transpose(a: Rows) -> Rows {
+    let cofactor = |i: usize, j: usize| {
+        let (p, q) = ((i + 1) % 3, (i + 2) % 3);
+        let (r, s) = ((j + 1) % 3, (j + 2) % 3);
+        a[p][r] * a[q][s] - a[p][s] * a[q][r]
+    };
+    let determinant: f64 = (0..3).map(|j| a[0][j] * cofactor(0, j)).sum();
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| cofactor(i, j) / determinant))
+}
+
+fn normalised(v: [f64; 3]) -> [f64; 3] {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    v.map(|x| x / length)
+}
+
+fn difference(a: &[f64], b: &[f64]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
+}
+
+fn rotation(axis: Axis, angle: Turns) -> Rows {
+    let (s, c) = (f64::from(angle.0) / 2f64.powi(32) * TAU).sin_cos();
+    match axis {
+        Axis::X => [[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]],
+        Axis::Y => [[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]],
+        Axis::Z => [[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]],
+    }
+}
+
+/// A rotation about three axes, a scale for each axis, a second rotation and a translation: any matrix is one of these.
+fn any_matrix(scales: [f64; 3], angles: [u32; 4], by: [f64; 3]) -> Result<Matrix, MatrixError> {
+    let [a, b, c, d] = angles.map(Turns);
+    Matrix::rotation(Axis::Z, a)
+        .then(&Matrix::rotation(Axis::X, b))?
+        .then(&Matrix::scale(scales.map(number))?)?
+        .then(&Matrix::rotation(Axis::Y, c))?
+        .then(&Matrix::rotation(Axis::Z, d))?
+        .then(&Matrix::translation(by.map(number))?)
+}
+
+fn factor() -> impl Strategy<Value = f64> {
+    ((-9.0..3.5_f64), any::<bool>()).prop_map(|(log, negative)| {
+        let size = log.exp2();
+        if negative { -size } else { size }
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(4_000))]
+
+    #[test]
+    fn rotations_are_what_they_should_be(axis in 0..3_usize, angle in any::<u32>()) {
+        let axis = Axis::ALL[axis];
+        let found = rows(&Matrix::rotation(axis, Turns(angle)));
+        let error = difference(found.as_flattened(), rotation(axis, Turns(angle)).as_flattened());
+        prop_assert!(error <= 1.02 * HALF_UNIT, "{error:e}");
+        // The matrix of the opposite angle is the transpose.
+        let back = rows(&Matrix::rotation(axis, -Turns(angle)));
+        prop_assert_eq!(back, [0, 1, 2].map(|i| [0, 1, 2].map(|j| found[j][i])));
+    }
+
+    #[test]
+    fn a_composition_is_rounded_once(
+        scales in [factor(), factor(), factor()],
+        angles in any::<[u32; 4]>(),
+        by in [-8.0..8.0, -8.0..8.0, -8.0..8.0_f64],
+        next in [factor(), factor(), factor()],
+        turn in any::<u32>(),
+    ) {
+        let (Ok(first), Ok(next)) = (any_matrix(scales, angles, by), Matrix::scale(next.map(number))) else {
+            return Ok(());
+        };
+        let Ok(next) = next.then(&Matrix::rotation(Axis::Y, Turns(turn))) else { return Ok(()) };
+        let Ok(both) = first.then(&next) else { return Ok(()) };
+        let error = difference(
+            rows(&both).as_flattened(),
+            times(rows(&next), rows(&first)).as_flattened(),
+        );
+        prop_assert!(error <= HALF_UNIT * 1.000_001, "{error:e}");
+        let error = difference(&place(&both), &applied(rows(&next), place(&first)));
+        prop_assert!(error <= HALF_UNIT * 1.000_001, "{error:e}");
+        prop_assert_eq!(both.mirrors(), first.mirrors() != next.mirrors());
+    }
+
+    /// Normals go by the inverse transpose and have length 1.
+    #[test]
+    fn normals_go_by_the_inverse_transpose(
+        scales in [factor(), factor(), factor()],
+        angles in any::<[u32; 4]>(),
+        normal in [any::<i16>(), any::<i16>(), any::<i16>()],
+    ) {
+        let Ok(matrix) = any_matrix(scales, angles, [0.0; 3]) else { return Ok(()) };
+        let unit = normalised(normal.map(f64::from));
+        prop_assume!(unit.iter().all(|x| x.is_finite()));
+        let normal = unit.map(|x| (x * 16_384.0).round() as i16);
+        let expected = normalised(applied(
+            inverse_transpose(rows(&matrix)),
+            normal.map(f64::from),
+        ));
+        let found = matrix.normals().apply(normal).map(f64::from);
+        let error = difference(&found, &expected.map(|x| x * 16_384.0));
+        prop_assert!(error <= 0.51, "{error}");
+    }
+
+    /// With one scale for all axes, a light that is brought to the mesh makes the same angle with the mesh's normals.
+    #[test]
+    fn a_light_comes_to_a_mesh_of_one_scale(
+        scale in factor(),
+        angles in any::<[u32; 4]>(),
+        normal in [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64],
+        light in [-1.0..1.0, -1.0..1.0, -1.0..1.0_f64],
+    ) {
+        let Ok(matrix) = any_matrix([scale; 3], angles, [0.0; 3]) else { return Ok(()) };
+        let (normal, light) = (normalised(normal), normalised(light));
+        let rotation = *matrix.normals().rotation().expect("one scale");
+        let rotation = rotation.map(|row| row.map(|x| f64::from(x) / 2f64.powi(30)));
+        let turned = normalised(applied(inverse_transpose(rows(&matrix)), normal));
+        let expected: f64 = (0..3).map(|i| turned[i] * light[i]).sum();
+        let brought = applied([0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[j][i])), light);
+        let found: f64 = (0..3).map(|i| brought[i] * normal[i]).sum();
+        prop_assert!((found - expected).abs() <= 2f64.powi(-12), "{found} {expected}");
+    }
+
+    #[test]
+    fn no_matrix_panics(entries in any::<[i32; 9]>(), by in any::<[i32; 3]>(), shift in 0..20_u32) {
+        let [a, b, c] = [0, 3, 6].map(|i| [0, 1, 2].map(|j| Q8_24::from_bits(entries[i + j] >> shift)));
+        match Matrix::new_checked([a, b, c], by.map(|x| Q8_24::from_bits(x >> shift))) {
+            Ok(matrix) => {
+                let _ = (matrix.normals().apply([i16::MIN; 3]), matrix.then(&matrix));
+            }
+            Err(error) => prop_assert!(error.to_string().starts_with("matrix row ")),
+        }
+    }
+}
+
+#[test]
+fn axes_of_rotations() {
+    let quarter = |axis| {
+        applied(
+            rows(&Matrix::rotation(axis, Turns::QUARTER)),
+            [1.0, 2.0, 3.0],
+        )
+    };
+    assert_eq!(quarter(Axis::X), [1.0, -3.0, 2.0]);
+    assert_eq!(quarter(Axis::Y), [3.0, 2.0, -1.0]);
+    assert_eq!(quarter(Axis::Z), [-2.0, 1.0, 3.0]);
+}
+
+#[test]
+fn a_negative_scale_mirrors() {
+    let mirrors = |x, y, z| Matrix::scale([x, y, z].map(number)).unwrap().mirrors();
+    assert!(!mirrors(1.0, 1.0, 1.0) && !mirrors(-1.0, -1.0, 1.0));
+    assert!(mirrors(-1.0, 1.0, 1.0) && mirrors(-1.0, -1.0, -1.0));
+    // The normal of a mirrored face still points outwards.
+    let mirror = Matrix::scale([-2.0, 1.0, 1.0].map(number)).unwrap();
+    assert_eq!(mirror.normals().apply([1 << 14, 0, 0]), [-1 << 14, 0, 0]);
+    assert_eq!(mirror.normals().apply([0, 1 << 14, 0]), [0, 1 << 14, 0]);
+    assert_eq!(mirror.normals().rotation(), None);
+}
+
+#[test]
+fn refusals_name_the_row() {
+    let [zero, one] = [Q8_24::ZERO, Q8_24::ONE];
+    let identity = Matrix::IDENTITY.linear();
+    let with = |row: usize, entries: [f64; 3]| {
+        let mut rows = identity;
+        rows[row] = entries.map(number);
+        Matrix::new_checked(rows, [zero; 3]).map_err(|error| error.to_string())
+    };
+    let text = |row, entries| with(row, entries).unwrap_err();
+    assert_eq!(
+        text(0, [16.5, 0.0, 0.0]),
+        "matrix row 1: (16.5, 0, 0): expected entries within ±16"
+    );
+    assert_eq!(
+        text(1, [0.0, 0.0, -128.0]),
+        "matrix row 2: (0, 0, -128): expected entries within ±16"
+    );
+    assert_eq!(
+        text(2, [0.0; 3]),
+        "matrix row 3: (0, 0, 0): expected a length of at least 0.001"
+    );
+    let singular = "singular: expected an angle of at least 0.056 degrees to the rows before it";
+    assert_eq!(
+        text(1, [3.0, 0.0, 0.0]),
+        format!("matrix row 2: {singular}")
+    );
+    assert_eq!(
+        text(2, [1.0, 2.0, 0.0]),
+        format!("matrix row 3: {singular}")
+    );
+    assert_eq!(
+        text(2, [1.0, 0.0, 0.0009]),
+        format!("matrix row 3: {singular}")
+    );
+    assert!(with(2, [1.0, 0.0, 0.001]).is_ok());
+    let error = Matrix::translation([zero, zero, number(32.5)]).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "matrix row 3: translation 32.5: expected within ±32"
+    );
+    // Sizes at both ends of the range, and just beyond.
+    for size in [MIN_ROW, MAX_ENTRY, -MIN_ROW, -MAX_ENTRY] {
+        assert!(Matrix::scale([size, one, one]).is_ok());
+    }
+    for size in [MIN_ROW - Q8_24::DELTA, MAX_ENTRY + Q8_24::DELTA, zero] {
+        assert!(Matrix::scale([one, size, one]).is_err());
+    }
+    // A composition out of range is refused, far out of the format's range too.
+    let large = Matrix::scale([MAX_ENTRY; 3]).unwrap();
+    assert!(matches!(
+        large.then(&large),
+        Err(MatrixError::Entry { row: 0, .. })
+    ));
+    let far = Matrix::translation([number(31.0); 3]).unwrap();
+    assert!(matches!(
+        far.then(&large),
+        Err(MatrixError::Translation { row: 0, .. })
+    ));
+}
