@@ -21,3 +21,4 @@ pub use command::{
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use error::ParseError;
 pub use values::ImuAction;
+pub use words::{Word, Words};

@@ -6,11 +6,15 @@
 //! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
 
 pub use ::fixed;
-use ::fixed::types::extra::{U14, U23, U24, U28, U30, U32};
+use ::fixed::types::extra::{U11, U14, U20, U23, U24, U28, U30, U32};
 use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32};
 
 /// Format of positions and normals: units of 2^−14, in [−2, 2).
 pub type Q2_14 = FixedI16<U14>;
+/// Format of the numbers in wireframe programs: units of 2^−11, in [−16, 16).
+pub type Q5_11 = FixedI16<U11>;
+/// Format of moved points of wireframes: units of 2^−20, in [−2048, 2048).
+pub type Q12_20 = FixedI32<U20>;
 /// Format of a camera's basis: units of 2^−23, in [−2, 2), 25 bits in a 32-bit word.
 pub type Q2_23 = FixedI32<U23>;
 /// Format of the entries of a model matrix: units of 2^−24, in [−128, 128).

@@ -1,5 +1,5 @@
 //! Code shared by firmware and host: cameras, sines, the sensor and its attitude, distance fields and lights, the format of
-//! meshes, transfers over a serial line, and the console's grammar.
+//! meshes, wireframe programs, transfers over a serial line, and the console's grammar.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]
@@ -34,3 +34,4 @@ pub mod stereo;
 pub mod trig;
 pub mod vector;
 pub mod wire;
+pub mod wireframe;

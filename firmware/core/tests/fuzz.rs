@@ -9,6 +9,7 @@ use glint_core::mesh::{IndexedTriangle, Mesh, Rgb565, Vertex, encode};
 use glint_core::orientation::Sample;
 use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use glint_core::wireframe::{Program, text};
 
 /// The longest input in bytes.
 const LONGEST: usize = 4 << 10;
@@ -164,6 +165,54 @@ fn logs() {
             Err(error) => assert!(error.to_string().starts_with("log: expected ")),
         }
     });
+    println!("{passed} passed");
+    assert!(passed > 0);
+}
+
+const PROGRAM: &str = "# two\neye 0 0 8\nplane 4\nwindow -4 -2.25 4 2.25\nsegment -1 -1 0 1 -1 0\nsegment 1 -1 -15.9 0 16e-1 0\nend\n";
+
+#[test]
+fn wireframe_words() {
+    let small = text::assemble(PROGRAM).expect("a good program");
+    let mut large = small.clone();
+    (0..100).for_each(|_| drop(large.splice(48..48, small[48..64].to_vec())));
+    let mut passed = 0;
+    fuzz(&[small, large], |bytes, _| {
+        match Program::new_checked(bytes) {
+            Ok(program) => {
+                passed += 1;
+                assert_eq!(program.segments().count(), program.segment_count() as usize);
+                let lines: String = program
+                    .instructions()
+                    .map(|line| format!("{line}\n"))
+                    .collect();
+                assert!(text::assemble(&lines).is_ok());
+            }
+            Err(error) => {
+                assert!(error.to_string().starts_with("wireframe program, word "));
+            }
+        }
+    });
+    println!("{passed} passed");
+    assert!(passed > 0);
+}
+
+#[test]
+fn wireframe_texts() {
+    let mut passed = 0;
+    fuzz(
+        &[PROGRAM.as_bytes().to_vec()],
+        |bytes, _| match text::assemble(&String::from_utf8_lossy(bytes)) {
+            Ok(bytes) => {
+                passed += 1;
+                assert!(Program::new_checked(&bytes).is_ok());
+            }
+            Err(error) => {
+                let error = error.to_string();
+                assert!(error.starts_with("wireframe program, line ") && error.is_ascii());
+            }
+        },
+    );
     println!("{passed} passed");
     assert!(passed > 0);
 }

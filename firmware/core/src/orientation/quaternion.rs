@@ -36,7 +36,7 @@ impl Quaternion {
 
     /// Returns the quaternion with exactly these components (w, x, y, z in units of 2^−30); `None` unless the
     /// length is 1 within 2^−28.
-    pub(super) fn exact(parts: [i32; 4]) -> Option<Self> {
+    pub(crate) fn exact(parts: [i32; 4]) -> Option<Self> {
         // Each square is at most 2^62, so the sum fits u64; a sum beyond i64 is far too long.
         let square = parts
             .iter()

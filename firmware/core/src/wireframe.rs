@@ -1,0 +1,26 @@
+//! The wireframe simulator: its programs, the motion of the picture by keys, and the projection to the screen (docs/wireframe.md).
+//!
+//! A program is a list of words of 99 bits: the eye, the view plane, the window, segments, and an end. [`Program::new_checked`]
+//! checks the binary form word by word, without a copy; [`text`] is the text form. [`Requests`] holds the keys that were pressed
+//! until the next frame takes one. [`Motion`] is the motion of all segments so far; [`accumulate`] is the rotation of the
+//! original design, which rounds the end points in place and therefore drifts. [`Projection`] maps a moved segment to the screen.
+
+pub mod accumulate;
+mod edges;
+mod error;
+mod format;
+mod instruction;
+mod keys;
+mod motion;
+mod program;
+mod projection;
+pub mod text;
+
+pub use edges::unique_edges;
+pub use error::{Expected, Found, Place, ProgramError, Violation};
+pub use format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
+pub use instruction::Instruction;
+pub use keys::{DEBOUNCE_MS, Debouncer, Key, Requests};
+pub use motion::{Motion, PAN, Pose, ROTATION_COSINE, ROTATION_SINE, Step};
+pub use program::{Checker, Program, Viewing};
+pub use projection::{GUARD, Projection, ScreenLine};

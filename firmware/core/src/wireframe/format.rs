@@ -1,0 +1,59 @@
+//! Sizes, opcodes and geometry of the program format.
+
+use crate::choice::choices;
+use crate::fixed::Q5_11;
+
+/// Largest number of segments of a program.
+pub const MAX_SEGMENTS: u32 = 65_535;
+/// Bytes of a word in memory: 128 bits, little-endian, of which a program uses the lower 99.
+pub const WORD_BYTES: usize = 16;
+
+/// A position in space: x to the right, y up, z to the viewer.
+pub type Point = [Q5_11; 3];
+/// The two end points of a segment.
+pub type Segment = [Point; 2];
+
+/// The part of the view plane that fills the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// Lower left corner: x and y.
+    pub low: [Q5_11; 2],
+    /// Upper right corner: x and y.
+    pub high: [Q5_11; 2],
+}
+
+/// The kinds of instructions. The discriminant is bits 98 to 96 of a word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Opcode {
+    /// The eye: x, y, z.
+    Eye = 0b000,
+    /// The view plane: its z.
+    Plane = 0b001,
+    /// The window: x and y of the lower left corner, then of the upper right one.
+    Window = 0b010,
+    /// A segment: x, y, z of both ends.
+    Segment = 0b100,
+    /// The end of the program.
+    End = 0b111,
+}
+
+choices!(Opcode {
+    Eye: "eye",
+    Plane: "plane",
+    Window: "window",
+    Segment: "segment",
+    End: "end",
+});
+
+impl Opcode {
+    /// Number of fields that an instruction of this kind uses, from the first field on.
+    pub const fn fields(self) -> usize {
+        match self {
+            Self::Eye => 3,
+            Self::Plane => 1,
+            Self::Window => 4,
+            Self::Segment => 6,
+            Self::End => 0,
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Keys, the requests that they make, and the suppression of contact bounce.
+
+use super::motion::Step;
+use crate::choice::choices;
+
+/// A key of the simulator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Pans up, or rotates the near side up.
+    Up,
+    /// Pans down, or rotates the near side down.
+    Down,
+    /// Pans to the left, or rotates the near side to the left.
+    Left,
+    /// Pans to the right, or rotates the near side to the right.
+    Right,
+    /// Moves the segments to the viewer.
+    ZoomIn,
+    /// Moves the segments away from the viewer.
+    ZoomOut,
+}
+
+choices!(Key {
+    Up: "up",
+    Down: "down",
+    Left: "left",
+    Right: "right",
+    ZoomIn: "zoom-in",
+    ZoomOut: "zoom-out",
+});
+
+impl Key {
+    /// The step that the key requests. The four arrows pan, or rotate if `rotate` is set (switch 0).
+    pub const fn step(self, rotate: bool) -> Step {
+        match (self, rotate) {
+            (Self::Up, false) => Step::Pan([0, 1, 0]),
+            (Self::Down, false) => Step::Pan([0, -1, 0]),
+            (Self::Left, false) => Step::Pan([-1, 0, 0]),
+            (Self::Right, false) => Step::Pan([1, 0, 0]),
+            (Self::Up, true) => Step::AboutX { forwards: false },
+            (Self::Down, true) => Step::AboutX { forwards: true },
+            (Self::Left, true) => Step::AboutY { forwards: false },
+            (Self::Right, true) => Step::AboutY { forwards: true },
+            (Self::ZoomIn, _) => Step::Pan([0, 0, 2]),
+            (Self::ZoomOut, _) => Step::Pan([0, 0, -2]),
+        }
+    }
+}
+
+/// The keys that were pressed and have not yet moved the segments: at most one request of each key.
+///
+/// Each frame takes one request. Keys take turns, so no key waits for more than the five others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Requests {
+    /// A bit for each key.
+    pending: u8,
+    /// Number of the key whose turn is next.
+    next: u8,
+}
+
+impl Requests {
+    /// Adds the request of a key. A request of the same key that still waits is the same request.
+    pub const fn press(&mut self, key: Key) {
+        self.pending |= 1 << key as u8;
+    }
+
+    /// Takes the request for the next frame.
+    pub fn take(&mut self) -> Option<Key> {
+        let mut order = Key::ALL.into_iter().cycle().skip(self.next.into());
+        let key = order
+            .by_ref()
+            .take(Key::ALL.len())
+            .find(|&key| self.pending >> key as u8 & 1 != 0)?;
+        self.pending &= !(1 << key as u8);
+        self.next = (key as u8 + 1) % Key::ALL.len() as u8;
+        Some(key)
+    }
+
+    /// Whether no request waits.
+    pub const fn is_empty(&self) -> bool {
+        self.pending == 0
+    }
+}
+
+/// Time in milliseconds for which all samples of a button must agree before its new level counts.
+pub const DEBOUNCE_MS: u32 = 5;
+
+/// Suppresses the contact bounce of up to eight buttons, from samples at any times.
+///
+/// A new level of a button counts at the first sample that is at least [`DEBOUNCE_MS`] after the first sample of this level, if no
+/// sample between them differs. So one sample alone never counts, and bounces that are shorter than this time are ignored.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Debouncer {
+    /// The levels that count.
+    levels: u8,
+    /// Buttons whose last sample differs from the level that counts.
+    changing: u8,
+    /// For each button, the time of the first sample of the new level.
+    since_ms: [u32; 8],
+}
+
+impl Debouncer {
+    /// Takes a sample of all buttons, 1 for a pressed one, at a time in milliseconds that may wrap. Returns the buttons whose
+    /// press counts from this sample on.
+    pub fn sample(&mut self, now_ms: u32, sample: u8) -> u8 {
+        let different = sample ^ self.levels;
+        let mut settled = 0;
+        for (button, since_ms) in self.since_ms.iter_mut().enumerate() {
+            let bit = 1 << button;
+            if self.changing & bit == 0 {
+                *since_ms = now_ms;
+            } else if different & bit != 0 && now_ms.wrapping_sub(*since_ms) >= DEBOUNCE_MS {
+                settled |= bit;
+            }
+        }
+        self.levels ^= settled;
+        self.changing = different & !settled;
+        settled & self.levels
+    }
+
+    /// Whether a button's level is changing, so that the next sample should follow soon.
+    pub const fn is_changing(&self) -> bool {
+        self.changing != 0
+    }
+}

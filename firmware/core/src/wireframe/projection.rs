@@ -1,0 +1,197 @@
+//! The projection of moved segments to the screen.
+//!
+//! A point P is projected from the eye E to the view plane z = a: x' = Ex − (Ez − a)·(Ex − x)/(Ez − z), and y' the same. The window
+//! then fills the picture. Both steps together are one quotient for each axis of the screen, with 8 fraction bits:
+//!
+//! ```text
+//! right = 256·W·((Ex − xl)·(Ez − z) − (Ez − a)·(Ex − x)) / ((xh − xl)·(Ez − z))
+//! down  = 256·H·((yh − Ey)·(Ez − z) + (Ez − a)·(Ey − y)) / ((yh − yl)·(Ez − z))
+//! ```
+//!
+//! A segment is first clipped at z = a, so z ≤ a < Ez: the divisor is positive, and z = Ez cannot occur.
+
+use super::program::Viewing;
+use crate::fixed::{Q5_11, Q12_20};
+use crate::picture::Size;
+
+/// A line on the screen: its two ends, each with the distance from the left and from the top border, in units of 2^−8 pixels,
+/// within ±[`GUARD`].
+pub type ScreenLine = [[i32; 2]; 2];
+
+/// The guard band: the largest distance of an end from the top left corner, 2047 pixels in units of 2^−8 pixels.
+pub const GUARD: i32 = 2047 << 8;
+
+/// A coordinate with 20 fraction bits.
+type Moved = [Q12_20; 3];
+
+/// The constants of a frame that project segments.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Projection {
+    /// The eye, with 20 fraction bits.
+    eye: [i64; 3],
+    /// The view plane, with 20 fraction bits.
+    plane: i64,
+    /// Ez − a, with 11 fraction bits, positive.
+    depth: i64,
+    /// The two axes of the screen: to the right, and down.
+    axes: [Axis; 2],
+}
+
+/// Constants of one axis of the screen. Lengths have 11 fraction bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Axis {
+    /// Distance of the eye from the side of the window at 0, along the axis.
+    offset: i64,
+    /// Extent of the window, positive.
+    span: i64,
+    /// Extent of the picture in units of 2^−8 pixels. Its sign is that of the axis in the world: negative for down.
+    extent: i64,
+}
+
+impl Projection {
+    /// The projection of a program's viewing parameters to a picture.
+    pub fn new(viewing: &Viewing, size: Size) -> Self {
+        let bits = |x: Q5_11| i64::from(x.to_bits());
+        let [ex, ey, ez] = viewing.eye.map(bits);
+        let [xl, yl] = viewing.window.low.map(bits);
+        let [xh, yh] = viewing.window.high.map(bits);
+        let plane = bits(viewing.plane);
+        let [width, height] = size.pixels().map(|pixels| i64::from(pixels) << 8);
+        Self {
+            eye: [ex, ey, ez].map(|x| x << 9),
+            plane: plane << 9,
+            depth: ez - plane,
+            axes: [
+                Axis {
+                    offset: ex - xl,
+                    span: xh - xl,
+                    extent: width,
+                },
+                Axis {
+                    offset: ey - yh,
+                    span: yh - yl,
+                    extent: -height,
+                },
+            ],
+        }
+    }
+
+    /// Projects a moved segment, whose coordinates are within ±56. `None` if no part of it is behind the view plane and within the
+    /// guard band.
+    ///
+    /// The part in front of the view plane is cut off; the cut is rounded to nearest with 20 fraction bits. A part beyond the guard
+    /// band is cut off exactly. Each end is then rounded once, to nearest, half units up.
+    pub fn line(&self, segment: [Moved; 2]) -> Option<ScreenLine> {
+        let [a, b] = self.behind(segment.map(|point| point.map(|x| i64::from(x.to_bits()))))?;
+        let (a, b) = (self.fractions(a), self.fractions(b));
+        Some([end(a, b)?, end(b, a)?])
+    }
+
+    /// Clips a segment to the half space z ≤ a.
+    fn behind(&self, [a, b]: [[i64; 3]; 2]) -> Option<[[i64; 3]; 2]> {
+        let above = |[_, _, z]: [i64; 3]| z - self.plane;
+        match (above(a) > 0, above(b) > 0) {
+            (true, true) => None,
+            (false, false) => Some([a, b]),
+            (false, true) => Some([a, self.cut(a, b)]),
+            (true, false) => Some([self.cut(b, a), b]),
+        }
+    }
+
+    /// The point in which a segment crosses the view plane, from its end behind the plane to that in front of it.
+    fn cut(&self, [x, y, z]: [i64; 3], [x2, y2, z2]: [i64; 3]) -> [i64; 3] {
+        // All differences are below 2^27.
+        let along = |from, to| from + nearest((to - from) * (self.plane - z), z2 - z);
+        [along(x, x2), along(y, y2), self.plane]
+    }
+
+    /// The two quotients of a point behind the view plane.
+    ///
+    /// With coordinates within ±56 and Q5.11 constants, each difference is below 2^16 units of 2^−11 or 72·2^20 units of 2^−20. So a
+    /// denominator is below 2^42.2, a numerator in a picture 1280 wide below 2^61.5, and the sum of the numerator and of the
+    /// guard band's multiple of the denominator below 2^62.4.
+    fn fractions(&self, point: [i64; 3]) -> [Fraction; 2] {
+        let ([x, y, z], [ex, ey, ez]) = (point, self.eye);
+        let distance = ez - z;
+        let [right, down] = self.axes;
+        [(right, ex - x), (down, ey - y)].map(|(axis, beside)| Fraction {
+            numerator: axis.extent * (axis.offset * distance - self.depth * beside),
+            denominator: axis.span * distance,
+        })
+    }
+}
+
+/// A quotient with a positive denominator: a distance in units of 2^−8 pixels. Numerator and denominator are linear in the point.
+#[derive(Clone, Copy, Debug)]
+struct Fraction {
+    numerator: i64,
+    denominator: i64,
+}
+
+impl Fraction {
+    /// The distances from both sides of the guard band, times the denominator: negative beyond the side.
+    const fn inside(self) -> [i64; 2] {
+        let guard = GUARD as i64 * self.denominator;
+        [guard + self.numerator, guard - self.numerator]
+    }
+
+    /// The quotient of a fraction within the guard band, to nearest.
+    fn value(self) -> i32 {
+        // The quotient is within ±GUARD, so it fits.
+        nearest(self.numerator, self.denominator) as i32
+    }
+}
+
+/// The visible end of a segment on the side of its end `a`: the end itself, or the point in which the segment enters the guard
+/// band. `None` if the segment is beyond the guard band.
+///
+/// For each side that `a` is beyond and `b` is not, the crossing has an exact position on the other axis. The crossing that lies
+/// within the guard band is the end; rounding follows last.
+fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
+    if a.iter().all(|axis| axis.inside().iter().all(|&d| d >= 0)) {
+        return Some(a.map(Fraction::value));
+    }
+    let [ax, ay] = a;
+    let [bx, by] = b;
+    for (axis, (from, to), other) in [(0, (ax, bx), (ay, by)), (1, (ay, by), (ax, bx))] {
+        for (side, (&out, &within)) in [-GUARD, GUARD]
+            .iter()
+            .zip(from.inside().iter().zip(&to.inside()))
+        {
+            if out >= 0 || within < 0 {
+                continue;
+            }
+            let Some(across) = crossing(other, i128::from(within), i128::from(out)) else {
+                continue;
+            };
+            return Some(if axis == 0 {
+                [*side, across]
+            } else {
+                [across, *side]
+            });
+        }
+    }
+    None
+}
+
+/// The position on one axis, to nearest, at which a segment from `a` to `b` crosses a plane, from its distances to the plane:
+/// `out` < 0 at `a` and `within` ≥ 0 at `b`. `None` beyond the guard band.
+fn crossing((a, b): (Fraction, Fraction), within: i128, out: i128) -> Option<i32> {
+    // The point is (a·within − b·out)/(within − out). The common divisor cancels; both sums are below 2^125.
+    let blend = |a: i64, b: i64| i128::from(a) * within - i128::from(b) * out;
+    let numerator = blend(a.numerator, b.numerator);
+    let denominator = blend(a.denominator, b.denominator);
+    let guard = i128::from(GUARD) * denominator;
+    (-guard..=guard).contains(&numerator).then(|| {
+        let quotient = numerator.div_euclid(denominator);
+        let rest = numerator.rem_euclid(denominator);
+        (quotient + i128::from(2 * rest >= denominator)) as i32
+    })
+}
+
+/// Divides by a positive number and rounds to nearest, half units up, also for negative quotients.
+const fn nearest(numerator: i64, denominator: i64) -> i64 {
+    let quotient = numerator.div_euclid(denominator);
+    let rest = numerator.rem_euclid(denominator);
+    quotient + (rest >= denominator - rest) as i64
+}
