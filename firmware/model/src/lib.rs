@@ -1,8 +1,9 @@
-//! Bit-exact software models of Glint's accelerators, the triangle engine and the raymarcher.
+//! Bit-exact software models of Glint's accelerators, the triangle engine, the line engine and the raymarcher.
 //!
-//! The crate computes the triangle pipeline and the raymarcher of `docs/formats.md` in integers. It is the renderer of
+//! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats.md` in integers. It is the renderer of
 //! the CPU backend, and the reference of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`]
-//! draws it: the mesh of the picture by [`triangle`], the rays of its distance field by [`raymarch`].
+//! draws it: the mesh of the picture by [`triangle`], the rays of its distance field by [`raymarch`];
+//! [`line`](mod@line) draws segments.
 //!
 //! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table. Every sum and
 //! product fits its type for every camera that [`glint_core::camera::View`] accepts and for every mesh; comments at
@@ -14,6 +15,7 @@ mod depth;
 mod error;
 mod frame;
 mod frame_buffer;
+pub mod line;
 pub mod mesh_in_field;
 pub mod raymarch;
 pub mod triangle;

@@ -14,7 +14,7 @@ pub mod quotient;
 pub mod raster;
 pub mod reciprocal;
 mod render;
-mod rounding;
+pub(crate) mod rounding;
 pub mod setup;
 pub mod shade;
 pub mod vertex;

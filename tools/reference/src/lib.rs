@@ -5,6 +5,7 @@
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
+//! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //! - [`triangle`]: an exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
@@ -14,6 +15,7 @@
 pub mod camera;
 pub mod errors;
 pub mod imu;
+pub mod line;
 pub mod raymarch;
 pub mod report;
 pub mod sine;

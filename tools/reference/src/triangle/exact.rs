@@ -141,8 +141,8 @@ fn centre(column: i64, row: i64) -> (i128, i128) {
 /// A depth in depth codes, as an exact fraction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ExactDepth {
-    numerator: i128,
-    denominator: i128,
+    pub(crate) numerator: i128,
+    pub(crate) denominator: i128,
 }
 
 impl ExactDepth {

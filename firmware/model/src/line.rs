@@ -1,0 +1,305 @@
+//! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats.md, "Lines").
+//!
+//! A line has one pixel in each column if its end points are further apart horizontally than vertically, else one in each
+//! row. This axis is its *major* axis, the other one its *minor* axis. Which pixels belong to it is the diamond-exit rule:
+//! those whose diamond |x| + |y| < 1/2 pixel about the centre the way from the first end point to the second one leaves.
+//! [`Line::new`] is the set-up, [`Line::pixels`] walks the part in a rectangle, and [`draw`] writes its pixels.
+
+use glint_core::colour::Rgb565;
+
+use crate::frame_buffer::FrameBuffer;
+use crate::triangle::ScreenVertex;
+use crate::triangle::rounding::nearest;
+use crate::triangle::setup::Bounds;
+
+/// End points are in −2048 ≤ x, y < 2048 pixels: s12.8.
+const REACH: core::ops::Range<i32> = -(1 << 19)..1 << 19;
+
+/// The largest depth code.
+const NEAREST: i64 = (1 << 18) - 1;
+
+/// How a line meets the depths of the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineDepth {
+    /// The line is drawn over everything. Its pixels take the largest depth code, so that only lines cover them later.
+    Over,
+    /// A pixel is drawn if its code is at least the stored one, which it replaces.
+    Tested {
+        /// Depth codes that are added to those of the line, so that it lies in front of the faces that it bounds.
+        bias: u16,
+    },
+}
+
+/// A pixel of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LinePixel {
+    /// Column in the picture.
+    pub column: i32,
+    /// Row in the picture.
+    pub row: i32,
+    /// Depth accumulator, 14 fraction bits, s20.14.
+    pub depth: i64,
+}
+
+impl LinePixel {
+    /// The depth code, to nearest, saturated to 1…2^18 − 1.
+    pub fn code(&self, depth: LineDepth) -> u32 {
+        let code = match depth {
+            LineDepth::Over => NEAREST,
+            LineDepth::Tested { bias } => {
+                (nearest(self.depth, 14) + i64::from(bias)).clamp(1, NEAREST)
+            }
+        };
+        code as u32
+    }
+}
+
+/// A segment after the set-up.
+///
+/// Coordinates are mirrored on an axis along which the segment runs backward: a column or row i becomes −1 − i there. So the
+/// walk from the first end point to the second one always increases them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Whether the columns are the major axis.
+    pub x_major: bool,
+    /// Whether the line runs to lower columns or rows along its major and its minor axis.
+    pub backward: [bool; 2],
+    /// Mirrored position of the first pixel on the major and the minor axis: the numbers of its column and row, or of its row
+    /// and column.
+    pub start: [i32; 2],
+    /// Number of pixels, at least 1.
+    pub count: i32,
+    /// Distances of the end points along the major and the minor axis, in 1/256 pixel: 0 ≤ minor ≤ major < 2^20.
+    pub span: [i32; 2],
+    /// Error term of the first pixel, −major ≤ error < 0. It rises by the minor distance with each pixel; at 0 and above the
+    /// walk moves along the minor axis and takes the major distance off.
+    pub error: i32,
+    /// Depth accumulator of the first pixel, s20.14.
+    pub depth: i64,
+    /// Increment of the depth accumulator for one pixel, s20.14.
+    pub depth_step: i64,
+}
+
+/// An end point on one axis, mirrored if the segment runs backward.
+#[derive(Clone, Copy)]
+struct Coordinate {
+    /// Number of the column or row.
+    pixel: i32,
+    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. The upper
+    /// border belongs to the column or row, or the lower one of a mirrored axis.
+    place: i32,
+}
+
+impl Coordinate {
+    /// Splits a coordinate, moved towards 0 by less than a unit. `!x` is −1 − x.
+    const fn new(x: i32, backward: bool) -> Self {
+        let x = if backward { !(x - 1) } else { x - 1 };
+        Self {
+            pixel: x >> 8,
+            place: x & 255,
+        }
+    }
+
+    /// Distance to the centre, less 1 on one of its sides.
+    const fn distance(self) -> i32 {
+        if self.place >= 128 {
+            self.place - 128
+        } else {
+            127 - self.place
+        }
+    }
+}
+
+impl Line {
+    /// The set-up (docs/formats.md, "Lines") of a segment from the first to the second end point; `None` for a segment that
+    /// leaves no diamond, or with an end point outside of the format s12.8.
+    pub fn new([a, b]: &[ScreenVertex; 2]) -> Option<Self> {
+        if [a.x, a.y, b.x, b.y].iter().any(|x| !REACH.contains(x)) {
+            return None;
+        }
+        let [dx, dy] = [b.x - a.x, b.y - a.y];
+        let x_major = dx.abs() >= dy.abs();
+        let by_axis = |[x, y]: [i32; 2]| if x_major { [x, y] } else { [y, x] };
+        let step = by_axis([dx, dy]);
+        let backward = step.map(|d| d < 0);
+        let [major, minor] = step.map(i32::abs);
+        let split = |v: &ScreenVertex| {
+            let [x, y] = by_axis([v.x, v.y]);
+            [
+                Coordinate::new(x, backward[0]),
+                Coordinate::new(y, backward[1]),
+            ]
+        };
+        let (from, to) = (split(a), split(b));
+        let [passed, end_passed] = [(a, from), (b, to)].map(|(v, at)| i32::from(passed(v, at)));
+        let first = from[0].pixel + passed;
+        let count = to[0].pixel + end_passed - first;
+        if count <= 0 {
+            return None;
+        }
+        // Distances in 1/256 pixel from the first end point to the first pixel's centre along the major axis, and from the
+        // lower border of its row or column to it along the minor one.
+        let ahead = 256 * passed + 127 - from[0].place + i32::from(backward[0]);
+        let above = from[1].place + i32::from(!backward[1]);
+        let tie = if x_major { dx < 0 || dy == 0 } else { dx >= 0 };
+        // At most 2^20·(256 + 256), so 32 bits suffice. The quotient by `major` is 0 or 1.
+        let moved = (major * above + minor * ahead - i32::from(tie)) >> 8;
+        let up = i32::from(moved >= major);
+        let depth_step = if major < 256 {
+            0
+        } else {
+            ((i64::from(b.w) - i64::from(a.w)) << 16).div_euclid(i64::from(major))
+        };
+        Some(Self {
+            x_major,
+            backward,
+            start: [first, from[1].pixel + up],
+            count,
+            span: [major, minor],
+            error: moved - major * (1 + up),
+            depth: (i64::from(a.w) << 8) + ((depth_step * i64::from(ahead)) >> 8),
+            depth_step,
+        })
+    }
+
+    /// The part of the line in a rectangle of the picture: the same pixels as without it, except those outside.
+    pub fn pixels(mut self, rectangle: &Bounds) -> LinePixels {
+        let columns = [rectangle.left, rectangle.right - 1];
+        let rows = [rectangle.top, rectangle.bottom - 1];
+        let mut limits = if self.x_major {
+            [columns, rows]
+        } else {
+            [rows, columns]
+        };
+        for (limits, backward) in limits.iter_mut().zip(self.backward) {
+            if backward {
+                *limits = [!limits[1], !limits[0]];
+            }
+        }
+        let [[major_first, major_last], [minor_first, minor_last]] = limits;
+        self.skip(i64::from(major_first - self.start[0]));
+        self.skip(self.steps_to(minor_first));
+        self.count = self.count.min(major_last - self.start[0] + 1);
+        LinePixels {
+            line: self,
+            minor_last,
+        }
+    }
+
+    /// Number of steps to the first pixel at `minor` on the minor axis, of which there may be none.
+    fn steps_to(&self, minor: i32) -> i64 {
+        let [major_span, minor_span] = self.span.map(i64::from);
+        let crossed = i64::from(minor - self.start[1]);
+        if crossed <= 0 {
+            return 0;
+        }
+        let distance = (crossed - 1) * major_span - i64::from(self.error);
+        match minor_span {
+            0 => i64::from(self.count),
+            _ => (distance + minor_span - 1) / minor_span,
+        }
+    }
+
+    /// Makes `steps` steps at once, if they are more than 0. No pixel remains if there are not as many.
+    fn skip(&mut self, steps: i64) {
+        if steps <= 0 {
+            return;
+        }
+        if steps >= i64::from(self.count) {
+            self.count = 0;
+            return;
+        }
+        let [major_span, minor_span] = self.span.map(i64::from);
+        let moved = i64::from(self.error) + major_span + steps * minor_span;
+        self.start[0] += steps as i32;
+        self.start[1] += (moved / major_span) as i32;
+        self.error = (moved % major_span - major_span) as i32;
+        self.count -= steps as i32;
+        self.depth += steps * self.depth_step;
+    }
+
+    fn pixel(&self) -> LinePixel {
+        let [major, minor] = [0, 1].map(|axis: usize| {
+            let (at, backward) = (self.start[axis], self.backward[axis]);
+            if backward { !at } else { at }
+        });
+        let [column, row] = if self.x_major {
+            [major, minor]
+        } else {
+            [minor, major]
+        };
+        LinePixel {
+            column,
+            row,
+            depth: self.depth,
+        }
+    }
+}
+
+/// Whether an end point is past the diamond of its column, or row, on the way along the major axis: in the upper half on
+/// that axis, and outside of its pixel's diamond. `at` is the end point on the major and the minor axis.
+fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
+    let below = Coordinate::new(v.y, false).place >= 128;
+    let distance = at[0].distance() + at[1].distance() + i32::from(below);
+    at[0].place >= 128 && distance >= 128
+}
+
+/// The pixels of a line in a rectangle, from the first end point to the second one.
+#[derive(Clone, Debug)]
+pub struct LinePixels {
+    /// The line from the next pixel on.
+    line: Line,
+    /// Last place on the minor axis in the rectangle, mirrored like the line.
+    minor_last: i32,
+}
+
+impl Iterator for LinePixels {
+    type Item = LinePixel;
+
+    fn next(&mut self) -> Option<LinePixel> {
+        let line = &mut self.line;
+        if line.count <= 0 || line.start[1] > self.minor_last {
+            return None;
+        }
+        let pixel = line.pixel();
+        line.count -= 1;
+        line.start[0] += 1;
+        line.error += line.span[1];
+        if line.error >= 0 {
+            line.error -= line.span[0];
+            line.start[1] += 1;
+        }
+        line.depth += line.depth_step;
+        Some(pixel)
+    }
+}
+
+/// Draws the part of a segment in the picture. Returns the number of pixels written.
+pub fn draw(
+    ends: &[ScreenVertex; 2],
+    colour: Rgb565,
+    depth: LineDepth,
+    target: &mut FrameBuffer,
+) -> u32 {
+    let picture = Bounds {
+        left: 0,
+        right: target.width as i32,
+        top: 0,
+        bottom: target.height as i32,
+    };
+    let pixels = Line::new(ends).map(|line| line.pixels(&picture));
+    let mut drawn = 0;
+    for pixel in pixels.into_iter().flatten() {
+        // The pixel is in the picture, so both numbers are positive and both places exist.
+        let at = pixel.row as usize * target.width as usize + pixel.column as usize;
+        let code = pixel.code(depth);
+        if let (Some(stored), Some(place)) = (target.depth.get_mut(at), target.colour.get_mut(at))
+            && code >= *stored
+        {
+            *stored = code;
+            *place = colour.0;
+            drawn += 1;
+        }
+    }
+    drawn
+}

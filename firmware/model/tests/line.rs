@@ -1,0 +1,282 @@
+//! Lines beside triangles, other lines and depths: what the exact pixels of single segments, in `glint-reference`, do not show.
+
+use std::collections::BTreeMap;
+
+use glint_core::colour::Rgb565;
+use glint_model::ScreenVertex;
+use glint_model::line::{Line, LineDepth, LinePixel, draw};
+use glint_model::triangle::descriptor::band_rows;
+use glint_model::triangle::raster;
+use glint_model::triangle::setup::Bounds;
+use glint_vectors::triangles::{SIZE, at, set_up};
+use glint_vectors::{Picture, Random};
+
+const PICTURE: Bounds = Bounds {
+    left: 0,
+    right: SIZE.0 as i32,
+    top: 0,
+    bottom: SIZE.1 as i32,
+};
+
+fn pixels(ends: [ScreenVertex; 2], rectangle: Bounds) -> Vec<LinePixel> {
+    let line = Line::new(&ends);
+    let pixels = line.map(|line| line.pixels(&rectangle));
+    pixels.into_iter().flatten().collect()
+}
+
+/// A random place in or near the picture, on a grid that meets ties, or anywhere.
+fn place(random: &mut Random) -> [i64; 2] {
+    let grid = [1, 64, 128, 256][random.integer(0, 3) as usize];
+    [SIZE.0, SIZE.1]
+        .map(|size| random.integer(-256 * 30, 256 * (i64::from(size) + 30)) / grid * grid)
+}
+
+/// Between its ends, a line covers the same pixels as the parallelogram about it that is one pixel high, or wide, drawn as two
+/// triangles: ties fall to the same side.
+#[test]
+fn a_line_is_a_parallelogram_of_one_pixel() {
+    let mut random = Random(1);
+    let mut compared = 0;
+    for _ in 0..2000 {
+        let [a, b] = [place(&mut random), place(&mut random)];
+        let x_major = (a[0] - b[0]).abs() >= (a[1] - b[1]).abs();
+        let [right, down] = if x_major { [0, 128] } else { [128, 0] };
+        let corner = |[x, y]: [i64; 2], side: i64| at([x + side * right, y + side * down]);
+        let mut picture = Picture::blank(SIZE);
+        for triangle in [
+            [corner(a, -1), corner(b, -1), corner(a, 1)],
+            [corner(b, -1), corner(a, 1), corner(b, 1)],
+        ] {
+            if let Some((_, setup)) = set_up(triangle, SIZE) {
+                raster::draw(&setup, Rgb565::WHITE, &mut picture.target());
+            }
+        }
+        // Both end pixels are decided by diamonds, and left out here.
+        let axis = usize::from(!x_major);
+        let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
+        let between = |i: i64| 256 * i > low && 256 * i + 256 < high;
+        let covered: Vec<bool> = picture.coverage();
+        let mut line = vec![false; covered.len()];
+        for pixel in pixels([at(a), at(b)], PICTURE) {
+            line[(pixel.row * SIZE.0 as i32 + pixel.column) as usize] = true;
+        }
+        for (i, (line, covered)) in line.into_iter().zip(covered).enumerate() {
+            let [column, row] = [i % SIZE.0 as usize, i / SIZE.0 as usize].map(|i| i as i64);
+            if between(if x_major { column } else { row }) {
+                assert_eq!(line, covered, "({column}, {row}) of {a:?} to {b:?}");
+                compared += u32::from(line);
+            }
+        }
+    }
+    println!("{compared} pixels");
+    assert!(compared > 50_000);
+}
+
+/// Segments that follow each other along the same major axis, in the same direction, have one pixel in each column or row.
+#[test]
+fn a_polyline_has_its_joints_once() {
+    let mut random = Random(2);
+    for _ in 0..300 {
+        let (x_major, backward) = (random.coin(), random.coin());
+        let mut points = vec![place(&mut random)];
+        for _ in 0..20 {
+            let ahead = random.integer(0, 256 * 6);
+            let beside = random.integer(-ahead, ahead);
+            let ahead = if backward { -ahead } else { ahead };
+            // Equal distances belong to the columns.
+            let [dx, dy] = if x_major {
+                [ahead, beside]
+            } else {
+                [beside - beside.signum(), ahead]
+            };
+            let [x, y] = points[points.len() - 1];
+            points.push([x + dx, y + dy]);
+        }
+        let everywhere = Bounds {
+            left: -2048,
+            right: 2048,
+            top: -2048,
+            bottom: 2048,
+        };
+        let mut steps: Vec<i32> = points
+            .windows(2)
+            .flat_map(|ends| pixels([at(ends[0]), at(ends[1])], everywhere))
+            .map(|pixel| if x_major { pixel.column } else { pixel.row })
+            .collect();
+        if backward {
+            steps.reverse();
+        }
+        assert!(
+            steps.windows(2).all(|pair| pair[0] + 1 == pair[1]),
+            "{points:?}"
+        );
+    }
+}
+
+/// A segment and the reversed one differ at most in one pixel at each end.
+#[test]
+fn a_reversed_segment_differs_only_at_its_ends() {
+    let mut random = Random(3);
+    for _ in 0..5000 {
+        let ends = [at(place(&mut random)), at(place(&mut random))];
+        let [a, b] = ends;
+        let is_wide = (a.x - b.x).abs() >= (a.y - b.y).abs();
+        let by_step = |ends| -> BTreeMap<i32, i32> {
+            let step = |p: LinePixel| {
+                if is_wide {
+                    (p.column, p.row)
+                } else {
+                    (p.row, p.column)
+                }
+            };
+            pixels(ends, PICTURE).into_iter().map(step).collect()
+        };
+        let (there, back) = (by_step([a, b]), by_step([b, a]));
+        let differ = there
+            .keys()
+            .filter(|&step| !back.contains_key(step))
+            .count()
+            + back
+                .keys()
+                .filter(|&step| !there.contains_key(step))
+                .count();
+        assert!(differ <= 2, "{ends:?}");
+        assert!(
+            there
+                .iter()
+                .all(|(step, i)| back.get(step).is_none_or(|j| i == j)),
+            "{ends:?}"
+        );
+    }
+}
+
+/// The parts of a line in all bands of a picture are the line, with the same depths.
+#[test]
+fn bands_leave_a_line_as_it_is() {
+    let mut random = Random(4);
+    for _ in 0..2000 {
+        let mut ends = [at(place(&mut random)), at(place(&mut random))];
+        for end in &mut ends {
+            end.w = random.integer(0, ((1 << 18) - 1) << 6) as u32;
+        }
+        let rows = band_rows(SIZE.0) as i32;
+        let mut parts: Vec<LinePixel> = (0..PICTURE.bottom)
+            .step_by(rows as usize)
+            .flat_map(|top| {
+                pixels(
+                    ends,
+                    Bounds {
+                        top,
+                        bottom: top + rows,
+                        ..PICTURE
+                    },
+                )
+            })
+            .collect();
+        let mut whole = pixels(ends, PICTURE);
+        for pixels in [&mut parts, &mut whole] {
+            pixels.sort_by_key(|pixel| [pixel.row, pixel.column]);
+        }
+        assert_eq!(parts, whole, "{ends:?}");
+    }
+}
+
+/// Outside of the format of positions there is no line, and in its corners there are the longest ones.
+#[test]
+fn the_whole_range_of_positions_is_drawn() {
+    let everywhere = Bounds {
+        left: -2048,
+        right: 2048,
+        top: -2048,
+        bottom: 2048,
+    };
+    let (low, high) = (-(1 << 19), (1 << 19) - 1);
+    let across = pixels([at([low, low]), at([high, high])], everywhere);
+    assert_eq!(across.len(), 4096);
+    assert!(Line::new(&[at([low, low]), at([high + 1, 0])]).is_none());
+    assert!(Line::new(&[at([0, low - 1]), at([0, 0])]).is_none());
+}
+
+/// A line over everything hides what comes later, except lines. A tested line is hidden by nearer pixels, and equal ones give way.
+#[test]
+fn lines_meet_depths() {
+    let ends = [[10, 10], [20, 10]].map(|[x, y]| at([256 * x + 128, 256 * y + 128]));
+    let code = ends[0].w >> 6;
+    for (stored, depth, drawn) in [
+        (0, LineDepth::Tested { bias: 0 }, 10),
+        (code, LineDepth::Tested { bias: 0 }, 10),
+        (code + 1, LineDepth::Tested { bias: 0 }, 0),
+        (code + 3, LineDepth::Tested { bias: 2 }, 0),
+        (code + 3, LineDepth::Tested { bias: 3 }, 10),
+        ((1 << 18) - 1, LineDepth::Over, 10),
+    ] {
+        let mut picture = Picture::blank(SIZE);
+        picture.depth.fill(stored);
+        assert_eq!(
+            draw(&ends, Rgb565::WHITE, depth, &mut picture.target()),
+            drawn
+        );
+        let expected = match depth {
+            LineDepth::Over => (1 << 18) - 1,
+            LineDepth::Tested { bias } => code + u32::from(bias),
+        };
+        let changed = picture.depth.iter().filter(|&&found| found != stored);
+        assert!(changed.clone().all(|&found| found == expected));
+        let white = picture
+            .colour
+            .iter()
+            .filter(|&&colour| colour == 0xFFFF)
+            .count();
+        assert_eq!(white, drawn as usize);
+    }
+}
+
+/// The depth slope of a face along an axis of the screen, 0 for x, in codes a pixel.
+fn slope(corners: [ScreenVertex; 3], axis: usize) -> f64 {
+    let [a, b, c] = corners.map(|v| [v.x, v.y, v.w as i32].map(f64::from));
+    let from_a = |v: [f64; 3], i: usize| v[i] - a[i];
+    let cross = |i, j| from_a(b, i) * from_a(c, j) - from_a(c, i) * from_a(b, j);
+    let rise = if axis == 0 { cross(2, 1) } else { cross(0, 2) };
+    (rise / cross(0, 1)).abs() * 256.0 / 64.0
+}
+
+/// With the bias that docs/formats.md states, the edges of a face are never hidden by the face.
+#[test]
+fn edges_with_bias_lie_in_front_of_their_face() {
+    let mut random = Random(5);
+    let (mut drawn, mut hidden_without) = (0, 0);
+    for _ in 0..1000 {
+        let corners = [0; 3].map(|_| ScreenVertex {
+            w: random.integer(1000, 200_000) as u32 * 64,
+            ..at(place(&mut random))
+        });
+        let Some((_, setup)) = set_up(corners, SIZE) else {
+            continue;
+        };
+        let mut picture = Picture::blank(SIZE);
+        raster::draw(&setup, Rgb565::WHITE, &mut picture.target());
+        let [a, b, c] = corners;
+        for ends in [[a, b], [b, c], [c, a]] {
+            let is_wide = (ends[0].x - ends[1].x).abs() >= (ends[0].y - ends[1].y).abs();
+            let bias = slope(corners, usize::from(is_wide)) / 2.0 + 1.52;
+            if bias > 65535.0 {
+                continue;
+            }
+            let bias = bias.ceil() as u16;
+            let shown = |bias, picture: &mut Picture| {
+                let depth = LineDepth::Tested { bias };
+                draw(&ends, Rgb565(0), depth, &mut picture.target())
+            };
+            let count = pixels(ends, PICTURE).len() as u32;
+            hidden_without += count - shown(0, &mut picture.clone());
+            assert_eq!(
+                shown(bias, &mut picture.clone()),
+                count,
+                "{ends:?} of {corners:?}"
+            );
+            drawn += count;
+        }
+    }
+    println!("{drawn} pixels of edges, {hidden_without} hidden without bias");
+    assert!(drawn > 50_000 && hidden_without > 1_000);
+}
