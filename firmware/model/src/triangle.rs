@@ -2,7 +2,7 @@
 //!
 //! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band
 //! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles
-//! that the engine keeps in memory.
+//! that the engine keeps in memory, [`vertex_cache`] tells which vertices it fetches.
 
 pub mod clip;
 pub mod descriptor;
@@ -18,6 +18,7 @@ pub(crate) mod rounding;
 pub mod setup;
 pub mod shade;
 pub mod vertex;
+pub mod vertex_cache;
 
 pub use exceptions::clip_exceptions;
 pub use mesh_setup::MeshSetup;

@@ -1,12 +1,14 @@
 //! Conversion of polygons to a board's mesh: scaling, triangulation, normals, rounding to Q2.14.
 
+mod order;
 mod rounding;
 
 use crate::error::FormatError;
 use crate::normals::NormalSums;
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use crate::triangulate::{self, area_vector, dot, unit};
-use glint_core::mesh::{self, IndexedTriangle, Rgb565, Vertex};
+use glint_core::mesh::{IndexedTriangle, Rgb565, Vertex};
+use order::Encoded;
 use rounding::{ONE, Placing, Rounded};
 use serde::Serialize;
 use std::collections::HashMap;
@@ -16,6 +18,9 @@ use std::collections::HashMap;
 pub struct Options {
     /// Keeps the coordinates, instead of scaling the mesh to the 1×1×1 box about the origin.
     pub keep_scale: bool,
+    /// Keeps the triangles in the order of the file, instead of one for which the engine fetches fewer vertices. That order is
+    /// only used if there are fewer.
+    pub keep_order: bool,
 }
 
 /// Report of a conversion.
@@ -33,6 +38,10 @@ pub struct Report {
     pub degenerate: usize,
     /// Chunks that the mesh is divided into, each of at most 65,535 vertices.
     pub chunks: usize,
+    /// Vertices that the engine fetches for a frame with the triangles in the order of the file.
+    pub fetches_before: u32,
+    /// Vertices that the engine fetches for a frame of this mesh.
+    pub fetches: u32,
     /// The mesh's length in bytes.
     pub bytes: usize,
     /// Factor that converts the file's lengths to world units.
@@ -66,13 +75,15 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         ));
     }
     let (vertices, indexed) = index(polygons, &rounded, &triangles);
-    let bytes = mesh::encode(&vertices, &indexed).map_err(|error| match error {
-        mesh::EncodeError::TooLarge => FormatError::whole(
-            format!("a mesh of at most {} bytes", mesh::MAX_BYTES),
-            "more",
-        ),
-        other => FormatError::whole("a mesh", other.to_string()),
-    })?;
+    let in_file_order = Encoded::new(&vertices, &indexed)?;
+    let fetches_before = in_file_order.fetches;
+    let ordered = if options.keep_order {
+        None
+    } else {
+        let encoded = Encoded::new(&vertices, &order::for_cache(vertices.len(), &indexed))?;
+        (encoded.fetches < fetches_before).then_some(encoded)
+    };
+    let Encoded { bytes, fetches } = ordered.unwrap_or(in_file_order);
     let written = crate::formats::glm::check(&bytes)?;
     let report = Report {
         points: polygons.points.len(),
@@ -81,6 +92,8 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
         triangles: written.triangle_count(),
         degenerate,
         chunks: written.chunks().count(),
+        fetches_before,
+        fetches,
         bytes: bytes.len(),
         scale: placing.scale,
         centre: placing.centre,
@@ -93,7 +106,7 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// Moves and scales the points like [`convert`], without rounding.
+/// Moves and scales the points like [`convert`], without rounding. The order of the faces stays.
 ///
 /// # Errors
 /// The mesh has no extent.
@@ -252,7 +265,10 @@ mod tests {
         polygons
     }
 
-    const KEEP: Options = Options { keep_scale: true };
+    const KEEP: Options = Options {
+        keep_scale: true,
+        keep_order: false,
+    };
 
     #[test]
     fn scaled_to_the_unit_box() {

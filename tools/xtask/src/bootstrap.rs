@@ -10,7 +10,7 @@ use crate::{paths, run};
 /// Debian packages and their purposes.
 const PACKAGES: [(&str, &str); 4] = [
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
-    ("g++", "compiles the verilated SoC"),
+    ("g++", "compiles the verilated SoC and meshoptimizer"),
     ("make", "builds the LiteX BIOS"),
     ("python3-venv", "holds the Python packages"),
 ];

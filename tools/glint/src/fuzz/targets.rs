@@ -160,7 +160,11 @@ impl Target {
 /// Converts parsed polygons to a mesh, and checks that a mesh from the conversion is valid.
 fn run_conversion(polygons: &Polygons) -> Verdict {
     // A conversion without scaling may fail, because coordinates can be out of range, but it must not panic.
-    let _ = convert::convert(polygons, Options { keep_scale: true });
+    let keep_scale = Options {
+        keep_scale: true,
+        ..Options::default()
+    };
+    let _ = convert::convert(polygons, keep_scale);
     match convert::convert(polygons, Options::default()) {
         Ok((mesh, report)) => {
             assert!(

@@ -4,6 +4,7 @@ mod builder;
 mod cube;
 mod gear;
 mod icosphere;
+mod scan;
 mod sponge;
 mod teapot;
 mod torus_knot;
@@ -12,15 +13,15 @@ use crate::error::FormatError;
 use crate::polygons::Polygons;
 
 /// Names of the generators, for messages and help.
-pub const NAMES: &str =
-    "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4)";
+pub const NAMES: &str = "cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, \
+    scan:N (frequency, 1 to 64) or sponge:N (0 to 4)";
 
 /// Whether a name is that of a generator, as opposed to a file.
 pub fn is_name(name: &str) -> bool {
     let stem = name.split(':').next().unwrap_or_default();
     matches!(
         stem,
-        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "sponge"
+        "cube" | "icosphere" | "torus-knot" | "gear" | "teapot" | "sponge" | "scan"
     )
 }
 
@@ -46,6 +47,7 @@ pub fn named(name: &str) -> Result<Polygons, FormatError> {
         ("gear", None) => gear::gear(),
         ("teapot", None) => teapot::teapot(),
         ("sponge", Some(level @ 0..=4)) => sponge::sponge(level),
+        ("scan", Some(frequency @ 1..=64)) => scan::scan(frequency),
         _ => Err(refuse()),
     }
 }
@@ -59,7 +61,7 @@ mod tests {
     use crate::triangulate::{self, cross, dot};
     use std::collections::HashMap;
 
-    pub const ALL: [&str; 8] = [
+    pub const ALL: [&str; 9] = [
         "cube",
         "icosphere:1",
         "icosphere:8",
@@ -68,6 +70,7 @@ mod tests {
         "teapot",
         "sponge:0",
         "sponge:2",
+        "scan:8",
     ];
 
     /// The enclosed volume, positive for faces that run counter-clockwise seen from outside.

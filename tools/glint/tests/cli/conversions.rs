@@ -1,6 +1,6 @@
 //! `glint model` and `glint convert`.
 
-use crate::common::{SQUARE, folder, refused, succeed};
+use crate::common::{SQUARE, folder, picture, refused, succeed};
 
 #[test]
 fn conversions_by_every_way_agree() {
@@ -35,6 +35,30 @@ fn conversions_by_every_way_agree() {
         (&960.into(), &320.into())
     );
     assert_eq!(report["error_max"], 0.0);
+}
+
+#[test]
+fn the_order_saves_fetches_and_keeps_the_picture() {
+    let folder = folder("orders");
+    succeed(&folder, &["model", "scan:40", "scan.ply"]);
+    let fetches = |out: &str, more: &[&str]| {
+        let arguments = [&["convert", "scan.ply", out, "--json"], more].concat();
+        let report: serde_json::Value =
+            serde_json::from_str(&succeed(&folder, &arguments)).unwrap();
+        assert_eq!(report["triangles"], 32_000);
+        let a_vertex =
+            |key: &str| report[key].as_f64().unwrap() / report["vertices"].as_f64().unwrap();
+        (a_vertex("fetches_before"), a_vertex("fetches"))
+    };
+    let (before, after) = fetches("ordered.glm", &[]);
+    assert!(before > 3.0 && after <= 1.15, "{before} {after}");
+    assert_eq!(fetches("kept.glm", &["--keep-order"]), (before, before));
+    let drawn = |mesh: &str| {
+        succeed(&folder, &["render", mesh, "--out", "a.png"]);
+        picture(&folder.join("a.png"))
+    };
+    assert!(drawn("ordered.glm") == drawn("kept.glm"));
+    assert!(drawn("ordered.glm") == drawn("scan.ply"));
 }
 
 #[test]

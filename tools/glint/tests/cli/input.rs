@@ -164,7 +164,7 @@ fn bad_names_and_numbers() {
         ),
         (
             &["model", "sponge:5", "out.glm"],
-            "error: sponge:5: expected a model cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot or sponge:N (0 to 4), found 'sponge:5'",
+            "error: sponge:5: expected a model cube, icosphere:N (frequency, 1 to 64), torus-knot, gear, teapot, scan:N (frequency, 1 to 64) or sponge:N (0 to 4), found 'sponge:5'",
         ),
         (
             &["render", "icosphere:x", "--out", "out.png"],

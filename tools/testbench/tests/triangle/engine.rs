@@ -14,8 +14,13 @@ use rand_pcg::Pcg64Mcg;
 
 /// Returns the mesh of the generated model `name`, as bytes.
 fn generated(name: &str) -> Vec<u8> {
+    converted(name, convert::Options::default())
+}
+
+/// Returns the mesh of the generated model `name`, converted with options, as bytes.
+fn converted(name: &str, options: convert::Options) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
-    let converted = convert::convert(&model, convert::Options::default());
+    let converted = convert::convert(&model, options);
     converted.expect("a mesh").0
 }
 
@@ -419,4 +424,32 @@ fn empty_bands_are_passed_fast() {
     let raster = bench.draw("nothing", &nothing, &expected).raster;
     println!("{raster} clocks for 60 empty bands");
     assert!(raster < 60 * 30 + 100, "{raster} clocks");
+}
+
+/// Prints the clocks of the geometry pass for a mesh of many small triangles, in the order of `glint convert` and in that of a
+/// scanner's file.
+#[test]
+fn a_scan_is_drawn_fast() {
+    for keep_order in [false, true] {
+        let mesh = converted(
+            "scan:59",
+            convert::Options {
+                keep_order,
+                ..convert::Options::default()
+            },
+        );
+        let expected = expected(&mesh, &ahead(0.4781, 0.5), SIZES[0], true);
+        let mut bench = Bench::new(9, 0.0);
+        bench.with_depth = false;
+        let clocks = bench.draw("scan:59", &mesh, &expected);
+        let triangles = expected.stats.triangles_in;
+        println!(
+            "scan:59, keep_order {keep_order}: {} clocks for the geometry, {:.2} a triangle, {} for the raster, culled {} drawn {}",
+            clocks.geometry,
+            clocks.geometry as f64 / triangles as f64,
+            clocks.raster,
+            expected.stats.culled,
+            expected.stats.drawn,
+        );
+    }
 }

@@ -2,11 +2,10 @@
 
 use std::collections::VecDeque;
 
+use glint_model::triangle::vertex_cache::VertexCache;
 use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, step};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
-
-const SLOTS: usize = 512;
 
 type Triangle = [u16; 3];
 
@@ -21,14 +20,11 @@ fn side(chunk: u32, number: usize) -> Bits {
     Bits::from_words(&[number as u32, chunk, !(number as u32)])
 }
 
-/// Returns the indices of the vertices that the cache must fetch for a chunk: those that miss a direct-mapped cache that
-/// is empty at first.
+/// Returns the indices of the vertices that the cache must fetch for a chunk.
 fn fetches(triangles: &[Triangle]) -> Vec<u16> {
-    let mut slots = [None; SLOTS];
-    let all = triangles.as_flattened().iter();
-    all.filter(|&&index| slots[usize::from(index) % SLOTS].replace(index) != Some(index))
-        .copied()
-        .collect()
+    let mut cache = VertexCache::empty();
+    let all = triangles.as_flattened().iter().copied();
+    all.filter(|&index| cache.misses(index)).collect()
 }
 
 struct Bench {

@@ -116,7 +116,10 @@ fn screen() -> Result<Vec<u8>> {
         polygons.add_face(&numbers, None, Place::Whole)?;
         Ok(polygons)
     }();
-    let options = Options { keep_scale: true };
+    let options = Options {
+        keep_scale: true,
+        ..Options::default()
+    };
     made.and_then(|polygons| convert::convert(&polygons, options))
         .map(|(mesh, _)| mesh)
         .map_err(|error| anyhow::anyhow!("{error}"))

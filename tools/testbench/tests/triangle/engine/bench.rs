@@ -4,6 +4,7 @@ use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::vertex_cache;
 use glint_model::{
     DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats, trace,
 };
@@ -325,8 +326,15 @@ impl Bench {
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
         self.wait_for("status.ready");
+        let fetched = self.count("vertices");
         self.pulse("geometry_start");
         let geometry = self.wait_for("status.geometry_done");
+        let fetches = vertex_cache::fetches(&Mesh::new_checked(mesh).expect("a valid mesh"));
+        assert_eq!(
+            self.count("vertices") - fetched,
+            u64::from(fetches),
+            "{name}: fetches of vertices"
+        );
         let counts = [
             "status.mesh_error",
             "status.full",

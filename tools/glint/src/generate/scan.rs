@@ -1,0 +1,59 @@
+//! A bumpy closed surface, with its triangles in such an order as a scanned surface has in its file.
+
+use super::icosphere::icosphere;
+use crate::error::FormatError;
+use crate::polygons::{Face, Polygons, Vector};
+
+/// Number of neighbouring triangles that stay together, in turns.
+const RUNS: [usize; 3] = [3, 3, 4];
+
+/// The icosphere of a frequency with waves in its radius. Its triangles are cut into short runs, which follow each other in a
+/// scattered order.
+pub fn scan(frequency: u32) -> Result<Polygons, FormatError> {
+    let mut polygons = icosphere(frequency)?;
+    for point in &mut polygons.points {
+        let radius = radius(*point);
+        *point = point.map(|c| c * radius);
+    }
+    polygons.faces = scattered(&polygons.faces);
+    Ok(polygons)
+}
+
+/// Radius of the surface in a direction: 1, and waves of three lengths along different axes.
+fn radius([x, y, z]: Vector) -> f64 {
+    1.0 + 0.14 * (3.0 * x + 2.0 * z).sin() * (2.0 * y - 1.0).cos()
+        + 0.05 * (9.0 * y + 4.0 * x).sin() * (8.0 * z).cos()
+        + 0.012 * (31.0 * x).sin() * (29.0 * y).sin() * (30.0 * z).sin()
+}
+
+/// Cuts faces into runs, and puts the runs into another order: each follows the one before by the golden section of their number.
+fn scattered(faces: &[Face]) -> Vec<Face> {
+    let mut runs = Vec::new();
+    let mut rest = faces;
+    for length in RUNS.into_iter().cycle() {
+        let Some((run, later)) = rest.split_at_checked(length) else {
+            break;
+        };
+        runs.push(run);
+        rest = later;
+    }
+    runs.push(rest);
+    // Every run comes once if the stride has no factor in common with their number.
+    let count = runs.len();
+    let mut stride = (count as f64 * 0.618) as usize;
+    while greatest_common_divisor(stride, count) > 1 {
+        stride += 1;
+    }
+    (0..count)
+        .flat_map(|number| runs[number * stride % count])
+        .copied()
+        .collect()
+}
+
+fn greatest_common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 {
+        a
+    } else {
+        greatest_common_divisor(b, a % b)
+    }
+}
