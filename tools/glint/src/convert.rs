@@ -2,6 +2,7 @@
 
 mod order;
 mod rounding;
+mod winding;
 
 use crate::error::FormatError;
 use crate::normals::NormalSums;
@@ -21,6 +22,8 @@ pub struct Options {
     /// Keeps the triangles in the order of the file, instead of one for which the engine fetches fewer vertices. That order is
     /// only used if there are fewer.
     pub keep_order: bool,
+    /// Turns faces that run the wrong way around.
+    pub fix_winding: bool,
 }
 
 /// Report of a conversion.
@@ -65,6 +68,14 @@ pub struct Report {
 /// # Errors
 /// The mesh has no extent, exceeds Q2.14 (with `keep_scale`), has no triangle with an area, or is too large.
 pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report), FormatError> {
+    let mut repaired;
+    let polygons = if options.fix_winding {
+        repaired = polygons.clone();
+        winding::repair(&mut repaired);
+        &repaired
+    } else {
+        polygons
+    };
     let placing = Placing::of(polygons, options.keep_scale)?;
     let rounded = Rounded::of(polygons, &placing)?;
     let (triangles, degenerate) = flat_triangles(polygons, &rounded);
@@ -106,11 +117,14 @@ pub fn convert(polygons: &Polygons, options: Options) -> Result<(Vec<u8>, Report
     Ok((bytes, report))
 }
 
-/// Moves and scales the points like [`convert`], without rounding. The order of the faces stays.
+/// Moves and scales the points and turns the faces like [`convert`], without rounding. The order of the faces stays.
 ///
 /// # Errors
 /// The mesh has no extent.
 pub fn place(polygons: &mut Polygons, options: Options) -> Result<(), FormatError> {
+    if options.fix_winding {
+        winding::repair(polygons);
+    }
     let placing = Placing::of(polygons, options.keep_scale)?;
     for point in &mut polygons.points {
         *point = placing.apply(*point);
@@ -268,6 +282,7 @@ mod tests {
     const KEEP: Options = Options {
         keep_scale: true,
         keep_order: false,
+        fix_winding: false,
     };
 
     #[test]

@@ -43,6 +43,9 @@ pub struct ConvertArguments {
     /// Keep the order of the triangles, instead of one in which the engine fetches fewer vertices (.glm only).
     #[arg(long)]
     keep_order: bool,
+    /// Turn faces over until neighbours agree and closed parts face outwards. Notes tell where that is not possible.
+    #[arg(long)]
+    fix_winding: bool,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
@@ -73,6 +76,7 @@ impl ConvertArguments {
         let options = Options {
             keep_scale: self.keep_scale,
             keep_order: self.keep_order,
+            fix_winding: self.fix_winding,
         };
         convert_to(polygons, &self.input, &self.out, options, self.json)
     }

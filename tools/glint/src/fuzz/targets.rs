@@ -162,6 +162,7 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
     // A conversion without scaling may fail, because coordinates can be out of range, but it must not panic.
     let keep_scale = Options {
         keep_scale: true,
+        fix_winding: true,
         ..Options::default()
     };
     let _ = convert::convert(polygons, keep_scale);

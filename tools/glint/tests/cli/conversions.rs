@@ -62,6 +62,34 @@ fn the_order_saves_fetches_and_keeps_the_picture() {
 }
 
 #[test]
+fn wrong_winding_is_repaired_in_every_format() {
+    let folder = folder("winding");
+    succeed(&folder, &["model", "icosphere:4", "whole.obj"]);
+    let whole = std::fs::read_to_string(folder.join("whole.obj")).unwrap();
+    let turn = |(number, line): (usize, &str)| match line.split(' ').collect::<Vec<_>>()[..] {
+        ["f", a, b, c] if number % 3 == 0 => format!("f {a} {c} {b}\n"),
+        _ => format!("{line}\n"),
+    };
+    let broken: String = whole.lines().enumerate().map(turn).collect();
+    std::fs::write(folder.join("broken.obj"), broken).unwrap();
+    for extension in ["glm", "obj", "ply", "stl"] {
+        let [whole, repaired] =
+            [("whole", None), ("broken", Some("--fix-winding"))].map(|(input, more)| {
+                let (input, out) = (format!("{input}.obj"), format!("out.{extension}"));
+                let arguments = ["convert", &input, &out, "--keep-scale"].into_iter();
+                let text = succeed(&folder, &arguments.chain(more).collect::<Vec<_>>());
+                assert_eq!(
+                    text.contains("winding: 107 of 320 faces"),
+                    more.is_some(),
+                    "{text}"
+                );
+                std::fs::read(folder.join(out)).unwrap()
+            });
+        assert!(whole == repaired, "{extension}");
+    }
+}
+
+#[test]
 fn a_material_file_beside_the_mesh() {
     let folder = folder("materials");
     std::fs::write(
