@@ -28,6 +28,8 @@ pub enum Place {
     Cell(usize, &'static str),
     /// An offset in bytes from the file's start.
     Byte(usize),
+    /// A word of a wireframe program, counted from 1.
+    Word(usize),
 }
 
 impl fmt::Display for Place {
@@ -37,6 +39,7 @@ impl fmt::Display for Place {
             Place::Line(number) => write!(f, "line {number}: "),
             Place::Cell(line, column) => write!(f, "line {line}, column {column}: "),
             Place::Byte(offset) => write!(f, "byte {offset}: "),
+            Place::Word(number) => write!(f, "word {number}: "),
         }
     }
 }

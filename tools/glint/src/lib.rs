@@ -9,6 +9,7 @@
 //! | [`render`] | renders a frame by the model or by a board |
 //! | [`board`] | boards: serial port, or simulation |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
+//! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
 //! | [`fuzz`] | fuzz targets for everything that parses external bytes |
 #![forbid(unsafe_code)]
@@ -32,3 +33,4 @@ pub mod render;
 pub mod transfer;
 pub mod triangulate;
 pub mod view;
+pub mod wireframe;

@@ -38,5 +38,7 @@ tests! {
     ply: Ply,
     glm: Glm,
     imu: Imu,
-    replay: Replay
+    replay: Replay,
+    wireframe_text: WireframeText,
+    wireframe_words: WireframeWords
 }

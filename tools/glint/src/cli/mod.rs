@@ -8,6 +8,7 @@ mod flash;
 mod imu;
 mod render;
 mod terminal;
+mod wireframe;
 
 use clap::{Parser, Subcommand};
 
@@ -34,6 +35,8 @@ enum Command {
     Demo(demo::DemoArguments),
     #[command(subcommand)]
     Imu(imu::ImuCommand),
+    #[command(subcommand)]
+    Wireframe(wireframe::WireframeCommand),
 }
 
 impl Arguments {
@@ -48,6 +51,7 @@ impl Arguments {
             Command::Console(arguments) => arguments.run(),
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
+            Command::Wireframe(command) => command.run(),
         }
     }
 }

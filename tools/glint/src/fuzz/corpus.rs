@@ -11,6 +11,7 @@ use glint_core::calibration::Units;
 use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use glint_core::wireframe::text::assemble;
 
 /// Returns the seeds of a target. None exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
@@ -23,6 +24,11 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Glm => meshes(),
         Target::Imu => texts(IMU).into_iter().chain([still_log()]).collect(),
         Target::Replay => images(),
+        Target::WireframeText => texts(WIREFRAMES),
+        Target::WireframeWords => WIREFRAMES
+            .iter()
+            .filter_map(|text| assemble(text).ok())
+            .collect(),
     };
     seeds
         .into_iter()
@@ -154,6 +160,11 @@ const IMU: &[&str] = &[
     "t_us,ax,ay,az,temp,gx,gy,gz\n9323,-139,-453,4420,-4880,2077,1116,-320\n15163,-115,-512,4304,-4848,2219,1379,-500\n",
     "gz,gy,gx,az,ay,ax,t_us\r\n32767,-32768,32767,0,0,4096,4294967290\r\n-32768,32767,1,0,0,-4096,4294968290\r\n\r\n0,0,0,0,0,0,9294968290\r\n",
     "t_us,ax,ay,az,gx,gy,gz\n5,0,0,0,1,1,1\n5,0,0,0,1,1,1\n4,0,0,0,1,1,1\n18446744073709551615,-32768,-32768,-32768,1,1,1\n",
+];
+
+const WIREFRAMES: &[&str] = &[
+    "# a triangle\neye 0 0 8\nplane 4\nwindow -4 -2.25 4 2.25\nsegment -1 -1 0  1 -1 0 # low\nsegment 1 -1 0  0 1 0\nsegment 0 1 0  -1 -1 0\nend\n",
+    "segment -16 -16 -16 15.9995 15.9995 15.9995\nsegment 0 0 0 0 0 0\r\nsegment 1 1 -1 1 1 9\nwindow -0.5 -0.5 -0.4995 -0.4995\nplane -1\neye 15 -15 0\n\nend\n",
 ];
 
 const CONSOLE: &[&str] = &[

@@ -4,11 +4,14 @@ use crate::convert::{self, Options};
 use crate::formats::{glm, obj, ply, stl};
 use crate::imu::{log, replay};
 use crate::polygons::Polygons;
+use crate::wireframe::{self, Form};
 use clap::ValueEnum;
 use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor, write_help};
 use glint_core::orientation::log as image;
+use glint_core::picture::Size;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
+use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
 
 /// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -29,6 +32,10 @@ pub enum Target {
     Imu,
     /// Logs of a gyroscope and an accelerometer, in the binary format that boards replay.
     Replay,
+    /// Programs of the wireframe simulator, in the text form.
+    WireframeText,
+    /// Programs of the wireframe simulator, in the binary form.
+    WireframeWords,
 }
 
 /// Result of a target on an input.
@@ -42,7 +49,7 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 10] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -51,18 +58,24 @@ impl Target {
         Self::Glm,
         Self::Imu,
         Self::Replay,
+        Self::WireframeText,
+        Self::WireframeWords,
     ];
 
     /// Words with a meaning in the target's format, for the mutator to insert.
     pub fn words(self) -> &'static [&'static str] {
         match self {
-            Self::Upload | Self::Glm | Self::Replay => &[],
+            Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => &[],
             Self::Console => &[
                 "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
                 "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
             ],
             Self::Imu => &[
                 "t_us", "ax", "ay", "az", "gx", "gy", "gz", "temp", ",", "32767", "-32768", "32768",
+            ],
+            Self::WireframeText => &[
+                "eye", "plane", "window", "segment", "end", "#", "\n", "-16", "15.9995", "16",
+                "0x0800",
             ],
             Self::Obj => &[
                 "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",
@@ -123,7 +136,14 @@ impl Target {
                 }
                 input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
             }
-            Self::Console | Self::Obj | Self::Ply | Self::Imu => {}
+            Self::WireframeWords => {
+                // Cuts the input at a word, and ends the program there.
+                input.truncate(input.len() / WORD_BYTES * WORD_BYTES);
+                if let Some(last) = input.last_chunk_mut() {
+                    *last = Instruction::End.encode();
+                }
+            }
+            Self::Console | Self::Obj | Self::Ply | Self::Imu | Self::WireframeText => {}
         }
     }
 
@@ -153,6 +173,8 @@ impl Target {
                 Verdict::Accepted
             }),
             Self::Replay => run_image(input),
+            Self::WireframeText => run_program(Form::Text, input),
+            Self::WireframeWords => run_program(Form::Binary, input),
         }
     }
 }
@@ -223,6 +245,36 @@ fn run_image(input: &[u8]) -> Verdict {
             Verdict::Rejected
         }
     }
+}
+
+/// Parses a program, and moves and projects its segments.
+fn run_program(form: Form, input: &[u8]) -> Verdict {
+    let Ok(bytes) = wireframe::parse(form, input.to_vec()) else {
+        return Verdict::Rejected;
+    };
+    let program = wireframe::check(&bytes);
+    assert!(program.is_ok(), "a parsed program is valid");
+    let Ok(program) = program else {
+        return Verdict::Rejected;
+    };
+    let mut motion = Motion::default();
+    for (number, key) in Key::ALL.into_iter().cycle().take(20).enumerate() {
+        motion.apply(key.step(number % 3 > 0));
+    }
+    let (pose, projection) = (
+        motion.pose(),
+        Projection::new(program.viewing(), Size::W1280),
+    );
+    for segment in program.segments() {
+        if let Some(line) = projection.line(pose.segment(segment)) {
+            let ends = line.as_flattened();
+            assert!(
+                ends.iter().all(|x| x.abs() <= GUARD),
+                "a line is within the guard band"
+            );
+        }
+    }
+    Verdict::Accepted
 }
 
 /// Renders a mesh if it is valid.

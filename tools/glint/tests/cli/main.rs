@@ -6,3 +6,4 @@ mod conversions;
 mod fields;
 mod input;
 mod meshes;
+mod wireframes;

@@ -1,0 +1,214 @@
+//! `glint wireframe`.
+
+use super::common::{print_json, say, spinner, write_file};
+use clap::{Args, Subcommand};
+use glint::error::FormatError;
+use glint::model;
+use glint::wireframe::{self, Form, Made};
+use glint_core::wireframe::{Program, Viewing};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Wireframe simulator: check, convert and make programs.
+///
+/// A PROGRAM is a file of the text form (.wft), one instruction a line, or of the binary form (.wfb), 16 bytes a word: the eye, the
+/// view plane, the window, up to 65535 segments, and an end. Numbers are from -16 to 15.9995, multiples of 1/2048.
+#[derive(Subcommand)]
+pub enum WireframeCommand {
+    Check(CheckArguments),
+    Convert(ConvertArguments),
+    Make(MakeArguments),
+}
+
+/// Check a program, and show its viewing parameters and counts.
+#[derive(Args)]
+pub struct CheckArguments {
+    /// Program to read: .wft or .wfb.
+    program: PathBuf,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Convert a program between its text form and its binary form, without loss.
+#[derive(Args)]
+pub struct ConvertArguments {
+    /// Program to read: .wft or .wfb.
+    input: PathBuf,
+    /// Output file; the extension selects the form: .wft or .wfb.
+    out: PathBuf,
+}
+
+/// Make a program of the edges of a model, each edge once.
+///
+/// The model's z axis points up in the picture, its y axis away from the viewer. The default eye, view plane and window show a model
+/// of the default extent whole, in every rotation about its centre.
+#[derive(Args)]
+pub struct MakeArguments {
+    /// A mesh file or a generator's name.
+    model: String,
+    /// Output file; the extension selects the form: .wft or .wfb.
+    #[arg(long, value_name = "PROGRAM")]
+    out: PathBuf,
+    /// Side of the box about the origin to which the model is scaled, up to below 32.
+    #[arg(
+        long,
+        value_name = "SIDE",
+        default_value_t = 4.0,
+        allow_hyphen_values = true
+    )]
+    extent: f64,
+    /// Leave the model's coordinates as they are, and refuse those outside [-16, 16).
+    #[arg(long, conflicts_with = "extent")]
+    keep_scale: bool,
+    /// The eye; its z is at least 0 and above that of the view plane.
+    #[arg(
+        long,
+        value_name = "X,Y,Z",
+        default_value = "0,0,8",
+        allow_hyphen_values = true
+    )]
+    eye: String,
+    /// The z of the view plane. What lies in front of it is not drawn.
+    #[arg(
+        long,
+        value_name = "Z",
+        default_value = "4",
+        allow_hyphen_values = true
+    )]
+    plane: String,
+    /// The part of the view plane that fills the picture: lower left corner, then upper right corner.
+    #[arg(
+        long,
+        value_name = "XL,YL,XH,YH",
+        default_value = "-4,-2.25,4,2.25",
+        allow_hyphen_values = true
+    )]
+    window: String,
+    /// Print the result as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl WireframeCommand {
+    pub fn run(self) -> anyhow::Result<()> {
+        match self {
+            Self::Check(arguments) => arguments.run(),
+            Self::Convert(arguments) => arguments.run(),
+            Self::Make(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// A checked program, as the command prints it.
+#[derive(Serialize)]
+struct Summary {
+    eye: [f64; 3],
+    plane: f64,
+    window: [f64; 4],
+    segments: u32,
+    bytes: usize,
+}
+
+impl Summary {
+    fn new(program: &Program) -> Self {
+        let Viewing { eye, plane, window } = program.viewing();
+        let ([xl, yl], [xh, yh]) = (window.low, window.high);
+        Self {
+            eye: eye.map(f64::from),
+            plane: f64::from(*plane),
+            window: [xl, yl, xh, yh].map(f64::from),
+            segments: program.segment_count(),
+            bytes: program.bytes().len(),
+        }
+    }
+}
+
+impl CheckArguments {
+    fn run(self) -> anyhow::Result<()> {
+        let bytes = wireframe::read(&self.program)?;
+        let program = wireframe::check(&bytes)?;
+        let summary = Summary::new(&program);
+        if self.json {
+            return print_json(&summary);
+        }
+        let Viewing { eye, plane, window } = program.viewing();
+        let ([x, y, z], [xl, yl], [xh, yh]) = (*eye, window.low, window.high);
+        say(format_args!("eye        {x} {y} {z}"))?;
+        say(format_args!("plane      {plane}"))?;
+        say(format_args!("window     {xl} {yl} {xh} {yh}"))?;
+        say(format_args!(
+            "program    {} segments, {} bytes in binary form",
+            summary.segments, summary.bytes
+        ))
+    }
+}
+
+impl ConvertArguments {
+    fn run(self) -> anyhow::Result<()> {
+        let form = Form::of(&self.out)?;
+        let bytes = wireframe::read(&self.input)?;
+        write_file(&self.out, &form.encode(&wireframe::check(&bytes)?))
+    }
+}
+
+/// The result of `make`, as the command prints it.
+#[derive(Serialize)]
+struct Output {
+    segments: usize,
+    dropped: usize,
+    bytes: usize,
+}
+
+impl MakeArguments {
+    fn run(self) -> anyhow::Result<()> {
+        let form = Form::of(&self.out)?;
+        let viewing = self.viewing()?;
+        let extent = self.extent()?;
+        let spinner = spinner("reading the model");
+        let polygons = model::polygons(&self.model)?;
+        let Made {
+            bytes,
+            segments,
+            dropped,
+        } = wireframe::make(polygons, extent, &viewing)
+            .map_err(|error| error.in_file(&self.model))?;
+        write_file(&self.out, &form.encode(&wireframe::check(&bytes)?))?;
+        spinner.finish_and_clear();
+        if self.json {
+            return print_json(&Output {
+                segments,
+                dropped,
+                bytes: bytes.len(),
+            });
+        }
+        say(format_args!("written    {segments} segments"))?;
+        say(format_args!(
+            "dropped    {dropped} edges without a length at 2^-11"
+        ))
+    }
+
+    /// Side of the box for the model; `None` to keep the model's coordinates.
+    fn extent(&self) -> anyhow::Result<Option<f64>> {
+        if self.keep_scale {
+            return Ok(None);
+        }
+        if self.extent > 0.0 && self.extent < 32.0 {
+            return Ok(Some(self.extent));
+        }
+        let found = self.extent.to_string();
+        let error = FormatError::whole("a side above 0 and below 32", found);
+        Err(error.in_file("--extent").into())
+    }
+
+    fn viewing(&self) -> anyhow::Result<Viewing> {
+        let [plane] = wireframe::numbers(&self.plane, "a number Z")
+            .map_err(|error| error.in_file("--plane"))?;
+        Ok(Viewing {
+            eye: wireframe::numbers(&self.eye, "a position X,Y,Z")
+                .map_err(|error| error.in_file("--eye"))?,
+            plane,
+            window: wireframe::window(&self.window).map_err(|error| error.in_file("--window"))?,
+        })
+    }
+}

@@ -1,0 +1,389 @@
+//! Programs of the wireframe simulator: files, and programs of the edges of a mesh (docs/wireframe.md).
+
+use crate::convert::{self, Options};
+use crate::error::{FormatError, InputError, Place, quote};
+use crate::formats::read_file;
+use crate::polygons::Polygons;
+use glint_core::fixed::Q5_11;
+use glint_core::wireframe::text::assemble;
+use glint_core::wireframe::{
+    self, Instruction, Key, MAX_SEGMENTS, Point, Program, ProgramError, Viewing, Window,
+    unique_edges,
+};
+use std::fmt::Write;
+use std::path::Path;
+
+/// The form of a program's file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// The text form: one instruction a line.
+    Text,
+    /// The binary form: 16 bytes a word.
+    Binary,
+}
+
+impl Form {
+    /// Selects the form by a file's extension.
+    ///
+    /// # Errors
+    /// The extension is not wft or wfb.
+    pub fn of(path: &Path) -> Result<Self, InputError> {
+        let extension = path
+            .extension()
+            .map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("wft") => Ok(Self::Text),
+            Some("wfb") => Ok(Self::Binary),
+            other => {
+                let found = other.map_or("no extension".into(), |other| {
+                    format!("'.{}'", other.escape_default())
+                });
+                let expected = "a name that ends in .wft (text) or .wfb (binary)";
+                Err(FormatError::whole(expected, found).in_path(path))
+            }
+        }
+    }
+
+    /// Encodes a program in this form.
+    pub fn encode(self, program: &Program) -> Vec<u8> {
+        match self {
+            Self::Text => text(program).into_bytes(),
+            Self::Binary => program.bytes().to_vec(),
+        }
+    }
+}
+
+/// Reads a program of either form, and returns its binary form.
+///
+/// # Errors
+/// The file cannot be read, or violates its format.
+pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
+    let form = Form::of(path)?;
+    let bytes = read_file(path)?;
+    parse(form, bytes).map_err(|error| error.in_path(path))
+}
+
+/// Parses a program of either form, and returns its binary form.
+///
+/// # Errors
+/// The first violation of the format, with its line or word.
+pub fn parse(form: Form, bytes: Vec<u8>) -> Result<Vec<u8>, FormatError> {
+    match form {
+        Form::Text => {
+            assemble(&String::from_utf8_lossy(&bytes)).map_err(|error| format_error(&error))
+        }
+        Form::Binary => {
+            check(&bytes)?;
+            Ok(bytes)
+        }
+    }
+}
+
+/// Checks the binary form of a program.
+///
+/// # Errors
+/// The first violation of the format, with its word.
+pub fn check(bytes: &[u8]) -> Result<Program<'_>, FormatError> {
+    Program::new_checked(bytes).map_err(|error| format_error(&error))
+}
+
+fn format_error(error: &ProgramError) -> FormatError {
+    let place = match error.place {
+        wireframe::Place::Line(number) => Place::Line(number),
+        wireframe::Place::Word(number) => Place::Word(number),
+    };
+    let violation = error.violation;
+    FormatError::new(
+        place,
+        violation.expected.to_string(),
+        violation.found.to_string(),
+    )
+}
+
+/// The text form of a program.
+pub fn text(program: &Program) -> String {
+    program
+        .instructions()
+        .fold(String::new(), |mut text, instruction| {
+            // Writing to a string cannot fail.
+            let _ = writeln!(text, "{instruction}");
+            text
+        })
+}
+
+/// A program of the edges of a mesh.
+pub struct Made {
+    /// The binary form.
+    pub bytes: Vec<u8>,
+    /// Number of segments.
+    pub segments: usize,
+    /// Number of edges that have no length in Q5.11.
+    pub dropped: usize,
+}
+
+/// Makes a program of the edges of all polygons, each undirected edge once. Edges between equal positions in Q5.11 are the same
+/// edge, so the vertices of a mesh need not be shared.
+///
+/// The mesh is scaled to a box of the side `extent` about the origin, or keeps its coordinates for `None`. Its z axis, which points
+/// up, becomes y, and its y axis points away from the viewer.
+///
+/// # Errors
+/// The mesh has no extent, a coordinate is out of the range of Q5.11, there are more than 65,535 edges, or the program's checks
+/// refuse the viewing parameters.
+pub fn make(
+    mut polygons: Polygons,
+    extent: Option<f64>,
+    viewing: &Viewing,
+) -> Result<Made, FormatError> {
+    let keep_scale = extent.is_none();
+    convert::place(&mut polygons, Options { keep_scale })?;
+    let scale = extent.unwrap_or(1.0);
+    let points = polygons
+        .points
+        .iter()
+        .map(|&[x, y, z]| rounded([x, z, -y].map(|x| x * scale)))
+        .collect::<Result<Vec<Point>, _>>()?;
+    let mut edges = edges(&polygons, &points);
+    let dropped = edges.iter().filter(|[a, b]| a == b).count();
+    let segments = unique_edges(&mut edges);
+    if segments.len() > MAX_SEGMENTS as usize {
+        return Err(FormatError::whole(
+            format!("a mesh of at most {MAX_SEGMENTS} edges"),
+            segments.len().to_string(),
+        ));
+    }
+    let head = [
+        Instruction::Eye(viewing.eye),
+        Instruction::Plane(viewing.plane),
+        Instruction::Window(viewing.window),
+    ];
+    let segments_of = segments.iter().copied().map(Instruction::Segment);
+    let words = head
+        .into_iter()
+        .chain(segments_of)
+        .chain([Instruction::End]);
+    let bytes: Vec<u8> = words.flat_map(Instruction::encode).collect();
+    check(&bytes).map_err(|error| FormatError::whole(error.expected, error.found))?;
+    Ok(Made {
+        bytes,
+        segments: segments.len(),
+        dropped,
+    })
+}
+
+/// The edges of all polygons, by their end points. An edge that two polygons share occurs twice.
+fn edges(polygons: &Polygons, points: &[Point]) -> Vec<[Point; 2]> {
+    let of_face = |face| {
+        let corners = polygons
+            .corners_of(face)
+            .iter()
+            .map(|corner| points[corner.point as usize]);
+        corners.clone().zip(corners.cycle().skip(1))
+    };
+    polygons
+        .faces
+        .iter()
+        .flat_map(of_face)
+        .map(|(a, b)| [a, b])
+        .collect()
+}
+
+/// Rounds a position to nearest.
+fn rounded(position: [f64; 3]) -> Result<Point, FormatError> {
+    let mut point = Point::default();
+    for (to, x) in point.iter_mut().zip(position) {
+        *to = Q5_11::checked_from_num(x).ok_or_else(|| {
+            FormatError::whole(
+                format!("coordinates from {} to {}", Q5_11::MIN, Q5_11::MAX),
+                format!("{x}"),
+            )
+        })?;
+    }
+    Ok(point)
+}
+
+/// Parses `COUNT` numbers of Q5.11 between commas.
+///
+/// # Errors
+/// The text is not of this form; `form` describes it.
+pub fn numbers<const COUNT: usize>(text: &str, form: &str) -> Result<[Q5_11; COUNT], FormatError> {
+    let refuse = || {
+        let range = format!("{form}, each from {} to {}", Q5_11::MIN, Q5_11::MAX);
+        FormatError::whole(range, quote(text.as_bytes()))
+    };
+    let words: Vec<&str> = text.split(',').collect();
+    let words: [&str; COUNT] = words.try_into().map_err(|_| refuse())?;
+    let mut numbers = [Q5_11::ZERO; COUNT];
+    for (number, word) in numbers.iter_mut().zip(words) {
+        *number = word.trim().parse().map_err(|_| refuse())?;
+    }
+    Ok(numbers)
+}
+
+/// Parses the window `XL,YL,XH,YH`.
+///
+/// # Errors
+/// The text is not four numbers.
+pub fn window(text: &str) -> Result<Window, FormatError> {
+    let [xl, yl, xh, yh] = numbers(text, "a window XL,YL,XH,YH")?;
+    Ok(Window {
+        low: [xl, yl],
+        high: [xh, yh],
+    })
+}
+
+/// A word of a script of keys.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Presses a key for one frame.
+    Press(Key),
+    /// Sets switch 0: whether the arrows rotate instead of pan.
+    Rotate(bool),
+}
+
+/// Parses a script of keys: `up`, `down`, `left`, `right`, `zoom-in`, `zoom-out`, with a count as in `up:20`, and `rotate` and
+/// `pan`, which set the switch for the arrows that follow.
+///
+/// # Errors
+/// A word has another form, or the keys are pressed more than 100,000 times.
+pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
+    const MOST: usize = 100_000;
+    let mut actions = Vec::new();
+    for word in text.split(',').map(str::trim) {
+        let refuse = |expected: String| FormatError::whole(expected, quote(word.as_bytes()));
+        let (name, count) = match word.split_once(':') {
+            Some((name, count)) => (name, count.parse::<usize>().ok()),
+            None => (word, Some(1)),
+        };
+        let key = Key::ALL.into_iter().find(|key| key.name() == name);
+        match (name, key, count) {
+            ("rotate" | "pan", _, Some(1)) => actions.push(Action::Rotate(name == "rotate")),
+            (_, Some(key), Some(count)) if count <= MOST - actions.len().min(MOST) => {
+                actions.extend(std::iter::repeat_n(Action::Press(key), count));
+            }
+            (_, Some(_), _) => {
+                return Err(refuse(format!("a count, at most {MOST} actions in all")));
+            }
+            _ => {
+                let keys = Key::NAMES.join(", ");
+                return Err(refuse(format!("{keys} (or KEY:COUNT), rotate or pan")));
+            }
+        }
+    }
+    Ok(actions)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate;
+
+    fn usual() -> Viewing {
+        Viewing {
+            eye: numbers("0,0,8", "").unwrap(),
+            plane: Q5_11::lit("4"),
+            window: window("-4,-2.25,4,2.25").unwrap(),
+        }
+    }
+
+    #[test]
+    fn the_edges_of_models() {
+        // A closed mesh of triangles has 3·F/2 edges, a cube of squares 12.
+        for (name, edges) in [("cube", 12), ("icosphere:1", 30), ("icosphere:4", 480)] {
+            let polygons = generate::named(name).unwrap();
+            let made = make(polygons, Some(4.0), &usual()).unwrap();
+            assert_eq!((made.segments, made.dropped), (edges, 0), "{name}");
+            let program = check(&made.bytes).unwrap();
+            assert_eq!(program.segment_count() as usize, edges);
+            assert_eq!(*program.viewing(), usual());
+        }
+    }
+
+    #[test]
+    fn a_cube_is_where_it_should_be() {
+        let made = make(generate::named("cube").unwrap(), Some(4.0), &usual()).unwrap();
+        let program = check(&made.bytes).unwrap();
+        assert!(program.segments().flatten().flatten().all(|x| x.abs() == 2));
+        let lengths = program
+            .segments()
+            .map(|[a, b]| (0..3).filter(|&i| a[i] != b[i]).count());
+        assert!(lengths.into_iter().all(|axes| axes == 1));
+    }
+
+    #[test]
+    fn up_is_up() {
+        let mut polygons = Polygons::default();
+        let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 3.0]].map(|point| {
+            crate::polygons::Corner::at(polygons.add_point(point, Place::Whole).unwrap())
+        });
+        polygons.add_face(&corners, None, Place::Whole).unwrap();
+        let made = make(polygons, None, &usual()).unwrap();
+        let program = check(&made.bytes).unwrap();
+        let point = |x: i16, y: i16, z: i16| [x, y, z].map(Q5_11::from_num);
+        assert!(
+            program
+                .segments()
+                .flatten()
+                .any(|end| end == point(0, 3, -2))
+        );
+    }
+
+    #[test]
+    fn refused_programs_of_meshes() {
+        let refused = |name: &str, extent, viewing: &Viewing| {
+            make(generate::named(name).unwrap(), extent, viewing)
+                .err()
+                .unwrap()
+                .to_string()
+        };
+        assert_eq!(
+            refused("icosphere:64", Some(4.0), &usual()),
+            "expected a mesh of at most 65535 edges, found 122880"
+        );
+        assert_eq!(
+            refused("cube", Some(32.0), &usual()),
+            "expected coordinates from -16 to 15.9995, found 16"
+        );
+        let low = Viewing {
+            plane: Q5_11::lit("8"),
+            ..usual()
+        };
+        assert_eq!(
+            refused("cube", Some(4.0), &low),
+            "expected a z of the eye above that of the view plane, 8, found 8"
+        );
+    }
+
+    #[test]
+    fn scripts() {
+        use Action::{Press, Rotate};
+        assert_eq!(
+            script("up, rotate,left:2,zoom-in,pan,down:0").unwrap(),
+            [
+                Press(Key::Up),
+                Rotate(true),
+                Press(Key::Left),
+                Press(Key::Left),
+                Press(Key::ZoomIn),
+                Rotate(false)
+            ]
+        );
+        assert_eq!(script("up:100000").unwrap().len(), 100_000);
+        for text in [
+            "",
+            "up,",
+            "jump",
+            "up:x",
+            "up:-1",
+            "rotate:2",
+            "up:100001",
+            "up,up:100000",
+        ] {
+            let error = script(text).unwrap_err().to_string();
+            assert!(
+                error.starts_with("expected ") && error.contains(", found '"),
+                "{error}"
+            );
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! `glint wireframe`.
+
+use crate::common::{SQUARE, folder, refused, succeed};
+
+const PROGRAM: &str = "\
+# a cross
+eye 0 0 4
+plane 2
+window -2 -1.125 2 1.125
+segment -1 0 1  1 0 1
+segment 0 -1 1  0 1 1
+end
+";
+
+#[test]
+fn both_forms_of_a_program() {
+    let folder = folder("wireframe_forms");
+    std::fs::write(folder.join("a.wft"), PROGRAM).unwrap();
+    succeed(&folder, &["wireframe", "convert", "a.wft", "a.wfb"]);
+    succeed(&folder, &["wireframe", "convert", "a.wfb", "b.wft"]);
+    succeed(&folder, &["wireframe", "convert", "b.wft", "b.wfb"]);
+    let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
+    assert_eq!(read("a.wfb"), read("b.wfb"));
+    assert_eq!(read("a.wfb").len(), 6 * 16);
+    let text = String::from_utf8(read("b.wft")).unwrap();
+    assert_eq!(
+        text,
+        "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0 1\nsegment 0 -1 1 0 1 1\nend\n"
+    );
+    let shown = "eye        0 0 4\nplane      2\nwindow     -2 -1.125 2 1.125\nprogram    2 segments, 96 bytes in binary form\n";
+    for name in ["a.wft", "a.wfb"] {
+        assert_eq!(succeed(&folder, &["wireframe", "check", name]), shown);
+    }
+    let json = succeed(&folder, &["wireframe", "check", "a.wfb", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(
+        (&json["segments"], &json["window"][1], &json["plane"]),
+        (&2.into(), &(-1.125).into(), &2.0.into())
+    );
+}
+
+#[test]
+fn programs_of_meshes() {
+    let folder = folder("wireframe_meshes");
+    std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
+    for (model, segments) in [("cube", 12), ("square.obj", 4), ("icosphere:8", 1920)] {
+        let text = succeed(&folder, &["wireframe", "make", model, "--out", "a.wfb"]);
+        assert_eq!(
+            text,
+            format!(
+                "written    {segments} segments\ndropped    0 edges without a length at 2^-11\n"
+            )
+        );
+    }
+    // An STL shares no points: each of the 12 triangles of a cube has its own, so the 6 diagonals are edges too.
+    succeed(&folder, &["model", "cube", "cube.stl"]);
+    let json = succeed(
+        &folder,
+        &["wireframe", "make", "cube.stl", "--out", "a.wft", "--json"],
+    );
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["segments"], 18);
+    let placed = [
+        "wireframe",
+        "make",
+        "square.obj",
+        "--keep-scale",
+        "--eye=1,2,3",
+        "--plane=-1",
+        "--window=-1,-1,1,1",
+        "--out",
+        "a.wft",
+    ];
+    succeed(&folder, &placed);
+    let text = std::fs::read_to_string(folder.join("a.wft")).unwrap();
+    assert_eq!(
+        text,
+        "eye 1 2 3\nplane -1\nwindow -1 -1 1 1\nsegment 0 0 -1 0 0 0\nsegment 0 0 -1 1 0 -1\nsegment 0 0 0 1 0 0\nsegment 1 0 -1 1 0 0\nend\n"
+    );
+}
+
+#[test]
+fn refused_programs() {
+    let folder = folder("wireframe_refused");
+    let cases: [(&str, Vec<u8>, &str); 5] = [
+        (
+            "a.txt",
+            vec![],
+            "a.txt: expected a name that ends in .wft (text) or .wfb (binary), found '.txt'",
+        ),
+        (
+            "a.wft",
+            PROGRAM.replace("end\n", "").into(),
+            "a.wft: line 7: expected end, found the end of the input",
+        ),
+        (
+            "b.wft",
+            PROGRAM.replace("eye 0 0 4", "eye 0 0 -4").into(),
+            "b.wft: line 2: expected a z of the eye of at least 0, found -4",
+        ),
+        (
+            "a.wfb",
+            vec![0; 40],
+            "a.wfb: word 2: expected one eye in the program, found a second one",
+        ),
+        (
+            "b.wfb",
+            vec![0xFF; 16],
+            "b.wfb: word 1: expected zeros in bits 127 to 99, found 0x1fffffff",
+        ),
+    ];
+    for (name, bytes, message) in cases {
+        std::fs::write(folder.join(name), bytes).unwrap();
+        for arguments in [
+            &["wireframe", "check", name][..],
+            &["wireframe", "convert", name, "out.wfb"],
+        ] {
+            assert_eq!(refused(&folder, arguments), format!("error: {message}"));
+        }
+    }
+    let refused = |arguments: &[&str]| {
+        let make = ["wireframe", "make", "cube", "--out", "out.wfb"];
+        refused(&folder, &[&make[..], arguments].concat())
+    };
+    assert_eq!(
+        refused(&["--extent=32"]),
+        "error: --extent: expected a side above 0 and below 32, found 32"
+    );
+    assert_eq!(
+        refused(&["--plane=8"]),
+        "error: cube: expected a z of the eye above that of the view plane, 8, found 8"
+    );
+    assert_eq!(
+        refused(&["--eye=0,0"]),
+        "error: --eye: expected a position X,Y,Z, each from -16 to 15.9995, found '0,0'"
+    );
+    assert_eq!(
+        refused(&["--window=0,0,0,1"]),
+        "error: cube: expected x of the window's lower corner below 0, found 0"
+    );
+    assert!(!folder.join("out.wfb").exists());
+}
