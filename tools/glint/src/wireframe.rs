@@ -136,7 +136,11 @@ pub fn make(
     viewing: &Viewing,
 ) -> Result<Made, FormatError> {
     let keep_scale = extent.is_none();
-    convert::place(&mut polygons, Options { keep_scale })?;
+    let options = Options {
+        keep_scale,
+        ..Options::default()
+    };
+    convert::place(&mut polygons, options)?;
     let scale = extent.unwrap_or(1.0);
     let points = polygons
         .points
