@@ -5,12 +5,13 @@ which firmware can see, are here.
 """
 
 import litedram.core
+from litedram.common import LiteDRAMNativePort
 from litedram.core.controller import ControllerSettings
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import wishbone
-from migen import Cat, Constant, Signal
+from migen import Cat, Constant, Signal, log2_int
 
 from .i2c import I2CMaster
 from .identity import Identity
@@ -32,9 +33,11 @@ _PORT_BITS = 128
 class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
 
-    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. `build_id` is the checksum of the
-    register map of the full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine.
-    `fields` are the build options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
+    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. With the raymarcher but without the
+    triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
+    registers. `build_id` is the checksum of the register map of the full build (see `register_map.build_id`). `smooth` builds
+    smooth shading into the triangle engine. `fields` are the build options of the raymarcher. `mode` is the video mode, which
+    also limits the picture sizes.
     """
 
     csr_map = CSR_MAP
@@ -44,9 +47,8 @@ class GlintSoC(SoCCore):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
-        self.blocks = frozenset(blocks)
-        if "raymarch" in self.blocks and "triangle" not in self.blocks:
-            raise ValueError("the raymarcher draws into the triangle engine's band buffer: expected the block triangle too")
+        self.draws_triangles = "triangle" in blocks
+        self.blocks = frozenset({*blocks, "triangle"} if "raymarch" in blocks else blocks)
         self.mode = mode
         self.smooth = smooth
         self.fields = fields or Fields()
@@ -71,7 +73,7 @@ class GlintSoC(SoCCore):
         self.add_constant("UART_POLLING")
         self.add_constant("BUILD_ID", build_id)
 
-        self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in self.blocks))
+        self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in set(blocks)))
         self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
         self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
         self.switches = GPIOIn(self._inputs("switches", 16))
@@ -108,11 +110,18 @@ class GlintSoC(SoCCore):
         self.memory_bridge = MemoryBridge(bus, port, main_ram.origin, early=width < bus.data_width)
         self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:
-            self.scanout = Scanout(self.platform, self.sdram.crossbar.get_port("read", _PORT_BITS), self.mode)
+            self.scanout = Scanout(self.platform, self._port("read", main_ram), self.mode)
         if "triangle" in self.blocks:
-            readers = [self.sdram.crossbar.get_port("read", _PORT_BITS) for _ in range(3)]
-            writers = [self.sdram.crossbar.get_port("write", _PORT_BITS) for _ in range(4)]
-            self.triangle = TriangleEngine(self.platform, readers, writers, main_ram, self.mode.sizes, self.smooth,
-                                           "raymarch" in self.blocks)
+            readers = [self._port("read", main_ram, self.draws_triangles) for _ in range(3)]
+            lists = [self._port("write", main_ram, self.draws_triangles) for _ in range(2)]
+            frame = [self._port("write", main_ram) for _ in range(2)]
+            self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
+                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
+
+    def _port(self, mode, main_ram, built=True):
+        """Returns a port of the memory for an accelerator: one without a memory behind it if the part that uses it is not built."""
+        if built:
+            return self.sdram.crossbar.get_port(mode, _PORT_BITS)
+        return LiteDRAMNativePort(mode, log2_int(main_ram.size * 8 // _PORT_BITS), _PORT_BITS)

@@ -1,4 +1,5 @@
-"""Register block of the triangle engine (rtl/triangle): draws a mesh in memory to a frame in memory."""
+"""Register block of the triangle engine (rtl/triangle): draws a mesh in memory, and the field of a raymarcher, to a frame in
+memory."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
@@ -30,6 +31,7 @@ ERRORS = Enumeration("error", "Results of a pass.", {
     "full": "no room for all descriptors, list entries or exceptions; the others were drawn",
     "list": "a band list was too long, or named a number that is no descriptor; the frame is wrong",
     "cancelled": "ended by `cancel`",
+    "triangles": "this build draws no triangles; memory is unchanged",
 })
 
 SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for size in constants.SIZES})
@@ -42,10 +44,11 @@ class TriangleEngine(LiteXModule):
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
     `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
     sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
-    raymarcher.
+    raymarcher. Without `triangles` the engine draws fields only, and of the ports it uses the last two writers; the registers
+    are the same.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, sizes, smooth=False, fields=False):
+    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False):
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != memory_bits:
@@ -60,6 +63,8 @@ class TriangleEngine(LiteXModule):
             CSRField("gouraud", offset=3, reset=int(smooth), description="Smooth shading: colours interpolated between "
                      f"vertices. A descriptor has {DESCRIPTOR_BYTES['smooth']} bytes with smooth shading, "
                      f"{DESCRIPTOR_BYTES['flat']} without."),
+            CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes, and raster passes with "
+                     "lists. Without them a raster pass draws the raymarcher's field alone."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -259,6 +264,7 @@ class TriangleEngine(LiteXModule):
             p_BASE            = main_ram.origin,
             p_MEMORY_BITS     = memory_bits,
             p_SIZES           = sizes,
+            p_TRIANGLES       = int(triangles),
             p_SMOOTH          = int(smooth),
             i_clk             = ClockSignal("sys"),
             i_rst             = ResetSignal("sys"),
@@ -282,6 +288,7 @@ class TriangleEngine(LiteXModule):
             **{f"o_{name}": signal for name, signal in start.items()},
         )
         self.specials += Instance("triangle_engine", name="triangle_engine",
+            p_TRIANGLES       = int(triangles),
             p_SMOOTH          = int(smooth),
             p_FIELDS          = int(fields),
             i_clk             = self.clk,

@@ -31,6 +31,7 @@ class Module:
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
+_FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
 # Parameters of the builds with every field: of a lane (ring_lane), and of the module that colours the ends of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
@@ -54,7 +55,9 @@ MODULES = [
     Module(top="triangle_raster", variants={"triangle_raster_smooth": _SMOOTH}),
     Module(top="list_reader", measured=("list_reader",)),
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
-    Module(top="triangle_engine", variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1}},
+    Module(top="triangle_engine",
+           variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
+                     "triangle_engine_fields_alone": _FIELDS_ALONE},
            measured=("triangle_engine_fields",)),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
     Module(top="field_sphere", measured=("field_sphere",)),
@@ -67,6 +70,7 @@ MODULES = [
            measured=("raymarcher_round", "raymarcher_faces")),
     Module(
         top="triangle_control",
-        variants={"triangle_control_smooth": _SMOOTH, "triangle_control_32_mb": {"MEMORY_BITS": 21, "SIZES": 3}},
+        variants={"triangle_control_smooth": _SMOOTH, "triangle_control_32_mb": {"MEMORY_BITS": 21, "SIZES": 3},
+                  "triangle_control_fields_alone": {"TRIANGLES": 0}},
     ),
 ]

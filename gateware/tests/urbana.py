@@ -6,6 +6,7 @@ from collections import Counter
 
 from litex.soc.integration.builder import Builder
 
+from glint_soc import register_map
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.urbana import UrbanaSoC
 from glint_soc.virtual import VirtualSoC
@@ -106,11 +107,25 @@ def check_100_mhz(*_files):
     return problems
 
 
-def check_complete(_xdc, _verilog, _script):
+def check_complete(_xdc, _verilog, _script, folder=_GATEWARE):
     """Checks that each instantiated module, or primitive of the FPGA, exists and has the connected ports."""
     run_yosys("read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; hierarchy -check -top glint_urbana",
-              synthesis_sources(_GATEWARE), folder=_GATEWARE) # The folder with the memory images.
+              synthesis_sources(folder), folder=folder) # The folder with the memory images.
     return []
+
+
+def check_fields_alone(*files):
+    """Checks the build with the raymarcher and without triangles: it is complete, has the registers of the full build, the bit of
+    each block that was asked for, and four memory ports: of CPU and scan-out, and two for frames."""
+    output, full = _OUTPUT.with_name("urbana_fields_alone"), VirtualSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
+    soc = UrbanaSoC(build_id=0, blocks=("scanout", "raymarch"))
+    _elaborate(soc, output)
+    full.finalize()
+    register_map.check_subset(soc, full)
+    found = {"blocks": soc.identity.blocks.status.reset.value, "memory ports": len(soc.sdram.crossbar.masters)}
+    expected = {"blocks": 0b101, "memory ports": 4}
+    return check_complete(*files, folder=output / "gateware") + [
+        f"{name}: expected {expected[name]}, got {number}" for name, number in found.items() if number != expected[name]]
 
 
 def synthesis_sources(folder):
@@ -135,4 +150,5 @@ CHECKS = {
     "clocks exact": check_clocks,
     "100 MHz": check_100_mhz,
     "design complete": check_complete,
+    "fields alone": check_fields_alone,
 }

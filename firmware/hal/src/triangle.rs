@@ -28,6 +28,8 @@ use crate::Absent;
 pub enum EngineError {
     /// An error code of the register `status`, also used by the driver's own checks.
     Status(Error),
+    /// The register `status` has an error code without a name.
+    Unknown,
     /// No progress for longer than [`TIMEOUT`].
     Timeout,
     /// This gateware is built without smooth shading.
@@ -40,10 +42,11 @@ pub enum EngineError {
 pub const TIMEOUT: Duration = Duration::from_millis(100);
 
 impl EngineError {
-    fn check(code: Error) -> Result<(), Self> {
+    fn check(code: Option<Error>) -> Result<(), Self> {
         match code {
-            Error::None => Ok(()),
-            code => Err(Self::Status(code)),
+            Some(Error::None) => Ok(()),
+            Some(code) => Err(Self::Status(code)),
+            None => Err(Self::Unknown),
         }
     }
 }
@@ -59,6 +62,7 @@ impl fmt::Display for EngineError {
         f.write_str("triangle engine: ")?;
         match self {
             Self::Status(code) => f.write_str(code.text()),
+            Self::Unknown => f.write_str("unknown error code"),
             Self::Timeout => write!(f, "timed out: no progress for {} ms", TIMEOUT.as_millis()),
             Self::Shading => f.write_str("this gateware has no smooth shading"),
             Self::Eye => f.write_str("the eye is too far from the origin"),
@@ -168,6 +172,13 @@ impl TriangleEngine {
             .ev_enable()
             .write(EvEnable::default().with_geometry(true).with_raster(true));
         Ok(Self { registers })
+    }
+
+    /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass, and each raster pass with a
+    /// [`Set`]; a raster pass without sets draws a raymarcher's field.
+    #[must_use]
+    pub fn draws_triangles(&self) -> bool {
+        self.registers.caps().read().triangles()
     }
 
     /// Best shading that this gateware can draw: `Smooth` if it was built with smooth shading, otherwise `Flat`. It

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x6316_96c2;
+pub const BUILD_ID: u32 = 0xafae_6a44;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2806,7 +2806,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5008) }
         }
 
-        /// `status`, 11 bits: State.
+        /// `status`, 12 bits: State.
         #[inline]
         #[must_use]
         pub const fn status(&self) -> Register<Status, ReadOnly> {
@@ -3356,6 +3356,13 @@ pub mod triangle {
             (self.0 >> 3) & 1 != 0
         }
 
+        /// `triangles`, bit 4: Triangles: geometry passes, and raster passes with lists. Without them a raster pass draws the raymarcher's field alone.
+        #[inline]
+        #[must_use]
+        pub const fn triangles(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
         /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.
         #[inline]
         #[must_use]
@@ -3423,18 +3430,18 @@ pub mod triangle {
             (self.0 >> 1) & 1 != 0
         }
 
-        /// `geometry_error`, bits 6 to 4: Result of the last geometry pass.
+        /// `geometry_error`, bits 7 to 4: Result of the last geometry pass.
         #[inline]
         #[must_use]
-        pub const fn geometry_error(self) -> Error {
-            Error::from_bits(((self.0 >> 4) & 0x7) as u8)
+        pub const fn geometry_error(self) -> Option<Error> {
+            Error::from_bits(((self.0 >> 4) & 0xf) as u8)
         }
 
-        /// `raster_error`, bits 10 to 8: Result of the last raster pass.
+        /// `raster_error`, bits 11 to 8: Result of the last raster pass.
         #[inline]
         #[must_use]
-        pub const fn raster_error(self) -> Error {
-            Error::from_bits(((self.0 >> 8) & 0x7) as u8)
+        pub const fn raster_error(self) -> Option<Error> {
+            Error::from_bits(((self.0 >> 8) & 0xf) as u8)
         }
     }
 
@@ -3806,17 +3813,19 @@ pub mod triangle {
         List = 6,
         /// Ended by `cancel`.
         Cancelled = 7,
+        /// This build draws no triangles; memory is unchanged.
+        Triangles = 8,
     }
 
     impl Error {
         /// Every value, in the order of the gateware's description.
-        pub const ALL: [Self; 8] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled];
+        pub const ALL: [Self; 9] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled, Self::Triangles];
 
-        /// Returns the value for a field's `bits`. Bits above the field's width are ignored.
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
         #[inline]
         #[must_use]
-        pub const fn from_bits(bits: u8) -> Self {
-            match bits & 0x7 {
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
                 0 => Self::None,
                 1 => Self::Size,
                 2 => Self::Address,
@@ -3824,8 +3833,10 @@ pub mod triangle {
                 4 => Self::Mesh,
                 5 => Self::Full,
                 6 => Self::List,
-                _ => Self::Cancelled,
-            }
+                7 => Self::Cancelled,
+                8 => Self::Triangles,
+                _ => return None,
+            })
         }
 
         /// Its name in the gateware's description.
@@ -3840,6 +3851,7 @@ pub mod triangle {
                 Self::Full => "full",
                 Self::List => "list",
                 Self::Cancelled => "cancelled",
+                Self::Triangles => "triangles",
             }
         }
 
@@ -3855,6 +3867,7 @@ pub mod triangle {
                 Self::Full => "no room for all descriptors, list entries or exceptions; the others were drawn",
                 Self::List => "a band list was too long, or named a number that is no descriptor; the frame is wrong",
                 Self::Cancelled => "ended by `cancel`",
+                Self::Triangles => "this build draws no triangles; memory is unchanged",
             }
         }
     }

@@ -7,6 +7,7 @@ use glint_hal::timer::FREQUENCY;
 use litex_pac::ctrl;
 
 use crate::error::CommandError;
+use crate::gateware::GatewareRenderer;
 use crate::job::{Outcome, Reply};
 use crate::machine::{Devices, Machine};
 use crate::selftest;
@@ -41,11 +42,14 @@ impl<'l> MachineCommands<'l> for Machine {
         let [width, height] = scene.size().pixels();
         let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
         let counters = renderer.display.counters();
-        let entries: [(&str, fmt::Arguments); 18] = [
+        let subjects = renderer.gateware.as_ref();
+        let subjects = subjects.map_or("none", GatewareRenderer::subjects);
+        let entries: [(&str, fmt::Arguments); 19] = [
             ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
             ("firmware_id", format_args!("{:#010x}", identity.firmware)),
             ("gateware_id", format_args!("{:#010x}", identity.gateware)),
             ("blocks", format_args!("{:#x}", identity.blocks)),
+            ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{FREQUENCY}")),
             ("scene", format_args!("{shown}{with_mesh}")),
             ("vertices", format_args!("{}", mesh.vertex_count())),

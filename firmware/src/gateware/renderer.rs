@@ -54,6 +54,7 @@ struct Start {
 pub struct GatewareRenderer {
     pub(super) engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
+    draws_triangles: bool,
     shading: Shading,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
     buffers: [Buffers; 2],
@@ -81,6 +82,7 @@ impl GatewareRenderer {
     ) -> Option<Self> {
         let room = Room::of(memory.len())?;
         Some(Self {
+            draws_triangles: engine.draws_triangles(),
             shading: engine.shading(),
             engine,
             raymarcher,
@@ -95,6 +97,16 @@ impl GatewareRenderer {
             watchdog: Watchdog::default(),
             start: Start::default(),
         })
+    }
+
+    /// The subjects that the gateware draws, as a list for the console. The CPU draws the others.
+    pub const fn subjects(&self) -> &'static str {
+        match (self.draws_triangles, self.raymarcher.is_some()) {
+            (true, true) => "meshes, fields",
+            (true, false) => "meshes",
+            (false, true) => "fields",
+            (false, false) => "none",
+        }
     }
 
     /// Whether a frame is in progress.
@@ -215,11 +227,13 @@ impl GatewareRenderer {
 
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
-        if let Some(mesh) = frame.subject.mesh_part()
-            && mesh.shading == Shading::Smooth
-            && self.shading == Shading::Flat
-        {
-            return Err(EngineError::Shading.into());
+        if let Some(mesh) = frame.subject.mesh_part() {
+            if !self.draws_triangles {
+                return Err(EngineError::from(Error::Triangles).into());
+            }
+            if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
+                return Err(EngineError::Shading.into());
+            }
         }
         Ok(self.constants[place].update(frame)?)
     }

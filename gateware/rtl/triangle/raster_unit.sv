@@ -15,6 +15,9 @@
 // until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
 //
+// Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
+// must then be low, and the unit reads no memory.
+//
 // `slot` is the number of the frame buffer that is drawn. Only words that can differ from the last frame in the same slot are
 // written. `whole` writes all words; it is required when the contents of the frame buffer are unknown (a new buffer, another
 // size or clear colour, a write by the CPU). `depth` implies `whole`. All words are also written if the slot holds no complete
@@ -27,6 +30,7 @@
 `default_nettype none
 
 module raster_unit #(
+    parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
@@ -76,9 +80,6 @@ module raster_unit #(
     logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] base, band_depth_base;
     logic                    clearing, flushed, in_memory, band_ready, begins, drawn, has_field;
-    // The first row and the parity of the band whose triangles are read, which is the band being drawn or the next one.
-    logic [9:0]              read_row;
-    logic                    read_odd;
 
     // For each slot, whether its frame buffer holds a complete frame. The bit of a slot is 0 while it is drawn.
     logic [1:0] known;
@@ -132,46 +133,6 @@ module raster_unit #(
         end
     end
 
-    logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
-    triangle_pkg::descriptor_t descriptor;
-    logic [(SMOOTH ? 289 : 1)-1:0] planes;
-
-    // `stray` is high for a descriptor with groups outside of the picture, which is skipped.
-    logic stray, list_damaged;
-
-    assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
-                || descriptor.group_right >= stride;
-
-    // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
-    assign triangle_valid = item_valid && !band_ends && !stray;
-    assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
-    assign drawn          = read_odd != band[0] && raster_idle;
-
-    always_ff @(posedge clk) begin
-        list_error <= !begins && (list_error || list_damaged || item_valid && !band_ends && stray);
-        if (rst) list_error <= 1'b0;
-
-        if (begins) begin
-            read_row <= '0;
-            read_odd <= 1'b0;
-        end else if (item_valid && item_ready && band_ends) begin
-            read_row <= read_row + 10'(rows);
-            read_odd <= !read_odd;
-        end
-    end
-
-    list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) list_reader (
-        .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band,
-        .present({flags.second, flags.first}),
-        .list_base({parameters.lists[1][4 +: ADDRESS_BITS], parameters.lists[0][4 +: ADDRESS_BITS]}),
-        .descriptor_base({parameters.descriptors[1][4 +: ADDRESS_BITS], parameters.descriptors[0][4 +: ADDRESS_BITS]}),
-        .counts(parameters.count), .list_shift(parameters.list_shift),
-        .list_error(list_damaged),
-        .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
-        .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor),
-        .out_planes(planes)
-    );
-
     // Each band is drawn in two steps: first its triangles (`drawn_*`), then the pixels of the field (`field_source`).
     logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
@@ -191,41 +152,83 @@ module raster_unit #(
 
     triangle_registers_pkg::events_t walk_events, band_events;
 
-    triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
-        .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
-        .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
-        .triangle_planes(planes),
-        .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
-        .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
-    );
+    if (TRIANGLES) begin : triangles
+        logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
+        triangle_pkg::descriptor_t descriptor;
+        logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
-    if (FIELDS) begin : meeting
-        always_comb begin
-            drawn_ready   = group_ready && !field_sink.open;
-            field_sink.ready   = group_ready && field_sink.open;
-            group_valid   = field_sink.open ? field_source.valid : drawn_valid;
-            group_halves  = field_sink.open ? field_source.halves : 2'b11;
-            group_row     = field_sink.open ? field_source.row : drawn_row;
-            group_line    = field_sink.open ? field_source.line : drawn_line;
-            group_column  = field_sink.open ? field_source.column : drawn_column;
-            group_mask    = field_sink.open ? field_source.mask : drawn_mask;
-            group_codes   = field_sink.open ? {8{field_source.code}} : drawn_codes;
-            group_colours = field_sink.open ? {8{field_source.colour}} : drawn_colours;
+        // The first row and the parity of the band whose triangles are read, which is the band being drawn or the next one.
+        logic [9:0] read_row;
+        logic       read_odd;
+
+        // `stray` is high for a descriptor with groups outside of the picture, which is skipped.
+        logic stray, list_damaged;
+
+        assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
+                    || descriptor.group_right >= stride;
+
+        // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
+        assign triangle_valid = item_valid && !band_ends && !stray;
+        assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
+        assign drawn          = read_odd != band[0] && raster_idle;
+
+        always_ff @(posedge clk) begin
+            list_error <= !begins && (list_error || list_damaged || item_valid && !band_ends && stray);
+            if (rst) list_error <= 1'b0;
+
+            if (begins) begin
+                read_row <= '0;
+                read_odd <= 1'b0;
+            end else if (item_valid && item_ready && band_ends) begin
+                read_row <= read_row + 10'(rows);
+                read_odd <= !read_odd;
+            end
         end
-    end else begin : triangles_alone
-        always_comb begin
-            drawn_ready  = group_ready;
-            field_sink.ready  = 1'b0;
-            group_valid  = drawn_valid;
-            group_halves = 2'b11;
-            group_row    = drawn_row;
-            group_line   = drawn_line;
-            group_column = drawn_column;
-            group_mask   = drawn_mask;
-            group_codes  = drawn_codes;
-            group_colours = drawn_colours;
-        end
-        wire _unused = &{1'b0, field_source};
+
+        list_reader #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) list_reader (
+            .clk, .rst(rst || restart), .start(begins), .forget(state == IDLE), .last_band,
+            .present({flags.second, flags.first}),
+            .list_base({parameters.lists[1][4 +: ADDRESS_BITS], parameters.lists[0][4 +: ADDRESS_BITS]}),
+            .descriptor_base({parameters.descriptors[1][4 +: ADDRESS_BITS], parameters.descriptors[0][4 +: ADDRESS_BITS]}),
+            .counts(parameters.count), .list_shift(parameters.list_shift),
+            .list_error(list_damaged),
+            .ask_valid, .ask_ready, .ask_addr, .data_valid, .data_ready, .data,
+            .out_valid(item_valid), .out_ready(item_ready), .out_end(band_ends), .out_descriptor(descriptor),
+            .out_planes(planes)
+        );
+
+        triangle_raster #(.SMOOTH(SMOOTH)) triangle_raster (
+            .clk, .rst(rst || restart), .odd(band[0]), .rows, .stride, .idle(raster_idle), .events(walk_events),
+            .triangle_valid, .triangle_ready, .triangle_y0(read_row), .triangle_odd(read_odd), .triangle_descriptor(descriptor),
+            .triangle_planes(planes),
+            .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
+            .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
+        );
+    end else begin : fields_alone
+        assign drawn       = 1'b1;
+        assign list_error  = 1'b0;
+        assign walk_events = '0;
+        assign {ask_valid, ask_addr, data_ready} = '0;
+        assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
+        wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready};
+    end
+
+    // Whether groups come from the raymarcher in this clock; without TRIANGLES, from nowhere else.
+    logic from_field;
+
+    assign from_field = FIELDS && (field_sink.open || !TRIANGLES);
+
+    always_comb begin
+        drawn_ready      = group_ready && !from_field;
+        field_sink.ready = group_ready && FIELDS && field_sink.open;
+        group_valid      = from_field ? field_source.valid && field_sink.open : drawn_valid;
+        group_halves     = from_field ? field_source.halves : 2'b11;
+        group_row        = from_field ? field_source.row : drawn_row;
+        group_line       = from_field ? field_source.line : drawn_line;
+        group_column     = from_field ? field_source.column : drawn_column;
+        group_mask       = from_field ? field_source.mask : drawn_mask;
+        group_codes      = from_field ? {8{field_source.code}} : drawn_codes;
+        group_colours    = from_field ? {8{field_source.colour}} : drawn_colours;
     end
 
     logic                    word_valid, word_ready, odd_bank;
@@ -273,7 +276,7 @@ module raster_unit #(
         events.cycles_raster = busy;
     end
 
-    wire _unused_parameters = &{1'b0, parameters};
+    wire _unused_inputs = &{1'b0, flags, parameters, field_source};
 endmodule
 
 `default_nettype wire

@@ -5,9 +5,11 @@
 //
 // The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
 // 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^MEMORY_BITS words from
-// BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A pass is requested by one clock of `ask`.
-// `ended` (one clock) answers each request when its pass is refused, done or cancelled; `error` then holds until the next
-// request of this pass.
+// BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends each geometry
+// pass, and a raster pass with `first` or `second`, with ERROR_TRIANGLES.
+//
+// A pass is requested by one clock of `ask`. `ended` (one clock) answers each request when its pass is refused, done or
+// cancelled; `error` then holds until the next request of this pass.
 //
 // A pass is `active` from its request until its error is valid. A second request meanwhile does not stop the pass; the error is
 // then ERROR_BUSY, unless the pass ends with another error.
@@ -20,6 +22,7 @@
 
 module triangle_control #(
     parameter  logic [31:0] BASE         = 32'h4000_0000,
+    parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
     parameter  int unsigned SIZES        = 7, // picture sizes of this build: bit k for the size of code k
@@ -35,7 +38,7 @@ module triangle_control #(
     output triangle_registers_pkg::geometry_flags_t geometry_kept,
     output logic                   geometry_active,
     output logic                   geometry_ended,
-    output logic [2:0]             geometry_error,
+    output logic [3:0]             geometry_error,
     // Raster.
     input  wire                    raster_ask,
     input  wire triangle_registers_pkg::raster_flags_t raster_flags,
@@ -43,18 +46,19 @@ module triangle_control #(
     output triangle_registers_pkg::raster_flags_t raster_kept,
     output logic                   raster_active,
     output logic                   raster_ended,
-    output logic [2:0]             raster_error,
+    output logic [3:0]             raster_error,
     // Engine.
     input  wire triangle_registers_pkg::status_t engine,
     output logic                   recovering,
     output logic                   geometry_start,
     output logic                   raster_start
 );
-    localparam logic [2:0] ERROR_NONE = triangle_registers_pkg::ERROR_NONE, ERROR_SIZE = triangle_registers_pkg::ERROR_SIZE,
+    localparam logic [3:0] ERROR_NONE = triangle_registers_pkg::ERROR_NONE, ERROR_SIZE = triangle_registers_pkg::ERROR_SIZE,
                            ERROR_ADDRESS = triangle_registers_pkg::ERROR_ADDRESS, ERROR_BUSY = triangle_registers_pkg::ERROR_BUSY,
                            ERROR_MESH = triangle_registers_pkg::ERROR_MESH, ERROR_FULL = triangle_registers_pkg::ERROR_FULL,
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
-                           ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED;
+                           ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED,
+                           ERROR_TRIANGLES = triangle_registers_pkg::ERROR_TRIANGLES;
 
     // Bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = triangle_registers_pkg::ADDRESS_BITS + 2;
@@ -66,7 +70,7 @@ module triangle_control #(
 
     localparam logic [3:0] FIRST_GEOMETRY = 4'd0, LAST_GEOMETRY = 4'd3, FIRST_RASTER = 4'd4, LAST_RASTER = 4'd9;
 
-    logic       geometry_pending, raster_pending, rastering, misplaced;
+    logic       geometry_pending, raster_pending, rastering;
     logic [3:0] region;
     logic [1:0] size;
     logic [5:0] bands;
@@ -80,6 +84,19 @@ module triangle_control #(
     localparam logic [3:0] SUPPORTED = {1'b0, 3'(SIZES)};
 
     assign bands = band_pkg::bands(size);
+
+    // The error with which the pass is refused, or ERROR_NONE.
+    logic       misplaced, has_triangles;
+    logic [3:0] refusal;
+
+    assign has_triangles = !rastering || raster_kept.first || raster_kept.second;
+
+    always_comb begin
+        if (!TRIANGLES && has_triangles) refusal = ERROR_TRIANGLES;
+        else if (!SUPPORTED[size])       refusal = ERROR_SIZE;
+        else if (misplaced)              refusal = ERROR_ADDRESS;
+        else                             refusal = ERROR_NONE;
+    end
 
     // First address and length (in words) of the region that is checked, and the values from which this length is selected.
     logic [31:0]          first;
@@ -115,6 +132,12 @@ module triangle_control #(
             4'd8:    begin first = raster.descriptors[0];  words = descriptor_words; used = raster_kept.first; end
             default: begin first = raster.descriptors[1];  words = descriptor_words; used = raster_kept.second; end
         endcase
+        // A build without triangles checks frame and depth only, and needs no logic for the other regions.
+        if (!TRIANGLES) begin
+            first = region[0] ? raster.depth : raster.frame;
+            words = region[0] ? frame_words << 1 : frame_words;
+            used  = region == 4'd4 || region == 4'd5 && raster_kept.depth;
+        end
     end
 
     // The check of a region takes two clocks: one selects the region, the next one computes its end.
@@ -178,13 +201,13 @@ module triangle_control #(
             // Waits until the end address of the last region is checked.
             SETTLE: state <= JUDGE;
             JUDGE: begin
-                if (!SUPPORTED[size] || misplaced) begin
+                if (refusal != ERROR_NONE) begin
                     if (rastering) begin
                         {raster_pending, raster_ended} <= 2'b01;
-                        raster_error <= !SUPPORTED[size] ? ERROR_SIZE : ERROR_ADDRESS;
+                        raster_error <= refusal;
                     end else begin
                         {geometry_pending, geometry_ended} <= 2'b01;
-                        geometry_error <= !SUPPORTED[size] ? ERROR_SIZE : ERROR_ADDRESS;
+                        geometry_error <= refusal;
                     end
                     state <= IDLE;
                 end else begin

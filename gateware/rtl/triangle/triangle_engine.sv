@@ -14,12 +14,17 @@
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
 // is interpolated over the depth, with a division at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have
 // twice the words.
+//
+// FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws what a raymarcher sends and nothing else: the
+// geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
+// `geometry_start` must then stay low.
 
 `default_nettype none
 
 module triangle_engine #(
-    parameter bit SMOOTH = 1'b0,
-    parameter bit FIELDS = 1'b0
+    parameter bit TRIANGLES = 1'b1,
+    parameter bit SMOOTH    = 1'b0,
+    parameter bit FIELDS    = 1'b0
 ) (
     input  wire  clk,
     input  wire  rst,
@@ -74,43 +79,55 @@ module triangle_engine #(
         if (rst)       dropping <= 1'b0;
     end
 
-    read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) mesh_read (
-        .clk, .rst, .drop, .idle(ports_idle[0]),
-        .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[1*ADDRESS_BITS-1:0]),
-        .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[1*128-1:0]),
-        .cmd_valid(mesh_read_request.cmd_valid), .cmd_ready(mesh_read_answer.cmd_ready), .cmd_addr(mesh_read_request.cmd_addr),
-        .rdata_valid(mesh_read_answer.rdata_valid), .rdata(mesh_read_answer.rdata)
-    );
-
-    read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
-        .clk, .rst, .drop, .idle(ports_idle[1]),
-        .ask_valid(ask_valid[1]), .ask_ready(ask_ready[1]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS]),
-        .data_valid(data_valid[1]), .data_ready(data_ready[1]), .data(data[2*128-1:1*128]),
-        .cmd_valid(vertex_read_request.cmd_valid), .cmd_ready(vertex_read_answer.cmd_ready), .cmd_addr(vertex_read_request.cmd_addr),
-        .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
-    );
-
-    // The words of the lists and of the descriptors wait in block RAM, of which the FPGA has more to spare than of LUTs.
-    read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
-        .clk, .rst, .drop, .idle(ports_idle[2]),
-        .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
-        .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
-        .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
-        .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
-    );
-
     triangle_registers_pkg::events_t geometry_events, raster_events, port_events;
 
-    geometry_unit #(.SMOOTH(SMOOTH)) geometry_unit (
-        .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
-        .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
-        .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
-        .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
-        .descriptors_write_request, .descriptors_write_answer, .lists_write_request, .lists_write_answer,
-        .results, .events(geometry_events)
-    );
+    if (TRIANGLES) begin : triangles
+        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) mesh_read (
+            .clk, .rst, .drop, .idle(ports_idle[0]),
+            .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[1*ADDRESS_BITS-1:0]),
+            .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[1*128-1:0]),
+            .cmd_valid(mesh_read_request.cmd_valid), .cmd_ready(mesh_read_answer.cmd_ready), .cmd_addr(mesh_read_request.cmd_addr),
+            .rdata_valid(mesh_read_answer.rdata_valid), .rdata(mesh_read_answer.rdata)
+        );
 
-    raster_unit #(.SMOOTH(SMOOTH), .FIELDS(FIELDS)) raster_unit (
+        read_port #(.CLIENTS(1), .ADDRESS_BITS(ADDRESS_BITS)) vertex_read (
+            .clk, .rst, .drop, .idle(ports_idle[1]),
+            .ask_valid(ask_valid[1]), .ask_ready(ask_ready[1]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:1*ADDRESS_BITS]),
+            .data_valid(data_valid[1]), .data_ready(data_ready[1]), .data(data[2*128-1:1*128]),
+            .cmd_valid(vertex_read_request.cmd_valid), .cmd_ready(vertex_read_answer.cmd_ready), .cmd_addr(vertex_read_request.cmd_addr),
+            .rdata_valid(vertex_read_answer.rdata_valid), .rdata(vertex_read_answer.rdata)
+        );
+
+        // The words of the lists and of the descriptors wait in block RAM, of which the FPGA has more to spare than of LUTs.
+        read_port #(.CLIENTS(RASTER_CLIENTS), .ADDRESS_BITS(ADDRESS_BITS), .BLOCK(3'b110)) raster_read (
+            .clk, .rst, .drop, .idle(ports_idle[2]),
+            .ask_valid(ask_valid[4:2]), .ask_ready(ask_ready[4:2]), .ask_addr(ask_addr[5*ADDRESS_BITS-1:2*ADDRESS_BITS]),
+            .data_valid(data_valid[4:2]), .data_ready(data_ready[4:2]), .data(data[5*128-1:2*128]),
+            .cmd_valid(raster_read_request.cmd_valid), .cmd_ready(raster_read_answer.cmd_ready), .cmd_addr(raster_read_request.cmd_addr),
+            .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
+        );
+
+        geometry_unit #(.SMOOTH(SMOOTH)) geometry_unit (
+            .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
+            .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
+            .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
+            .data_valid(data_valid[1:0]), .data_ready(data_ready[1:0]), .data(data[2*128-1:0]),
+            .descriptors_write_request, .descriptors_write_answer, .lists_write_request, .lists_write_answer,
+            .results, .events(geometry_events)
+        );
+    end else begin : fields_alone
+        assign {mesh_read_request, vertex_read_request, raster_read_request} = '0;
+        assign {descriptors_write_request, lists_write_request} = '0;
+        assign {ask_ready, data_valid, data} = '0;
+        assign {ask_valid[1:0], ask_addr[2*ADDRESS_BITS-1:0], data_ready[1:0]} = '0;
+        assign {status.geometry_busy, status.geometry_done, status.mesh_error, status.full} = '0;
+        assign {results, geometry_events} = '0;
+        assign ports_idle = '1;
+        wire _unused = &{1'b0, geometry_start, geometry_flags, geometry, view, drop, ask_valid, ask_ready, ask_addr,
+                         data_valid, data_ready, data, mesh_read_answer, vertex_read_answer, raster_read_answer};
+    end
+
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster),
         .field_source, .field_sink,

@@ -10,14 +10,15 @@ package triangle_registers_pkg;
     localparam int unsigned COUNT_BITS = 20;
 
     // Results of a pass.
-    localparam logic [2:0] ERROR_NONE = 3'd0;
-    localparam logic [2:0] ERROR_SIZE = 3'd1;
-    localparam logic [2:0] ERROR_ADDRESS = 3'd2;
-    localparam logic [2:0] ERROR_BUSY = 3'd3;
-    localparam logic [2:0] ERROR_MESH = 3'd4;
-    localparam logic [2:0] ERROR_FULL = 3'd5;
-    localparam logic [2:0] ERROR_LIST = 3'd6;
-    localparam logic [2:0] ERROR_CANCELLED = 3'd7;
+    localparam logic [3:0] ERROR_NONE = 4'd0;
+    localparam logic [3:0] ERROR_SIZE = 4'd1;
+    localparam logic [3:0] ERROR_ADDRESS = 4'd2;
+    localparam logic [3:0] ERROR_BUSY = 4'd3;
+    localparam logic [3:0] ERROR_MESH = 4'd4;
+    localparam logic [3:0] ERROR_FULL = 4'd5;
+    localparam logic [3:0] ERROR_LIST = 4'd6;
+    localparam logic [3:0] ERROR_CANCELLED = 4'd7;
+    localparam logic [3:0] ERROR_TRIANGLES = 4'd8;
 
     // Choices of a geometry pass.
     typedef struct packed {

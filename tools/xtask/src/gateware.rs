@@ -90,7 +90,7 @@ pub enum Block {
     Scanout,
     /// The triangle engine
     Triangle,
-    /// The raymarcher, which needs the triangle engine
+    /// The raymarcher; without the triangle engine the gateware draws fields alone
     Raymarch,
 }
 

@@ -42,8 +42,8 @@ enum Task {
         /// Frequency of the system clock; `cargo xtask firmware` then builds for it [default: 81.25; 40 for the ulx3s]
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
-        /// Optional blocks of the build, by commas: scanout, triangle, raymarch [default: all]
-        #[arg(long, value_enum, value_delimiter = ',')]
+        /// Optional blocks of the build: scanout, triangle, raymarch [default: all]
+        #[arg(long, value_enum, value_delimiter = ',', num_args = 1..)]
         blocks: Vec<gateware::Block>,
         /// Also build a second library of the virtual board, which writes waveforms
         #[arg(long, conflicts_with_all = ["smooth", "fields", "clock", "blocks"])]

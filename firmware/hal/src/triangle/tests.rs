@@ -57,6 +57,16 @@ fn the_best_shading_is_that_of_the_build() {
 }
 
 #[test]
+fn triangles_are_drawn_by_builds_that_say_so() {
+    let (engine, block) = probe(IDENT);
+    let engine = engine.unwrap();
+    assert!(!engine.draws_triangles());
+    let address = registers().caps().address();
+    block.borrow_mut().values.insert(address, 1 << 4);
+    assert!(engine.draws_triangles());
+}
+
+#[test]
 fn a_geometry_pass_is_described_before_it_is_started() {
     let (engine, block) = probe(IDENT);
     let bytes = mesh();
@@ -184,15 +194,16 @@ fn a_pass_ends_with_the_error_of_its_status() {
     let (engine, block) = probe(IDENT);
     let engine = engine.unwrap();
     let address = registers().status().address();
-    for code in Error::ALL {
-        let result = match code {
-            Error::None => Ok(()),
-            code => Err(EngineError::Status(code)),
-        };
+    let named = Error::ALL.map(|code| match code {
+        Error::None => (code as u32, Ok(())),
+        code => (code as u32, Err(EngineError::Status(code))),
+    });
+    let unnamed = (0xf, Err(EngineError::Unknown));
+    for (code, result) in named.into_iter().chain([unnamed]) {
         let set = |status: u32| block.borrow_mut().values.insert(address, status);
-        set((code as u32) << 4 | 0b10);
+        set(code << 4 | 0b10);
         assert_eq!((engine.geometry(), engine.raster()), (Some(result), None));
-        set((code as u32) << 8 | 0b01);
+        set(code << 8 | 0b01);
         assert_eq!((engine.geometry(), engine.raster()), (None, Some(result)));
     }
 }

@@ -10,7 +10,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::control::bench::{Bench, Events};
 use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, Limits, MEMORY, MESH, NAMES,
-    NONE, Pass, RASTER, SIZE, refusal, regions,
+    NONE, Pass, RASTER, SIZE, TRIANGLES, refusal, regions,
 };
 
 /// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
@@ -77,6 +77,7 @@ fn a_build_has_less_memory_and_fewer_sizes() {
     bench.limits = Limits {
         memory: MEMORY,
         sizes: 2,
+        triangles: true,
     };
     for which in [GEOMETRY, RASTER] {
         bench.passes = Pass::good();
@@ -107,6 +108,34 @@ fn a_build_has_less_memory_and_fewer_sizes() {
                 bench.passes[which].set(port, BASE);
             }
         }
+    }
+}
+
+/// A build without triangles refuses each geometry pass and each raster pass with lists. Of other raster passes it checks the
+/// size and the regions.
+#[test]
+fn a_build_without_triangles_refuses_meshes() {
+    let mut random = Pcg64Mcg::new(8);
+    let mut bench = Bench::of("triangle_control_fields_alone", 48, 4);
+    bench.limits.triangles = false;
+    let mut errors = [0; 9];
+    for _ in 0..2000 {
+        bench.passes = [GEOMETRY, RASTER].map(|which| some_pass(&mut random, which));
+        bench.list_shift = random.random_range(0..20);
+        let starts = bench.counts.map(|counts| counts[1]);
+        let [geometry, raster] = bench.ask([true, true]);
+        assert_eq!(geometry, TRIANGLES);
+        let flags = &bench.passes[RASTER].flags;
+        let lists = flags.is_set("first") || flags.is_set("second");
+        assert_eq!(raster == TRIANGLES, lists, "{flags:?}");
+        let started = u64::from(raster == NONE);
+        let expected = [starts[GEOMETRY], starts[RASTER] + started];
+        assert_eq!(bench.counts.map(|counts| counts[1]), expected);
+        errors[raster as usize] += 1;
+    }
+    println!("{errors:?} raster passes by error");
+    for error in [NONE, SIZE, ADDRESS, TRIANGLES] {
+        assert!(errors[error as usize] > 10, "error {error}");
     }
 }
 

@@ -2,6 +2,7 @@
 //! equal. The model clips triangles for the engine, as the firmware does on the board.
 
 mod bench;
+mod fields;
 
 use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint::{convert, generate};

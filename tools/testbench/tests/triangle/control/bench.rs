@@ -76,6 +76,7 @@ impl Bench {
             limits: Limits {
                 memory: MEMORY,
                 sizes: 3,
+                triangles: true,
             },
             states: [State::Idle; 2],
             errors: [NONE; 2],

@@ -13,6 +13,7 @@ pub const MESH: u64 = 4;
 pub const FULL: u64 = 5;
 pub const LIST: u64 = 6;
 pub const CANCELLED: u64 = 7;
+pub const TRIANGLES: u64 = 8;
 
 /// Index of the geometry pass in arrays of both passes; `RASTER` is the index of the raster pass.
 pub const GEOMETRY: usize = 0;
@@ -180,6 +181,8 @@ pub struct Limits {
     pub memory: u64,
     /// Number of picture sizes.
     pub sizes: usize,
+    /// Whether the build draws triangles.
+    pub triangles: bool,
 }
 
 /// Returns the error code with which an ask for a pass must be refused, or `NONE`.
@@ -190,7 +193,14 @@ pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limi
             || !(BASE..BASE + limits.memory).contains(&first)
             || bytes.next_multiple_of(16) > BASE + limits.memory - first
     };
-    if pass.size() >= limits.sizes {
+    let lists = || {
+        ["first", "second"]
+            .iter()
+            .any(|name| pass.flags.is_set(name))
+    };
+    if !limits.triangles && (which == GEOMETRY || lists()) {
+        TRIANGLES
+    } else if pass.size() >= limits.sizes {
         SIZE
     } else if regions(which, pass, list_shift, descriptor)
         .iter()

@@ -103,6 +103,22 @@ fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -
     }
 }
 
+/// Makes an expected frame of colours and depth codes that were drawn otherwise, without triangles.
+pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>) -> Expected {
+    Expected {
+        size,
+        options: Options {
+            clear: CLEAR,
+            ..Options::default()
+        },
+        colour,
+        depth,
+        frame: MeshSetup::new(view, size.0, size.1, 0).unwrap(),
+        clipped: vec![],
+        stats: Stats::default(),
+    }
+}
+
 /// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading
 /// that the engine was built for.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
@@ -163,19 +179,20 @@ pub struct Clocks {
 impl Bench {
     /// Creates a bench with the module for flat shading; each port of the memory stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
-        Self::of(Shading::Flat, seed, stalls)
+        Self::of("triangle_engine", Shading::Flat, seed, stalls)
     }
 
     /// Creates a bench as [`new`](Self::new) does, with the module for flat and smooth shading.
     pub fn smooth(seed: u32, stalls: f64) -> Self {
-        Self::of(Shading::Smooth, seed, stalls)
+        Self::of("triangle_engine_smooth", Shading::Smooth, seed, stalls)
     }
 
-    fn of(ability: Shading, seed: u32, stalls: f64) -> Self {
-        let name = match ability {
-            Shading::Flat => "triangle_engine",
-            Shading::Smooth => "triangle_engine_smooth",
-        };
+    /// Creates a bench as [`new`](Self::new) does, with the module for fields without triangles.
+    pub fn fields_alone(seed: u32, stalls: f64) -> Self {
+        Self::of("triangle_engine_fields_alone", Shading::Flat, seed, stalls)
+    }
+
+    fn of(name: &str, ability: Shading, seed: u32, stalls: f64) -> Self {
         let module = Module::new(name, seed);
         let seed = u64::from(seed);
         Self {
@@ -359,16 +376,22 @@ impl Bench {
         );
         self.pulse("raster_start");
         let (read, written) = (self.reads[2].given, self.frame_words());
-        let raster = self.wait_for("status.raster_done");
-        self.left[self.slot] = Some((expected.size, expected.options.clear));
-        assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
-        self.compare(name, expected);
+        let raster = self.finish(name, expected);
         Clocks {
             geometry,
             raster,
             read: self.reads[2].given - read,
             written: self.frame_words() - written,
         }
+    }
+
+    /// Waits for the end of the raster pass, and compares its frame with the expected one. Returns the number of clocks.
+    pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
+        let clocks = self.wait_for("status.raster_done");
+        self.left[self.slot] = Some((expected.size, expected.options.clear));
+        assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
+        self.compare(name, expected);
+        clocks
     }
 
     /// Draws a frame from any descriptors and lists, valid or not. The list of every band has the entries `list`; `lengths`

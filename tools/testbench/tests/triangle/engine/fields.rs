@@ -1,0 +1,170 @@
+//! Tests of the triangle engine's build without triangles, which draws what a raymarcher sends. The model stands for the
+//! raymarcher: it sends the pixels of each band in a random order.
+
+use glint::render::{FieldSubject, Frame, Subject, on_model};
+use glint_core::appearance::Appearance;
+use glint_core::field::Field;
+use glint_core::fixed::Q32_32;
+use glint_core::picture::Size;
+use glint_core::stereo::{Stereo, Tint};
+use glint_model::raymarch::Rays;
+use glint_model::triangle::descriptor::band_rows;
+use glint_testbench::raymarch::{Pixel, Place, pixel};
+use glint_vectors::Camera;
+use rand::RngExt;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64Mcg;
+
+use super::bench::{Bench, CLEAR, Expected, picture};
+
+/// The picture of a field, and the pixels of each band.
+struct Picture {
+    expected: Expected,
+    /// Value of `compose`: how the luminances of two eyes become colours.
+    compose: u64,
+    bands: Vec<Vec<Pixel>>,
+}
+
+impl Picture {
+    fn new(text: &str, size: Size, tint: Option<Tint>) -> Self {
+        let subject = FieldSubject {
+            field: &Field::parse(text).unwrap(),
+            appearance: &Appearance::default(),
+            stereo: tint.map(|tint| Stereo {
+                half_separation: Q32_32::lit("0.03"),
+                zero_parallax: Q32_32::lit("1.5"),
+                tint,
+            }),
+            prepass: false,
+        };
+        let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
+        let frame = Frame::new(Subject::Field(subject), view, size);
+        let image = on_model(&frame).unwrap().image;
+        let constants = frame.constants().unwrap();
+        let field = constants.field().unwrap();
+        let (setup, mut rays) = (&field.setup, Rays::new(&field.setup));
+        let eyes = if tint.is_some() { 2 } else { 1 };
+        let lines = band_rows(setup.width);
+        let mut bands = vec![vec![]; (setup.height / lines) as usize];
+        for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
+            for eye in 0..eyes {
+                let ray = rays.ray(eye, x, y);
+                let place = Place {
+                    odd: y / lines % 2 == 1,
+                    line: y % lines,
+                    column: x,
+                    eye,
+                };
+                let pixel = pixel(setup, &field.palette, place, &ray, &setup.march(&ray));
+                bands[(y / lines) as usize].push(pixel);
+            }
+        }
+        Self {
+            expected: picture(
+                (setup.width, setup.height),
+                &view,
+                image.colour,
+                image.depth,
+            ),
+            compose: tint.map_or(0, |tint| 1 + tint as u64),
+            bands,
+        }
+    }
+}
+
+fn start(bench: &mut Bench, picture: &Picture) {
+    bench.configure(&[], &picture.expected);
+    bench.set("field_source.enable", 1);
+    bench.set("field_source.compose", picture.compose);
+    bench.wait_for("status.ready");
+    bench.pulse("raster_start");
+}
+
+/// Sends pixels, each in the first clock in which the engine is ready, and pauses before some.
+fn send(bench: &mut Bench, random: &mut Pcg64Mcg, eyes: bool, pixels: &[Pixel]) {
+    let member = |name: &str| format!("field_source.{name}");
+    for pixel in pixels {
+        if random.random_ratio(1, 50) {
+            (0..random.random_range(0..30)).for_each(|_| bench.clock());
+        }
+        let halves = if eyes { 1 << pixel.eye } else { 3 };
+        for (name, value) in [
+            ("valid", 1),
+            ("halves", halves),
+            ("row", pixel.row),
+            ("line", pixel.line),
+            ("column", pixel.column),
+            ("mask", pixel.mask),
+            ("code", pixel.code),
+            ("colour", pixel.colour),
+        ] {
+            bench.set(&member(name), value);
+        }
+        bench.module.settle();
+        bench.wait_for("field_sink.ready");
+        bench.clock();
+        bench.set(&member("valid"), 0);
+    }
+}
+
+/// Draws a picture and compares it with the model's.
+fn draw(bench: &mut Bench, random: &mut Pcg64Mcg, name: &str, picture: &mut Picture) {
+    start(bench, picture);
+    for pixels in &mut picture.bands {
+        bench.wait_for("field_sink.open");
+        pixels.shuffle(random);
+        send(bench, random, picture.compose > 0, pixels);
+        bench.set("field_source.done", 1);
+        bench.wait_for("field_sink.next");
+        bench.clock();
+        bench.set("field_source.done", 0);
+    }
+    bench.finish(name, &picture.expected);
+}
+
+#[test]
+fn fields_are_drawn_without_triangles() {
+    let mut random = Pcg64Mcg::new(3);
+    let mut pictures = [
+        ("one eye", "menger:2", None),
+        ("red and blue", "box:1,0.5,0.25", Some(Tint::RedBlue)),
+        ("red and cyan", "sphere:1", Some(Tint::RedCyan)),
+    ]
+    .map(|(name, text, tint)| (name, Picture::new(text, Size::W320, tint)));
+    for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
+        let mut bench = Bench::fields_alone(seed, stalls);
+        for (name, picture) in &mut pictures {
+            bench.slot = random.random_range(0..2);
+            bench.with_depth = random.random();
+            draw(&mut bench, &mut random, name, picture);
+        }
+        let read = bench.reads.each_ref().map(|port| port.given);
+        assert_eq!(read, [0; 3], "words read");
+    }
+}
+
+/// Without a field the picture has the clear colour, also after a field that was cancelled.
+#[test]
+fn pictures_without_a_field_are_clear() {
+    let mut random = Pcg64Mcg::new(4);
+    let mut bench = Bench::fields_alone(3, 0.2);
+    let mut field = Picture::new("menger:1", Size::W320, None);
+    let (width, height) = field.expected.size;
+    let pixels = (width * height) as usize;
+    let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
+    let clear = picture((width, height), &view, vec![CLEAR; pixels], vec![0; pixels]);
+    for sent in [1, 500, 10_000] {
+        start(&mut bench, &field);
+        bench.wait_for("field_sink.open");
+        send(&mut bench, &mut random, false, &field.bands[0][..sent]);
+        bench.pulse("cancel");
+        assert_eq!(bench.read("status.raster_busy"), 0, "after {sent} pixels");
+
+        bench.configure(&[], &clear);
+        bench.set("field_source.enable", 0);
+        bench.wait_for("status.ready");
+        bench.pulse("raster_start");
+        bench.finish(&format!("clear after {sent} pixels"), &clear);
+        draw(&mut bench, &mut random, "a field", &mut field);
+    }
+}
