@@ -4,24 +4,40 @@
 //! scene, with u × v = n. The world is right-handed with z up. Every [`View`] is checked, so that users of a view may
 //! rely on its ranges.
 
+mod error;
+
 use core::fmt;
 
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::trig::sin_cos_q30;
+use crate::vector::{self, unit};
+
+pub use error::{Axis, ViewError};
 
 /// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
-pub const DEFAULT_HALF_WIDTH: U4_28 = U4_28::lit("0.9");
+pub const DEFAULT_HALF_WIDTH: U8_28 = U8_28::lit("0.9");
 /// Distance of the near plane from the eye, in world units, for cameras that are defined by angles.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
 /// Largest accepted distance of an eye from the origin, in world units.
 pub const MAX_EYE: u32 = 32;
 /// Smallest and largest accepted half width of the image plane at distance 1, in world units.
-pub const HALF_WIDTH: [U4_28; 2] = [U4_28::lit("0.05"), U4_28::lit("4")];
+pub const HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.0087"), U8_28::lit("115")];
+/// Smallest and largest accepted horizontal field of view, 1° and 179°.
+pub const FIELD_OF_VIEW: [Turns; 2] = [
+    Turns::from_degrees(Q32_32::lit("1")),
+    Turns::from_degrees(Q32_32::lit("179")),
+];
 /// Smallest and largest accepted distance of the near plane from the eye, in world units.
 pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
 /// Smallest and largest accepted distance of a camera of `View::spherical` from the origin, in world units.
 pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
+
+/// The default direction up on the screen, z.
+pub const UP: [Q32_32; 3] = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::ONE];
+
+/// Smallest sine of the angle between gaze and up, 2^−10 in units of 2^−30.
+const MIN_SINE: i64 = 1 << 20;
 
 /// A vector with components in units of 2^−60.
 type Exact = [i64; 3];
@@ -33,7 +49,7 @@ pub struct View {
     u: [Q2_23; 3],
     v: [Q2_23; 3],
     n: [Q2_23; 3],
-    half_width: U4_28,
+    half_width: U8_28,
     near: U4_28,
 }
 
@@ -41,7 +57,7 @@ impl View {
     /// Makes a camera from its eye, basis, half width and near plane, after checking them.
     ///
     /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. In world
-    /// units, the eye must be within 32 of the origin, `half_width` in [0.05, 4] and `near` in [0.01, 2].
+    /// units, the eye must be within 32 of the origin, `half_width` in [0.0087, 115] and `near` in [0.01, 2].
     ///
     /// # Errors
     /// The first violated condition.
@@ -50,7 +66,7 @@ impl View {
         u: [Q2_23; 3],
         v: [Q2_23; 3],
         n: [Q2_23; 3],
-        half_width: U4_28,
+        half_width: U8_28,
         near: U4_28,
     ) -> Result<Self, ViewError> {
         check_eye(eye)?;
@@ -136,6 +152,62 @@ impl View {
         })
     }
 
+    /// Returns the camera at `eye` that looks in the direction `gaze`, with the direction `up` upwards on the screen as far as
+    /// possible: n = gaze/|gaze|, u = n × up/|n × up|, v = n × u. Both directions have any length except 0.
+    ///
+    /// If the angle between `gaze` and `up`, or their opposites, has a sine below 2^−10 (0.056°), the coordinate axis to which `up` is least
+    /// inclined takes the place of `up`; of equally inclined axes the first. So with `up` = z and a gaze along z, x points up.
+    ///
+    /// Each component of the basis is within 0.51 units (2^−23) of its exact value; u and v have an additional error of 2^−29 over
+    /// the sine.
+    ///
+    /// # Errors
+    /// A direction is 0, or the eye is more than 32 world units from the origin.
+    pub fn towards(
+        eye: [Q32_32; 3],
+        gaze: [Q32_32; 3],
+        up: [Q32_32; 3],
+    ) -> Result<Self, ViewError> {
+        check_eye(eye)?;
+        let n = unit::<30>(gaze.map(Q32_32::to_bits)).ok_or(ViewError::Gaze)?;
+        let up = unit::<30>(up.map(Q32_32::to_bits)).ok_or(ViewError::Up)?;
+        let across = |up| {
+            let across = vector::cross(n, up);
+            let sine = across.map(|x| (x >> 30) as i32);
+            let is_long = vector::dot(sine, sine) >= MIN_SINE * MIN_SINE;
+            is_long.then(|| unit::<30>(across)).flatten()
+        };
+        let u = across(up)
+            .or_else(|| across(across_axis(up)))
+            .ok_or(ViewError::Up)?;
+        Ok(Self {
+            eye,
+            u: rounded(u.map(|x| i64::from(x) << 30)),
+            v: rounded(vector::cross(n, u)),
+            n: rounded(n.map(|x| i64::from(x) << 30)),
+            half_width: DEFAULT_HALF_WIDTH,
+            near: DEFAULT_NEAR,
+        })
+    }
+
+    /// Returns this camera with another horizontal field of view: its half width is the tangent of half of `angle`, within a part of
+    /// 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a picture of W×H pixels.
+    ///
+    /// # Errors
+    /// The angle is not from 1° to 179°.
+    pub fn with_field_of_view(self, angle: Turns) -> Result<Self, ViewError> {
+        if !(FIELD_OF_VIEW[0]..=FIELD_OF_VIEW[1]).contains(&angle) {
+            return Err(ViewError::FieldOfView(angle));
+        }
+        let (sin, cos) = sines(Turns(angle.0 / 2));
+        // The cosine of an angle below 90° is at least 2^23 in its units, and the dividend at most 2^59.
+        let tangent = ((sin << 29) / cos + 1) >> 1;
+        Ok(Self {
+            half_width: U8_28::from_bits(tangent.unsigned_abs()),
+            ..self
+        })
+    }
+
     /// Returns this camera with the half width and the near plane of `other`.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
@@ -171,8 +243,8 @@ impl View {
         self.n
     }
 
-    /// Half the width of the image plane at distance 1, in world units, from 0.05 to 4.
-    pub const fn half_width(&self) -> U4_28 {
+    /// Half the width of the image plane at distance 1, in world units, from 0.0087 to 115.
+    pub const fn half_width(&self) -> U8_28 {
         self.half_width
     }
 
@@ -192,6 +264,19 @@ impl fmt::Display for View {
             .iter()
             .try_for_each(|x| write!(f, "{x} "))?;
         write!(f, "{} {}", self.half_width, self.near)
+    }
+}
+
+/// The coordinate axis to which a vector is least inclined, with a length of 1 in units of 2^−30.
+fn across_axis(vector: [i32; 3]) -> [i32; 3] {
+    let [x, y, z] = vector.map(i32::unsigned_abs);
+    let one = 1 << 30;
+    if x <= y && x <= z {
+        [one, 0, 0]
+    } else if y <= z {
+        [0, one, 0]
+    } else {
+        [0, 0, one]
     }
 }
 
@@ -290,90 +375,3 @@ fn dot(a: [Q2_23; 3], b: [Q2_23; 3]) -> i64 {
 const fn narrow_product(x: i64) -> i32 {
     (x >> 23) as i32
 }
-
-/// One of the three vectors of a camera's basis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axis {
-    /// The vector u, which points to the right of the screen.
-    U,
-    /// The vector v, which points down the screen.
-    V,
-    /// The vector n, which points into the scene.
-    N,
-}
-
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str(match self {
-            Self::U => "u",
-            Self::V => "v",
-            Self::N => "n",
-        })
-    }
-}
-
-/// Reason why numbers do not describe a camera.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ViewError {
-    /// The eye is too far from the origin.
-    Eye([Q32_32; 3]),
-    /// The length of a vector of the basis differs from 1 by more than 1e-4.
-    Length {
-        /// Name of the vector.
-        axis: Axis,
-        /// Components of the vector.
-        row: [Q2_23; 3],
-    },
-    /// The scalar product of two vectors of the basis exceeds 1e-4 in magnitude.
-    NotPerpendicular {
-        /// The first vector.
-        a: Axis,
-        /// The second vector.
-        b: Axis,
-        /// Their scalar product.
-        product: Q2_23,
-    },
-    /// The basis is orthonormal but u × v = −n.
-    Mirrored,
-    /// The half width is out of range.
-    HalfWidth(U4_28),
-    /// The near plane is out of range.
-    Near(U4_28),
-    /// The radius of a spherical camera is out of range.
-    Radius(Q32_32),
-    /// The polar angle of a spherical camera is out of range.
-    Polar(Turns),
-}
-
-impl fmt::Display for ViewError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Eye([x, y, z]) => write!(
-                f,
-                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin"
-            ),
-            Self::Length {
-                axis,
-                row: [x, y, z],
-            } => {
-                write!(f, "{axis} = ({x}, {y}, {z}): expected length 1 within 1e-4")
-            }
-            Self::NotPerpendicular { a, b, product } => {
-                write!(f, "{a}·{b} = {product}: expected 0 within 1e-4")
-            }
-            Self::Mirrored => {
-                f.write_str("u × v = −n: expected u × v = n (u right, v down, n forward)")
-            }
-            Self::HalfWidth(x) => write!(
-                f,
-                "half_width {x}: expected {} to {}",
-                HALF_WIDTH[0], HALF_WIDTH[1]
-            ),
-            Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
-            Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),
-            Self::Polar(phi) => write!(f, "phi {} degrees: expected 0 to 180", phi.to_degrees()),
-        }
-    }
-}
-
-impl core::error::Error for ViewError {}

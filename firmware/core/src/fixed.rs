@@ -7,7 +7,7 @@
 
 pub use ::fixed;
 use ::fixed::types::extra::{U11, U14, U20, U23, U24, U28, U30, U32};
-use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32};
+use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32, FixedU64};
 
 /// Format of positions and normals: units of 2^−14, in [−2, 2).
 pub type Q2_14 = FixedI16<U14>;
@@ -23,8 +23,10 @@ pub type Q8_24 = FixedI32<U24>;
 pub type Q2_30 = FixedI32<U30>;
 /// Format of positions in the world, such as an eye: units of 2^−32.
 pub type Q32_32 = FixedI64<U32>;
-/// Format of half width and near plane of a camera: units of 2^−28, in [0, 16).
+/// Format of the near plane of a camera: units of 2^−28, in [0, 16).
 pub type U4_28 = FixedU32<U28>;
+/// Format of the half width of a camera: units of 2^−28, in [0, 256).
+pub type U8_28 = FixedU64<U28>;
 
 /// An angle in units of 2^−32 turns, modulo one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use glint_core::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, View, ViewError};
-use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 type Vector = [f64; 3];
 
@@ -129,6 +129,93 @@ fn the_free_camera_is_what_it_should_be() {
     assert!(largest <= 2f64.powi(-20), "{largest}");
 }
 
+/// A vector of random directions and lengths, with `size` components in [−1, 1).
+fn vectors(count: u32) -> impl Iterator<Item = [Q32_32; 3]> {
+    (1..=count).map(|k| {
+        let mut state = u64::from(k).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        [0; 3].map(|_| {
+            state = (state ^ (state >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            Q32_32::from_bits(state as i64 >> (8 + k % 40))
+        })
+    })
+}
+
+#[test]
+fn the_camera_towards_a_gaze_is_what_it_should_be() {
+    let normalised = |a: Vector| a.map(|x| x / dot(a, a).sqrt());
+    let zero = [Q32_32::ZERO; 3];
+    let (mut largest, mut error, mut places) = (0.0_f64, 0.0_f64, 0);
+    for (gaze, up) in vectors(200_000).zip(vectors(200_001).skip(1)) {
+        let Ok(view) = View::towards(zero, gaze, up) else {
+            assert!(gaze == zero || up == zero);
+            continue;
+        };
+        largest = largest.max(deviation(&view));
+        let n = normalised(gaze.map(|x| x.to_bits() as f64));
+        let across = cross(n, normalised(up.map(|x| x.to_bits() as f64)));
+        let sine = dot(across, across).sqrt();
+        if sine < 2e-3 {
+            continue;
+        }
+        places += 1;
+        let u = normalised(across);
+        for (row, expected) in basis(&view).into_iter().zip([u, cross(n, u), n]) {
+            let units = difference(row, expected) * 2f64.powi(23);
+            error = error.max(units - 2f64.powi(-6) / sine);
+        }
+    }
+    println!(
+        "towards: orthonormal within 2^{:.2}, {error:.3} units",
+        largest.log2()
+    );
+    assert!(largest <= 2f64.powi(-20) && error <= 0.51 && places > 100_000);
+}
+
+#[test]
+fn a_gaze_along_up_takes_another_axis() {
+    let number = |v: [f64; 3]| v.map(Q32_32::from_num);
+    let towards = |gaze, up| View::towards(number([0.0; 3]), number(gaze), number(up));
+    let rows = |gaze, up| basis(&towards(gaze, up).expect("in range"));
+    let z = [0.0, 0.0, 1.0];
+    // x points up on the screen, as for a spherical camera above the origin with an azimuth of half a turn.
+    let above = View::spherical(Q32_32::from_num(2), Turns::HALF, Turns(0)).expect("in range");
+    assert_eq!(rows([0.0, 0.0, -5.0], z), basis(&above));
+    assert_eq!(rows([0.0, 0.0, 0.3], z)[1], [-1.0, 0.0, 0.0]);
+    assert_eq!(rows([7.0, 0.0, 0.0], [-1.0, 0.0, 0.0])[1], [0.0, -1.0, 0.0]);
+    // Just inside and just outside of the limit of 2^-10.
+    let near = |offset: f64| rows([0.0, offset, -1.0], z)[1];
+    assert!(difference(near(0.000_97), [-1.0, 0.0, 0.0]) < 1e-6);
+    assert!(difference(near(0.000_98), [0.0, -1.0, 0.0]) < 1e-3);
+    assert_eq!(towards([0.0; 3], z), Err(ViewError::Gaze));
+    assert_eq!(towards(z, [0.0; 3]), Err(ViewError::Up));
+}
+
+#[test]
+fn fields_of_view_are_tangents() {
+    let view = View::spherical(Q32_32::from_num(2), Turns(0), Turns(0)).expect("in range");
+    let mut largest: f64 = 0.0;
+    for tenths in 10..=1790 {
+        let angle = Turns::from_degrees(Q32_32::from_num(f64::from(tenths) / 10.0));
+        let wide = view.with_field_of_view(angle).expect("in range");
+        let exact = (radians(angle.0) / 2.0).tan();
+        largest = largest.max((wide.half_width().to_num::<f64>() / exact - 1.0).abs());
+        assert_eq!(
+            (wide.eye(), wide.n(), wide.near()),
+            (view.eye(), view.n(), view.near())
+        );
+        check(&wide, basis(&view));
+    }
+    println!("half width within a part of 2^{:.2}", largest.log2());
+    assert!(largest <= 2f64.powi(-22));
+    for degrees in [0.99, 179.01, 0.0, 180.0, 359.0] {
+        let angle = Turns::from_degrees(Q32_32::from_num(degrees));
+        assert_eq!(
+            view.with_field_of_view(angle),
+            Err(ViewError::FieldOfView(angle))
+        );
+    }
+}
+
 #[test]
 fn known_places_are_exact() {
     let [zero, one] = [Q2_23::ZERO, Q2_23::ONE];
@@ -180,7 +267,7 @@ fn known_places_are_exact() {
 }
 
 /// Returns the numbers of a valid camera (eye, basis, half width, near plane), of which each test changes one.
-fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U4_28, U4_28) {
+fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U8_28, U4_28) {
     let view = View::look(
         [Q32_32::ONE; 3],
         Turns(123_456_789),
@@ -223,10 +310,10 @@ fn what_is_out_of_range_is_refused() {
     }
     let with_half_width =
         |x| View::new_checked(eye, u, v, n, x, near).map(|view| view.half_width());
-    for x in ["0.05", "0.9", "4"].map(|x| x.parse().expect("a number")) {
+    for x in ["0.0087", "0.9", "115"].map(|x| x.parse().expect("a number")) {
         assert_eq!(with_half_width(x), Ok(x));
     }
-    for x in ["0", "0.0499", "4.0001", "15.9"].map(|x| x.parse().expect("a number")) {
+    for x in ["0", "0.0086", "115.0001", "255.9"].map(|x| x.parse().expect("a number")) {
         assert_eq!(with_half_width(x), Err(ViewError::HalfWidth(x)));
     }
     let with_near = |x| View::new_checked(eye, u, v, n, half_width, x).map(|view| view.near());
@@ -304,8 +391,8 @@ fn errors_say_what_was_expected() {
         "radius 1.5: expected 2 to 5"
     );
     assert_eq!(
-        ViewError::HalfWidth(U4_28::lit("5")).to_string(),
-        "half_width 5: expected 0.05 to 4"
+        ViewError::HalfWidth(U8_28::lit("115.5")).to_string(),
+        "half_width 115.5: expected 0.0087 to 115"
     );
     assert_eq!(
         ViewError::Near(U4_28::lit("3")).to_string(),

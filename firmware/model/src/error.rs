@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_core::fixed::Q32_32;
+use glint_core::fixed::{Q32_32, U4_28, U8_28};
 use glint_core::picture::Size;
 
 /// The sizes of a picture: width and height in pixels.
@@ -18,6 +18,9 @@ pub const SIZES: [(u32, u32); 3] = {
 /// Largest distance of the eye from the origin in a frame with a mesh, in world units. It bounds the translation in the
 /// mesh's frame constants, and thereby the bit widths of the vertex stage.
 pub const MAX_EYE: u32 = 8;
+
+/// Smallest and largest half width of the camera in a frame with a field, in world units. It bounds the directions of rays.
+pub const FIELD_HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.05"), U8_28::lit("4")];
 
 /// One of the buffers of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +59,15 @@ pub enum RenderError {
     },
     /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.
     Eye([Q32_32; 3]),
+    /// The near plane of a frame with a mesh is nearer than the half width and the width of the picture allow.
+    Near {
+        /// Distance of the near plane.
+        near: U4_28,
+        /// Its smallest distance.
+        least: U4_28,
+    },
+    /// The half width of the camera in a frame with a field is outside [`FIELD_HALF_WIDTH`].
+    HalfWidth(U8_28),
     /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
     Stereo,
 }
@@ -98,6 +110,15 @@ impl fmt::Display for RenderError {
                     "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin for a mesh"
                 )
             }
+            Self::Near { near, least } => write!(
+                f,
+                "near {near}: expected at least {least} for a mesh in a picture of this width and field of view"
+            ),
+            Self::HalfWidth(half_width) => write!(
+                f,
+                "half_width {half_width}: expected {} to {} with a field",
+                FIELD_HALF_WIDTH[0], FIELD_HALF_WIDTH[1]
+            ),
             Self::Stereo => {
                 f.write_str("two eyes: expected a field alone, or one eye for a mesh in a field")
             }

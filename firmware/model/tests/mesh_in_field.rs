@@ -140,7 +140,7 @@ fn shared_constants_keep_their_ranges() {
 }
 
 #[test]
-fn two_eyes_and_far_ones_are_refused() {
+fn two_eyes_far_ones_and_wide_cameras_are_refused() {
     let field = Field::from(Menger { depth: 4 });
     let view = outside(&mut Random(4));
     let stereo = FieldOptions {
@@ -149,6 +149,13 @@ fn two_eyes_and_far_ones_are_refused() {
     };
     let refused = mesh_in_field::constants(&view, SIZE, 1 << 14, &field, &stereo);
     assert_eq!(refused, Err(RenderError::Stereo));
+    let wide = Camera {
+        half_width: 4.01,
+        ..Camera::of(&view)
+    }
+    .rounded();
+    let refused = mesh_in_field::constants(&wide, SIZE, 1 << 14, &field, &FieldOptions::default());
+    assert_eq!(refused, Err(RenderError::HalfWidth(wide.half_width())));
     let far = Camera::looking([0.0, -9.0, 0.0], [0.0; 3], 0.9, 0.1).rounded();
     let refused = mesh_in_field::constants(&far, SIZE, 1 << 14, &field, &FieldOptions::default());
     assert_eq!(refused, Err(RenderError::Eye(far.eye())));

@@ -119,6 +119,55 @@ fn places_against_f64() {
     }
 }
 
+/// Horizontal fields of view from 1° to 179°, 150° among them, with the nearest near plane that each of them allows.
+#[test]
+fn fields_of_view_against_f64() {
+    let mut random = Random(6);
+    for degrees in [1.0f64, 2.0, 60.0, 120.0, 150.0, 170.0, 179.0] {
+        for (width, height) in SIZES {
+            let half_width = (degrees / 2.0).to_radians().tan();
+            let size = (width, height);
+            let (mut worst, mut shift) = (Worst::default(), 0);
+            for _ in 0..10_000 {
+                let (camera, point, z) = aimed(&mut random, size, half_width, 0.5);
+                let least = (2.0 * half_width * 2f64.powi(17 + 4) / f64::from(width))
+                    .log2()
+                    .floor();
+                let near = 2f64.powi(3 - least.min(18.0) as i32).max(0.01);
+                let view = Camera { near, ..camera }.rounded();
+                let frame = MeshSetup::new(&view, width, height, RADII[0]).unwrap();
+                shift = frame.scale_shift;
+                if z < near {
+                    continue;
+                }
+                if let Projected::Visible(place) = project(&frame, &transform(&frame, point)) {
+                    let exact = Camera::of(&view).project(world(point), width, height);
+                    worst.note(place, exact, size);
+                }
+            }
+            println!(
+                "{degrees} degrees, {width}x{height}: {} places, 1/256 px off: {:.3} on the screen, {:.3} in the guard band",
+                worst.count, worst.screen, worst.guard
+            );
+            assert!(worst.count > 1_000);
+            // The bound of docs/formats.md, with |D|/Z in a corner of the picture.
+            let longest = (1.0 + 1.3164 * half_width * half_width).sqrt();
+            let rows = 0.5f64.powi(shift as i32 + 1) + f64::from(width) * 0.5f64.powi(25);
+            let bound = 0.75 + 256.0 * 3f64.sqrt() * longest * rows;
+            assert!(worst.screen <= bound, "{} > {bound}", worst.screen);
+        }
+    }
+    // A near plane that is too near for a narrow picture of many pixels is refused.
+    let camera = |near| Camera::looking([4.0, 0.0, 0.0], [0.0; 3], 0.0088, near).rounded();
+    let refused = MeshSetup::new(&camera(0.06), 1280, 720, RADII[0]).unwrap_err();
+    assert_eq!(
+        refused.to_string(),
+        "near 0.06: expected at least 0.0625 for a mesh in a picture of this width and field of view"
+    );
+    assert!(MeshSetup::new(&camera(0.0625), 1280, 720, RADII[0]).is_ok());
+    assert!(MeshSetup::new(&camera(0.016), 320, 180, RADII[0]).is_ok());
+}
+
 /// Compares the depth code w of a vertex with K/z, and the scale K with its definition: the nearest possible depth of the
 /// mesh must have the code 2^18 − 4, or a part of up to 2^−16 less.
 #[test]
@@ -332,6 +381,7 @@ fn rows_fill_their_width() {
             "{half_width}"
         );
         let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
+        // The camera's half width is at most 4, so the shift does not reach its largest value of 18.
         let fits = |f: i32| (scale * 2f64.powi(f)).ceil() * (1.0 + 2f64.powi(-12)) < 2f64.powi(24);
         let f = frame.scale_shift as i32;
         assert!(fits(f) && !fits(f + 1), "{f} for {half_width}");

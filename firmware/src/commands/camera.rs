@@ -32,6 +32,17 @@ impl<'l> CameraCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
+    fn lookat(&mut self, view: View) -> Outcome<'l> {
+        self.scene.move_view(view);
+        Ok(Reply::Done)
+    }
+
+    fn fov(&mut self, angle: Turns) -> Outcome<'l> {
+        let view = self.scene.view().with_field_of_view(angle);
+        self.scene.set_view(view.map_err(CommandError::View)?);
+        Ok(Reply::Done)
+    }
+
     fn orbit(&mut self, frames: Option<u32>) -> Outcome<'l> {
         let orbit = Orbit::new(self.scene.sphere(), frames);
         Ok(Reply::After(Job::Orbit(orbit)))

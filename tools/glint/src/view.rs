@@ -2,7 +2,7 @@
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
-use glint_core::camera::View;
+use glint_core::camera::{UP, View, ViewError};
 use glint_core::fixed::fixed::traits::Fixed;
 use glint_core::fixed::{Q32_32, Turns};
 use serde::Deserialize;
@@ -46,7 +46,7 @@ pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
         number(file.half_width, "half_width")?,
         number(file.near, "near")?,
     );
-    view.map_err(|error| FormatError::whole("a camera", error.to_string()))
+    view.map_err(no_camera)
 }
 
 fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError> {
@@ -69,32 +69,64 @@ fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
 /// # Errors
 /// The text is not three decimals, or a value is outside the range of [`View::spherical`].
 pub fn spherical(text: &str) -> Result<View, FormatError> {
-    let refuse = || {
-        FormatError::whole(
-            "a camera R,THETA,PHI such as 3,30,60",
-            crate::error::quote(text.as_bytes()),
-        )
-    };
-    let mut numbers = [Q32_32::ZERO; 3];
-    let mut words = text.split(',');
-    for number in &mut numbers {
-        *number = words
-            .next()
-            .and_then(|word| word.trim().parse().ok())
-            .ok_or_else(refuse)?;
-    }
-    if words.next().is_some() {
-        return Err(refuse());
-    }
-    let [r, theta, phi] = numbers;
+    let numbers = decimals(text).and_then(|numbers| <[Q32_32; 3]>::try_from(numbers).ok());
+    let [r, theta, phi] =
+        numbers.ok_or_else(|| refuse("a camera R,THETA,PHI such as 3,30,60", text))?;
     if !(Q32_32::ZERO..=Q32_32::from_num(180)).contains(&phi) {
         return Err(FormatError::whole(
             "PHI of 0 to 180 degrees",
             phi.to_string(),
         ));
     }
-    View::spherical(r, Turns::from_degrees(theta), Turns::from_degrees(phi))
-        .map_err(|error| FormatError::whole("a camera", error.to_string()))
+    View::spherical(r, Turns::from_degrees(theta), Turns::from_degrees(phi)).map_err(no_camera)
+}
+
+/// Camera from `EX,EY,EZ,GX,GY,GZ` or `EX,EY,EZ,GX,GY,GZ,UX,UY,UZ`: eye, direction of the gaze, and the direction that points up on
+/// the screen, by default z.
+///
+/// # Errors
+/// The text is not six or nine decimals, or [`View::towards`] rejects the camera.
+pub fn look_at(text: &str) -> Result<View, FormatError> {
+    let numbers = decimals(text).unwrap_or_default();
+    let (eye, gaze, up) = match *numbers.as_slice() {
+        [ex, ey, ez, gx, gy, gz] => ([ex, ey, ez], [gx, gy, gz], UP),
+        [ex, ey, ez, gx, gy, gz, ux, uy, uz] => ([ex, ey, ez], [gx, gy, gz], [ux, uy, uz]),
+        _ => {
+            return Err(refuse(
+                "a camera EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ] such as 3,0,1,-3,0,-1",
+                text,
+            ));
+        }
+    };
+    View::towards(eye, gaze, up).map_err(no_camera)
+}
+
+/// Returns the camera with a horizontal field of view of `text` degrees.
+///
+/// # Errors
+/// The text is not a decimal from 1 to 179.
+pub fn with_field_of_view(view: View, text: &str) -> Result<View, FormatError> {
+    let degrees: Option<Q32_32> = text.trim().parse().ok();
+    let angle = degrees
+        .filter(|degrees| (1..=179).contains(degrees))
+        .map(Turns::from_degrees)
+        .ok_or_else(|| refuse("1 to 179 degrees", text))?;
+    view.with_field_of_view(angle).map_err(no_camera)
+}
+
+/// Parses decimals that are separated by commas.
+fn decimals(text: &str) -> Option<Vec<Q32_32>> {
+    text.split(',')
+        .map(|word| word.trim().parse().ok())
+        .collect()
+}
+
+fn refuse(expected: &str, text: &str) -> FormatError {
+    FormatError::whole(expected, crate::error::quote(text.as_bytes()))
+}
+
+fn no_camera(error: ViewError) -> FormatError {
+    FormatError::whole("a camera", error.to_string())
 }
 
 #[cfg(test)]
@@ -143,7 +175,7 @@ mod tests {
                 "expected within 32 of the origin",
             ),
             (&GOOD.replace("[0,-3,0]", "[0,-1e40,0]"), "-1e40"),
-            (&GOOD.replace("0.9", "4.01"), "half_width 4.01"),
+            (&GOOD.replace("0.9", "115.5"), "half_width 115.5"),
             (&GOOD.replace("0.1}", "0.001}"), "near 0.001"),
         ];
         for (text, expected) in cases {
@@ -164,5 +196,37 @@ mod tests {
             assert!(spherical(text).is_err(), "{text}");
         }
         assert!(spherical(" 2, 725.5 ,180").is_ok());
+    }
+
+    #[test]
+    fn looking_at_the_origin() {
+        let view = look_at("3,0,0,-3,0,0").unwrap();
+        assert_eq!(view, spherical("3,0,90").unwrap());
+        assert_eq!(view, look_at("3,0,0,-0.001,0,0,0,0,7").unwrap());
+        for (text, expected) in [
+            ("3,0,0", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]"),
+            ("3,0,0,0,0,0", "gaze (0, 0, 0)"),
+            ("3,0,0,1,0,0,0,0,0", "up (0, 0, 0)"),
+            ("33,0,0,1,0,0", "within 32 of the origin"),
+            ("3,0,0,inf,0,0", "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]"),
+        ] {
+            let message = look_at(text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn fields_of_view() {
+        let view = spherical("3,0,90").unwrap();
+        let half = |degrees| {
+            with_field_of_view(view, degrees)
+                .map(|view| view.half_width().to_num::<f64>())
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(half("90"), Ok(1.0));
+        assert!((half("150").unwrap() - 75f64.to_radians().tan()).abs() < 1e-6);
+        for degrees in ["0.9", "179.1", "nan", "-90", ""] {
+            assert!(half(degrees).unwrap_err().contains("1 to 179 degrees"));
+        }
     }
 }

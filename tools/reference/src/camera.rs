@@ -1,7 +1,7 @@
 //! The camera in f64: projection, clipping against the near plane, and the scale of depth.
 
 use glint_core::camera::{View, ViewError};
-use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
 
 /// A point or direction in world or camera coordinates.
 pub type Vector = [f64; 3];
@@ -169,7 +169,7 @@ impl Camera {
             row(self.u),
             row(self.v),
             row(self.n),
-            U4_28::from_num(self.half_width),
+            U8_28::from_num(self.half_width),
             U4_28::from_num(self.near),
         )
     }

@@ -1,7 +1,7 @@
 //! Cameras with `f64` coordinates, for tests.
 
 use glint_core::camera::View;
-use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
 
 use crate::math::{cross, dot, normalised};
 use crate::random::Random;
@@ -88,7 +88,7 @@ impl Camera {
             basis(self.u),
             basis(self.v),
             basis(self.n),
-            U4_28::from_num(self.half_width),
+            U8_28::from_num(self.half_width),
             U4_28::from_num(self.near),
         )
         .unwrap()

@@ -6,7 +6,9 @@ use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::commands;
-use super::values::{HalfTurn, Imu, Mounting, Name, Sensitivity, Size, Upload, View, Whole};
+use super::values::{
+    FieldOfView, HalfTurn, Imu, LookAt, Mounting, Name, Sensitivity, Size, Upload, View, Whole,
+};
 use super::words::Words;
 use crate::colour::Shading;
 use crate::field::Field;
@@ -56,6 +58,8 @@ commands! {
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis";
         view View(view: Option<View>): "show or set the camera: eye, basis (right, down, forward), half width, near plane";
         look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
+        lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen";
+        fov FieldOfView(angle: FieldOfView): "set the horizontal field of view, in degrees";
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
 

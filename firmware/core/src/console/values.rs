@@ -12,7 +12,7 @@ use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera;
 use crate::choice::choices;
 use crate::field::{self, KINDS};
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{self, Rgb, parse_rgb};
@@ -64,6 +64,18 @@ impl WordArgument for U4_28 {
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
         text.parse().ok()
+    }
+}
+
+/// A decimal number, rounded to the fixed-point format U8.28.
+impl WordArgument for U8_28 {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Text(&"a number from 0 to below 256");
+
+    #[inline(never)]
+    fn parse(text: &str) -> Option<Self> {
+        let number = text.parse().ok();
+        number.filter(|number| *number < 256)
     }
 }
 
@@ -259,9 +271,34 @@ group! {
         ux: Q2_23, uy: Q2_23, uz: Q2_23,
         vx: Q2_23, vy: Q2_23, vz: Q2_23,
         nx: Q2_23, ny: Q2_23, nz: Q2_23,
-        half_width: U4_28, near: U4_28,
+        half_width: U8_28, near: U4_28,
     ) => camera::View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near)
         .map_err(ValueError::View)
+}
+
+group! {
+    /// A camera by its eye and the direction of its gaze, with z up on the screen.
+    LookAt: camera::View = (ex: Q32_32, ey: Q32_32, ez: Q32_32, gx: Q32_32, gy: Q32_32, gz: Q32_32, up: Option<Up>)
+        => camera::View::towards([ex, ey, ez], [gx, gy, gz], up.unwrap_or(camera::UP)).map_err(ValueError::View)
+}
+
+group! {
+    /// The direction that points up on the screen.
+    Up: [Q32_32; 3] = (ux: Q32_32, uy: Q32_32, uz: Q32_32) => Ok::<_, ValueError>([ux, uy, uz])
+}
+
+/// A horizontal field of view in degrees.
+pub struct FieldOfView;
+
+impl WordArgument for FieldOfView {
+    type Value<'a> = Turns;
+    const KIND: Kind = Kind::Text(&"a number of degrees from 1 to 179");
+
+    fn parse(text: &str) -> Option<Turns> {
+        let degrees = Q32_32::parse(text)?;
+        let is_accepted = (1..=179).contains(&degrees);
+        is_accepted.then(|| Turns::from_degrees(degrees))
+    }
 }
 
 group! {

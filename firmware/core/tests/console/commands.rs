@@ -23,7 +23,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "orbit", "size", "load", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orbit", "size", "load", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
@@ -176,6 +176,16 @@ fn every_command_is_understood() {
         roll: degrees(30),
     };
     assert_parses("look 10 -20 30", look);
+    let towards = |up: [i32; 3]| {
+        let [eye, gaze, up] = [[3, 0, 1], [-3, 0, -1], up].map(|v| v.map(Q32_32::from_num));
+        View::towards(eye, gaze, up).expect("in range")
+    };
+    let view = towards([0, 0, 1]);
+    assert_parses("lookat 3 0 1 -3 0 -1", Command::LookAt { view });
+    let view = towards([0, 1, 0]);
+    assert_parses("lookat 3 0 1 -3 0 -1 0 1 0", Command::LookAt { view });
+    let angle = degrees(150);
+    assert_parses("fov 150", Command::FieldOfView { angle });
     assert_parses("imu", Command::Imu { action: None });
     let imu = |line, action| {
         assert_parses(

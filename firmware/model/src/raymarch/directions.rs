@@ -23,7 +23,7 @@ impl Directions {
     /// fraction bits. With `round` the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum
     /// norm.
     pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
-        let half_width = i64::from(view.half_width().to_bits());
+        let half_width = view.half_width().to_bits() as i64;
         // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
         let step = |row: [Q2_23; 3]| {
             row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))

@@ -12,7 +12,7 @@ use super::directions::Directions;
 use super::options::{FARTHEST, FieldOptions, Tuning};
 use super::prepass::{Cones, block_for};
 use crate::depth::DepthScale;
-use crate::error::{RenderError, SIZES};
+use crate::error::{FIELD_HALF_WIDTH, RenderError, SIZES};
 
 /// Half side of the bounding box that is used for unbounded fields: the largest magnitude of a point's coordinate (s13.12).
 const UNBOUNDED: u32 = (1 << (12 + FRACTION)) - 1;
@@ -69,7 +69,7 @@ impl FieldSetup {
     /// Computes the constants for a field, a camera and one of the [`SIZES`].
     ///
     /// # Errors
-    /// [`RenderError::Size`] for another size.
+    /// [`RenderError::Size`] for another size, [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
     pub fn new(
         field: &Field,
         view: &View,
@@ -78,6 +78,9 @@ impl FieldSetup {
     ) -> Result<Self, RenderError> {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
+        }
+        if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
+            return Err(RenderError::HalfWidth(view.half_width()));
         }
         let round = field.is_round();
         let (

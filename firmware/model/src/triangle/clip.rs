@@ -133,7 +133,7 @@ impl Plane {
 }
 
 /// Converts the camera coordinate X or Y of a vertex to half pixels at distance 1, with the fraction bits of Z. The result
-/// is below 2^55.7. `Plane::distance` adds multiples of Z to it, at most 5375·|Z|, which is below 2^53.1.
+/// is below 2^58.7. `Plane::distance` adds multiples of Z to it, at most 5375·|Z|, which is below 2^53.1.
 fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }

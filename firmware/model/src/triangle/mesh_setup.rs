@@ -1,7 +1,7 @@
 //! The frame constants of a mesh, computed once from the camera and the size of the picture.
 
 use glint_core::camera::View;
-use glint_core::fixed::{Q2_23, Q32_32};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 
 use crate::depth::DepthScale;
 use crate::error::{MAX_EYE, RenderError, SIZES};
@@ -15,7 +15,7 @@ pub struct MeshSetup {
     pub width: u32,
     /// Height of the picture in pixels.
     pub height: u32,
-    /// Scale shift f: the number of fraction bits of `u` and `v`, 10 to 18.
+    /// Scale shift f: the number of fraction bits of `u` and `v`, 7 to 18.
     pub scale_shift: u32,
     /// The camera's right axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub u: [i32; 3],
@@ -36,7 +36,7 @@ impl MeshSetup {
     /// mesh with the given `radius` (14 fraction bits).
     ///
     /// # Errors
-    /// [`RenderError::Size`] or [`RenderError::Eye`].
+    /// [`RenderError::Size`], [`RenderError::Eye`] or [`RenderError::Near`].
     pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
@@ -45,6 +45,12 @@ impl MeshSetup {
             return Err(RenderError::Eye(view.eye()));
         }
         let (scale_shift, scale) = Scale::new(width, view);
+        // The vertex stage shifts X and Y right by at least 6 bits.
+        let least = U4_28::from_bits(1 << (31 - scale_shift));
+        if view.near() < least {
+            let near = view.near();
+            return Err(RenderError::Near { near, least });
+        }
         let (u, v) = (scale.row(view.u()), scale.row(view.v()));
         let n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
@@ -80,16 +86,16 @@ struct Scale {
 }
 
 impl Scale {
-    /// Returns the largest f with ceil(s·2^f)·(1 + 2^−12) < 2^24, and the scale s·2^f.
+    /// Returns the largest f up to 18 with ceil(s·2^f)·(1 + 2^−12) < 2^24, and the scale s·2^f.
     ///
-    /// s is in [40, 12800], so f is in 10…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
+    /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
     fn new(width: u32, view: &View) -> (u32, Self) {
-        let half_width = i64::from(view.half_width().to_bits());
+        let half_width = view.half_width().to_bits() as i64;
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
         // ceil(s·2^24). Rounding up its low bits gives ceil(s·2^f) for every smaller f.
         let ceil = (numerator(24) + half_width - 1) / half_width;
         let fits = |cut: u32| ((ceil + (1 << cut) - 1) >> cut) * 4097 < 1 << 36;
-        let cut = (0..24).find(|&cut| fits(cut)).unwrap_or(24);
+        let cut = (6..17).find(|&cut| fits(cut)).unwrap_or(17);
         let shift = 24 - cut;
         (
             shift,

@@ -104,7 +104,8 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
 #[inline(always)]
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
-    // Z is at least the distance of the near plane, so `lead` is in 30…40. With f in 10…18 the shift is in 6…24.
+    // Z is at least the distance of the near plane, so `lead` is in 30…40, and at least 40 − f. With f in 7…18 the shift is in
+    // 6…24.
     let shift = frame.scale_shift + lead - 34;
     let divide = |x: i64, size: u32| {
         // `normalised` is s14.11, and its product with the u24 number y is exact.

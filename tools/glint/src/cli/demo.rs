@@ -16,7 +16,7 @@ use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger, Primitive};
-use glint_core::fixed::{Q32_32, Turns, U4_28};
+use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
@@ -302,7 +302,7 @@ fn camera(azimuth: Turns) -> anyhow::Result<View> {
             view.u(),
             view.v(),
             view.n(),
-            U4_28::from_num(HALF_WIDTH),
+            U8_28::from_num(HALF_WIDTH),
             view.near(),
         )
     })

@@ -42,6 +42,17 @@ pub struct RenderArguments {
         allow_hyphen_values = true
     )]
     camera: Option<String>,
+    /// A camera at the eye E that looks in the direction of the gaze G, with the direction U (by default z) up on the screen.
+    #[arg(
+        long,
+        value_name = "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]",
+        conflicts_with_all = ["view", "camera"],
+        allow_hyphen_values = true
+    )]
+    look_at: Option<String>,
+    /// The horizontal field of view, 1 to 179 degrees, in place of the camera's half width. Pixels are square.
+    #[arg(long, value_name = "DEGREES")]
+    fov: Option<String>,
     /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}.
     #[arg(long, value_name = "VIEW.json")]
     view: Option<PathBuf>,
@@ -172,22 +183,42 @@ impl RenderArguments {
     }
 
     fn camera(&self) -> anyhow::Result<View> {
-        let Some(path) = &self.view else {
-            let default = if self.field.name().is_some() {
-                "4,30,60"
-            } else {
-                "2,30,60"
-            };
-            let camera = self.camera.as_deref().unwrap_or(default);
-            return Ok(view::spherical(camera).map_err(|error| error.in_file("--camera"))?);
+        let view = match (&self.view, &self.look_at) {
+            (Some(path), _) => {
+                let view = view::read(path)?;
+                self.check_eye(&view, &path.display().to_string())?;
+                view
+            }
+            (None, Some(text)) => {
+                let view = view::look_at(text).map_err(|error| error.in_file("--look-at"))?;
+                self.check_eye(&view, "--look-at")?;
+                view
+            }
+            (None, None) => {
+                let default = if self.field.name().is_some() {
+                    "4,30,60"
+                } else {
+                    "2,30,60"
+                };
+                let camera = self.camera.as_deref().unwrap_or(default);
+                view::spherical(camera).map_err(|error| error.in_file("--camera"))?
+            }
         };
-        let view = view::read(path)?;
+        match &self.fov {
+            Some(angle) => Ok(
+                view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
+            ),
+            None => Ok(view),
+        }
+    }
+
+    /// Refuses a camera, given by `source`, that is too far away for a mesh.
+    fn check_eye(&self, view: &View, source: &str) -> anyhow::Result<()> {
         if self.model.is_some() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
-            let error = FormatError::whole("a camera", found);
-            return Err(error.in_file(path.display().to_string()).into());
+            return Err(FormatError::whole("a camera", found).in_file(source).into());
         }
-        Ok(view)
+        Ok(())
     }
 
     fn render(&self, frame: &Frame) -> anyhow::Result<Rendered> {

@@ -1,7 +1,7 @@
 //! Conversion of cameras in f64 to views, and random cameras.
 
 use glint_core::camera::View;
-use glint_core::fixed::{Q2_23, Q32_32, U4_28};
+use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
 use glint_reference::camera::{Camera, Vector};
 use rand::RngExt;
 use rand_pcg::Pcg64;
@@ -14,7 +14,7 @@ pub fn view(camera: &Camera) -> View {
         basis(camera.u),
         basis(camera.v),
         basis(camera.n),
-        U4_28::from_num(camera.half_width),
+        U8_28::from_num(camera.half_width),
         U4_28::from_num(camera.near),
     );
     match made {

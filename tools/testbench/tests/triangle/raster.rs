@@ -6,7 +6,7 @@ mod triangles;
 use glint::{convert, generate, view};
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
-use glint_core::fixed::U4_28;
+use glint_core::fixed::U8_28;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::shade::Lit;
 use glint_model::triangle::vertex::GUARD;
@@ -333,7 +333,7 @@ fn filling(mesh: &Mesh) -> View {
         camera.u(),
         camera.v(),
         camera.n(),
-        U4_28::from_num(half_width),
+        U8_28::from_num(half_width),
         camera.near(),
     )
     .unwrap()

@@ -86,12 +86,16 @@ fn camera(random: &mut Random, round: u32) -> Camera {
     let half_width = match round % 8 {
         0 => 0.05,
         1 => 4.0,
+        2 => 0.0088,
+        3 => 114.0,
         _ => random.logarithmic(0.05, 4.0),
     };
+    // A narrow camera needs a farther near plane.
+    let nearest = if round % 8 == 2 { 0.0625 } else { 0.01 };
     let near = match round % 6 {
-        0 => 0.01,
+        0 => nearest,
         1 => 2.0,
-        _ => random.logarithmic(0.01, 2.0),
+        _ => random.logarithmic(nearest, 2.0),
     };
     let distance = if random.coin() {
         7.999

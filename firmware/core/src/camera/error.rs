@@ -1,0 +1,108 @@
+//! Reasons why numbers do not describe a camera.
+
+use core::fmt;
+
+use super::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
+
+/// One of the three vectors of a camera's basis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Axis {
+    /// The vector u, which points to the right of the screen.
+    U,
+    /// The vector v, which points down the screen.
+    V,
+    /// The vector n, which points into the scene.
+    N,
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::U => "u",
+            Self::V => "v",
+            Self::N => "n",
+        })
+    }
+}
+
+/// Reason why numbers do not describe a camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ViewError {
+    /// The eye is too far from the origin.
+    Eye([Q32_32; 3]),
+    /// The length of a vector of the basis differs from 1 by more than 1e-4.
+    Length {
+        /// Name of the vector.
+        axis: Axis,
+        /// Components of the vector.
+        row: [Q2_23; 3],
+    },
+    /// The scalar product of two vectors of the basis exceeds 1e-4 in magnitude.
+    NotPerpendicular {
+        /// The first vector.
+        a: Axis,
+        /// The second vector.
+        b: Axis,
+        /// Their scalar product.
+        product: Q2_23,
+    },
+    /// The basis is orthonormal but u × v = −n.
+    Mirrored,
+    /// The half width is out of range.
+    HalfWidth(U8_28),
+    /// The near plane is out of range.
+    Near(U4_28),
+    /// The direction of the gaze is 0.
+    Gaze,
+    /// The direction that points up on the screen is 0.
+    Up,
+    /// The field of view is out of range.
+    FieldOfView(Turns),
+    /// The radius of a spherical camera is out of range.
+    Radius(Q32_32),
+    /// The polar angle of a spherical camera is out of range.
+    Polar(Turns),
+}
+
+impl fmt::Display for ViewError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Eye([x, y, z]) => write!(
+                f,
+                "eye ({x}, {y}, {z}): expected within {MAX_EYE} of the origin"
+            ),
+            Self::Length {
+                axis,
+                row: [x, y, z],
+            } => {
+                write!(f, "{axis} = ({x}, {y}, {z}): expected length 1 within 1e-4")
+            }
+            Self::NotPerpendicular { a, b, product } => {
+                write!(f, "{a}·{b} = {product}: expected 0 within 1e-4")
+            }
+            Self::Mirrored => {
+                f.write_str("u × v = −n: expected u × v = n (u right, v down, n forward)")
+            }
+            Self::HalfWidth(x) => write!(
+                f,
+                "half_width {x}: expected {} to {}",
+                HALF_WIDTH[0], HALF_WIDTH[1]
+            ),
+            Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
+            Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),
+            Self::Gaze => f.write_str("gaze (0, 0, 0): expected a non-zero direction"),
+            Self::Up => f.write_str("up (0, 0, 0): expected a non-zero direction"),
+            Self::FieldOfView(angle) => write!(
+                f,
+                "field of view {} degrees: expected {} to {}",
+                angle.to_degrees(),
+                FIELD_OF_VIEW[0].to_degrees(),
+                FIELD_OF_VIEW[1].to_degrees()
+            ),
+            Self::Polar(phi) => write!(f, "phi {} degrees: expected 0 to 180", phi.to_degrees()),
+        }
+    }
+}
+
+impl core::error::Error for ViewError {}
