@@ -2,14 +2,14 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
 use glint_hal::triangle::Counters;
-use glint_model::{FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject};
+use glint_model::{Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject};
 
 use crate::gateware::Fallback;
 
@@ -72,6 +72,8 @@ pub struct Scene {
     size: Size,
     cull: bool,
     shading: Shading,
+    clip: Clip,
+    winding: Winding,
     backend: Backend,
     changed: bool,
     wants_depth: bool,
@@ -96,6 +98,8 @@ impl Scene {
             size: Size::default(),
             cull: true,
             shading: Shading::Flat,
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
             backend,
             changed: true,
             wants_depth: false,
@@ -109,6 +113,8 @@ impl Scene {
             mesh,
             cull: self.cull,
             shading: self.shading,
+            clip: self.clip,
+            winding: self.winding,
         };
         let subject = match &self.field {
             None => Subject::Mesh(mesh),
@@ -237,6 +243,18 @@ impl Scene {
     pub fn set_shading(&mut self, shading: Shading) {
         self.changed |= self.shading != shading;
         self.shading = shading;
+    }
+
+    /// Sets the clipping of the mesh's triangles.
+    pub fn set_clip(&mut self, clip: Clip) {
+        self.changed |= self.clip != clip;
+        self.clip = clip;
+    }
+
+    /// Sets the rule that tells which side of a triangle is seen.
+    pub fn set_winding(&mut self, winding: Winding) {
+        self.changed |= self.winding != winding;
+        self.winding = winding;
     }
 
     /// The backend.

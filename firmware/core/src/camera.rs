@@ -5,6 +5,7 @@
 //! rely on its ranges.
 
 mod error;
+mod limits;
 
 use core::fmt;
 
@@ -13,25 +14,12 @@ use crate::trig::sin_cos_q30;
 use crate::vector::{self, unit};
 
 pub use error::{Axis, ViewError};
+pub use limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
 
 /// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
 pub const DEFAULT_HALF_WIDTH: U8_28 = U8_28::lit("0.9");
 /// Distance of the near plane from the eye, in world units, for cameras that are defined by angles.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
-
-/// Largest accepted distance of an eye from the origin, in world units.
-pub const MAX_EYE: u32 = 32;
-/// Smallest and largest accepted half width of the image plane at distance 1, in world units.
-pub const HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.0087"), U8_28::lit("115")];
-/// Smallest and largest accepted horizontal field of view, 1° and 179°.
-pub const FIELD_OF_VIEW: [Turns; 2] = [
-    Turns::from_degrees(Q32_32::lit("1")),
-    Turns::from_degrees(Q32_32::lit("179")),
-];
-/// Smallest and largest accepted distance of the near plane from the eye, in world units.
-pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
-/// Smallest and largest accepted distance of a camera of `View::spherical` from the origin, in world units.
-pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];
 
 /// The default direction up on the screen, z.
 pub const UP: [Q32_32; 3] = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::ONE];

@@ -49,6 +49,22 @@ choices!(Shading {
     Smooth: "smooth"
 });
 
+/// The rule that tells which side of a triangle is seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Winding {
+    /// The order of the vertices in the mesh: counter-clockwise on the screen is the front.
+    #[default]
+    Mesh,
+    /// The place on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is seen, whatever the
+    /// order of its vertices in the mesh, and normals are turned towards the camera.
+    Screen,
+}
+
+choices!(Winding {
+    Mesh: "mesh",
+    Screen: "screen"
+});
+
 #[cfg(test)]
 mod tests {
     use super::Rgb565;

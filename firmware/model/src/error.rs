@@ -66,6 +66,8 @@ pub enum RenderError {
         /// Its smallest distance.
         least: U4_28,
     },
+    /// The far plane is at the near plane or nearer.
+    Far(U8_28),
     /// The half width of the camera in a frame with a field is outside [`FIELD_HALF_WIDTH`].
     HalfWidth(U8_28),
     /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
@@ -114,6 +116,7 @@ impl fmt::Display for RenderError {
                 f,
                 "near {near}: expected at least {least} for a mesh in a picture of this width and field of view"
             ),
+            Self::Far(far) => write!(f, "far {far}: expected a plane beyond the near plane"),
             Self::HalfWidth(half_width) => write!(
                 f,
                 "half_width {half_width}: expected {} to {} with a field",

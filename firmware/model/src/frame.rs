@@ -5,7 +5,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::{Rgb565, Shading};
+use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -18,7 +18,7 @@ use crate::mesh_in_field;
 use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
-use crate::triangle::{MeshSetup, Options, Projected, Stats, trace_frame};
+use crate::triangle::{Clip, MeshSetup, Options, Projected, Stats, trace_frame};
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;
@@ -58,6 +58,10 @@ pub struct MeshSubject<'a> {
     pub cull: bool,
     /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
+    /// Clipping of triangles.
+    pub clip: Clip,
+    /// The rule that tells which side of a triangle is seen.
+    pub winding: Winding,
 }
 
 /// A distance field and its options.
@@ -73,14 +77,23 @@ pub struct FieldSubject<'a> {
     pub prepass: bool,
 }
 
-impl<'a> Subject<'a> {
-    /// A mesh with flat shading and culled back faces.
-    pub const fn mesh(mesh: Mesh<'a>) -> Self {
-        Self::Mesh(MeshSubject {
+impl<'a> MeshSubject<'a> {
+    /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
+    pub const fn new(mesh: Mesh<'a>) -> Self {
+        Self {
             mesh,
             cull: true,
             shading: Shading::Flat,
-        })
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
+        }
+    }
+}
+
+impl<'a> Subject<'a> {
+    /// A mesh with the default options of [`MeshSubject::new`].
+    pub const fn mesh(mesh: Mesh<'a>) -> Self {
+        Self::Mesh(MeshSubject::new(mesh))
     }
 
     /// The mesh, if the subject has one.
@@ -158,7 +171,7 @@ impl FrameConstants {
         match &frame.subject {
             Subject::Mesh(subject) => {
                 let setup = MeshSetup::new(view, width, height, subject.mesh.radius())?;
-                self.mesh = Some(setup);
+                self.mesh = Some(setup.with_clip(subject.clip)?);
             }
             Subject::Field(subject) => {
                 let options = subject.options();
@@ -166,11 +179,11 @@ impl FrameConstants {
                 self.set_field(setup, &options);
             }
             Subject::MeshInField(mesh, subject) => {
-                let (size, radius) = ((width, height), mesh.mesh.radius());
+                let (size, radius, clip) = ((width, height), mesh.mesh.radius(), mesh.clip);
                 let options = subject.options();
                 let (mesh, field) =
                     mesh_in_field::constants(view, size, radius, subject.field, &options)?;
-                self.mesh = Some(mesh);
+                self.mesh = Some(mesh.with_clip(clip)?);
                 self.set_field(field, &options);
             }
         }
@@ -238,6 +251,7 @@ impl<'a> Frame<'a> {
                     cull: subject.cull,
                     clear: self.clear.0,
                     shading: subject.shading,
+                    winding: subject.winding,
                 };
                 let mesh = &subject.mesh;
                 let drawn = trace_frame(mesh, *setup, buffer, scratch, &options, |triangle| {

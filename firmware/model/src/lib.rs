@@ -28,6 +28,6 @@ pub use frame::{
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use triangle::{
-    DrawnTriangle, MeshSetup, Options, Projected, ScreenVertex, Stats, clip_exceptions, render,
-    trace, trace_frame,
+    Clip, DrawnTriangle, MeshSetup, Options, Projected, ScreenVertex, Stats, clip_exceptions,
+    render, trace, trace_frame,
 };

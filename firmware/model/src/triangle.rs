@@ -19,9 +19,11 @@ pub mod setup;
 pub mod shade;
 pub mod vertex;
 pub mod vertex_cache;
+pub mod volume;
 
 pub use exceptions::clip_exceptions;
 pub use mesh_setup::MeshSetup;
 pub use primitive::Options;
 pub use render::{DrawnTriangle, Stats, render, trace, trace_frame};
 pub use vertex::{Projected, ScreenVertex};
+pub use volume::Clip;

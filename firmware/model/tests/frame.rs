@@ -35,11 +35,7 @@ fn drawn(frame: &Frame, constants: &FrameConstants) -> (Picture, FrameStats, u32
 fn a_frame_is_drawn_from_constants_that_served_another_one() {
     let bytes = Model::cube(8192).encoded();
     let mesh = Mesh::new_checked(&bytes).unwrap();
-    let mesh = MeshSubject {
-        mesh,
-        cull: true,
-        shading: Shading::Flat,
-    };
+    let mesh = MeshSubject::new(mesh);
     let field = FieldSubject {
         field: &Field::parse("box:0.25,2,0.25").unwrap(),
         appearance: &Appearance::default(),

@@ -1,8 +1,10 @@
 //! Commands for frames: settings, drawing, and download of pictures.
 
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
 use glint_core::console::FrameCommands;
+use glint_core::fixed::U8_28;
 use glint_core::picture::{Backend, Size};
+use glint_model::Clip;
 use litex_pac::cpu;
 
 use super::{bench, statistics};
@@ -46,6 +48,17 @@ impl<'l> FrameCommands<'l> for Machine {
 
     fn cull(&mut self, on: bool) -> Outcome<'l> {
         self.scene.set_cull(on);
+        Ok(Reply::Done)
+    }
+
+    fn clip(&mut self, far: Option<U8_28>) -> Outcome<'l> {
+        let clip = far.map_or(Clip::Guard, |far| Clip::View { far });
+        self.scene.set_clip(clip);
+        Ok(Reply::Done)
+    }
+
+    fn winding(&mut self, winding: Winding) -> Outcome<'l> {
+        self.scene.set_winding(winding);
         Ok(Reply::Done)
     }
 

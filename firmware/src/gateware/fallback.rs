@@ -13,6 +13,10 @@ pub enum Fallback {
     Triangle(EngineError),
     /// The raymarcher of this gateware lacks a feature.
     Field(Missing),
+    /// The triangle engine clips to the guard band only.
+    Clip,
+    /// The triangle engine knows the winding of the mesh only.
+    Winding,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
 }
@@ -43,6 +47,8 @@ impl fmt::Display for Fallback {
         match self {
             Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
+            Self::Clip => f.write_str("triangle engine: no clipping to the view volume"),
+            Self::Winding => f.write_str("triangle engine: no winding by the screen"),
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
         }
     }

@@ -1,6 +1,6 @@
 //! The passes of a frame: the geometry pass, clipping by the CPU, and the raster pass.
 
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
 use glint_core::picture::Size;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{
@@ -8,7 +8,7 @@ use glint_hal::triangle::{
 };
 use glint_model::triangle::descriptor::ListWriter;
 use glint_model::{
-    Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
+    Clip, Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
 };
 use litex_pac::cpu;
 
@@ -233,6 +233,12 @@ impl GatewareRenderer {
             }
             if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
                 return Err(EngineError::Shading.into());
+            }
+            if mesh.clip != Clip::Guard {
+                return Err(Fallback::Clip);
+            }
+            if mesh.winding != Winding::Mesh {
+                return Err(Fallback::Winding);
             }
         }
         Ok(self.constants[place].update(frame)?)

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
+use super::limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 /// One of the three vectors of a camera's basis.

@@ -10,9 +10,9 @@ use super::values::{
     FieldOfView, HalfTurn, Imu, LookAt, Mounting, Name, Sensitivity, Size, Upload, View, Whole,
 };
 use super::words::Words;
-use crate::colour::Shading;
+use crate::colour::{Shading, Winding};
 use crate::field::Field;
-use crate::fixed::{Q32_32, Turns, U4_28};
+use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{Background, Light, Material, Rgb};
 use crate::picture::Backend;
 use crate::stereo::Stereo;
@@ -77,6 +77,8 @@ commands! {
         backend Backend(backend: Option<Backend>): "show or set the backend that draws frames";
         shading Shading(shading: Option<Shading>): "show or set the shading: flat (one colour per triangle) or smooth (interpolated)";
         cull Cull(on: bool): "turn culling of back faces on or off";
+        clip Clip(far: Or<Off, U8_28>): "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
+        winding Winding(rule: Winding): "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
         prepass Prepass(on: bool): "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";

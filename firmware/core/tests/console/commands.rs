@@ -1,10 +1,10 @@
 //! Tests of every command with its arguments.
 
 use glint_core::camera::View;
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
 use glint_core::console::{Command, ImuAction, LINE_MAX};
 use glint_core::field::{Field, Menger};
-use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
@@ -184,6 +184,11 @@ fn every_command_is_understood() {
     assert_parses("lookat 3 0 1 -3 0 -1", Command::LookAt { view });
     let view = towards([0, 1, 0]);
     assert_parses("lookat 3 0 1 -3 0 -1 0 1 0", Command::LookAt { view });
+    let far = Some(U8_28::lit("2.5"));
+    assert_parses("clip 2.5", Command::Clip { far });
+    assert_parses("clip off", Command::Clip { far: None });
+    let rule = Winding::Screen;
+    assert_parses("winding screen", Command::Winding { rule });
     let angle = degrees(150);
     assert_parses("fov 150", Command::FieldOfView { angle });
     assert_parses("imu", Command::Imu { action: None });

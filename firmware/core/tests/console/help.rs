@@ -37,13 +37,14 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 35);
+    assert_eq!(list.lines().count(), 39);
     for (command, usage) in [
         ("imu", "imu [ACTION [SAMPLES]]\n"),
         ("replay", "replay [BYTES CRC32]\n"),
         ("size", "size W H\n"),
         ("stats", "stats [json]\n"),
         ("light", "light [default|LIGHT]\n"),
+        ("lookat", "lookat EX EY EZ GX GY GZ [UX UY UZ]\n"),
         ("shading", "shading [flat|smooth]\n"),
         ("material", "material [MATERIAL]\n"),
     ] {

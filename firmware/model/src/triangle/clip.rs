@@ -1,74 +1,94 @@
-//! The clipper, for triangles that cross the near plane or leave the guard band.
+//! The clipper: homogeneous Sutherland–Hodgman in integers, before the perspective division.
 //!
-//! Clipping works on camera coordinates, before the perspective division. The intersection of an edge with a plane is the
-//! exact point after rounding. It does not depend on the direction of the edge, so the two triangles at an edge get the
-//! same vertex.
+//! It cuts triangles that cross the near plane or leave the guard band, or, as an option, all triangles that leave the view volume.
+//! The intersection of an edge with a plane is the exact point after rounding. It does not depend on the direction of the
+//! edge, so the two triangles at an edge get the same vertex.
+
+use heapless::Vec;
 
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::vertex::CameraVertex;
+use crate::triangle::volume::Volume;
 
-/// Largest number of vertices of a clipped triangle. Each of the five planes replaces every run of consecutive outside
-/// vertices by two vertices, and n vertices have at most n/2 such runs: 3 → 4 → 6 → 9 → 13 → 19. (A convex polygon reaches 8, but
-/// rounding may make a polygon concave.)
-const MAX_VERTICES: usize = 19;
+/// Largest number of vertices of a clipped triangle. Each of the six planes replaces every run of consecutive outside
+/// vertices by two vertices, and n vertices have at most n/2 such runs: 3 → 4 → 6 → 9 → 13 → 19 → 28. (A convex polygon reaches
+/// 9, but rounding may make a polygon concave.)
+const MAX_VERTICES: usize = 28;
 
 /// The polygon that remains of a triangle after clipping.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Polygon {
-    vertices: [CameraVertex; MAX_VERTICES],
-    len: usize,
+    vertices: Vec<CameraVertex, MAX_VERTICES>,
 }
 
 impl Polygon {
-    fn empty() -> Self {
-        Self {
-            vertices: [CameraVertex::default(); MAX_VERTICES],
-            len: 0,
-        }
-    }
-
-    /// The vertices in order; fewer than three if no part of the triangle is inside the view volume.
+    /// The vertices in order; fewer than three if no part of the triangle is inside the volume.
     pub fn vertices(&self) -> &[CameraVertex] {
-        self.vertices.get(..self.len).unwrap_or_default()
+        &self.vertices
     }
 
     fn push(&mut self, vertex: CameraVertex) {
-        if let Some(slot) = self.vertices.get_mut(self.len) {
-            *slot = vertex;
-            self.len += 1;
-        }
+        // There is room for every vertex that clipping can make.
+        let _ = self.vertices.push(vertex);
     }
 }
 
-/// A side of the view volume.
+/// The planes of a volume, in the order of clipping.
+fn planes(volume: Volume) -> impl Iterator<Item = Plane> {
+    let has_far = volume != Volume::Guard;
+    Plane::ALL
+        .into_iter()
+        .filter(move |&plane| has_far || plane != Plane::Far)
+}
+
+/// Whether a vertex is inside all planes of the volume.
+pub fn contains(frame: &MeshSetup, vertex: &CameraVertex) -> bool {
+    planes(frame.volume).all(|plane| plane.distance(frame, vertex) >= 0)
+}
+
+/// A side of the volume of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
     /// Inside is Z ≥ near: at or beyond the near plane.
     Near,
-    /// Inside is x ≥ −2047.5 pixels on the screen.
+    /// Inside is Z ≤ far: at the far plane or nearer.
+    Far,
+    /// Inside is at or to the right of the left side.
     Left,
-    /// Inside is x ≤ 2047.5 pixels on the screen.
+    /// Inside is at or to the left of the right side.
     Right,
-    /// Inside is y ≥ −2047.5 pixels on the screen.
+    /// Inside is at or below the top side.
     Top,
-    /// Inside is y ≤ 2047.5 pixels on the screen.
+    /// Inside is at or above the bottom side.
     Bottom,
 }
 
 impl Plane {
     /// All planes, in the order of clipping.
-    pub const ALL: [Self; 5] = [Self::Near, Self::Left, Self::Right, Self::Top, Self::Bottom];
+    pub const ALL: [Self; 6] = [
+        Self::Near,
+        Self::Far,
+        Self::Left,
+        Self::Right,
+        Self::Top,
+        Self::Bottom,
+    ];
 
     /// The exact signed distance of a vertex from the plane, times a positive factor that depends on the plane only;
     /// negative is outside.
     pub fn distance(self, frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
-        let [width, height] = [frame.width, frame.height].map(i64::from);
+        let [left, right] = frame.volume.sides(frame.width);
+        let [top, bottom] = frame.volume.sides(frame.height);
         match self {
             Self::Near => vertex.z - frame.near,
-            Self::Left => (4095 + width) * vertex.z + half_pixels(frame, vertex.x),
-            Self::Right => (4095 - width) * vertex.z - half_pixels(frame, vertex.x),
-            Self::Top => (4095 + height) * vertex.z + half_pixels(frame, vertex.y),
-            Self::Bottom => (4095 - height) * vertex.z - half_pixels(frame, vertex.y),
+            Self::Far => match frame.volume {
+                Volume::Guard => i64::MAX,
+                Volume::View { far } => far - vertex.z,
+            },
+            Self::Left => left * vertex.z + half_pixels(frame, vertex.x),
+            Self::Right => right * vertex.z - half_pixels(frame, vertex.x),
+            Self::Top => top * vertex.z + half_pixels(frame, vertex.y),
+            Self::Bottom => bottom * vertex.z - half_pixels(frame, vertex.y),
         }
     }
 
@@ -85,7 +105,7 @@ impl Plane {
         {
             return false;
         }
-        left.len = 0;
+        left.vertices.clear();
         let mut from_distance = self.distance(frame, from);
         for to in vertices {
             let to_distance = self.distance(frame, to);
@@ -120,10 +140,10 @@ impl Plane {
         CameraVertex {
             x: between(a.x, b.x),
             y: between(a.y, b.y),
-            z: if self == Self::Near {
-                frame.near
-            } else {
-                between(a.z, b.z)
+            z: match (self, frame.volume) {
+                (Self::Near, _) => frame.near,
+                (Self::Far, Volume::View { far }) => far,
+                _ => between(a.z, b.z),
             },
             light: a
                 .light
@@ -152,11 +172,11 @@ pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     off(|v| v.x, frame.width) || off(|v| v.y, frame.height)
 }
 
-/// Clips a triangle to the view volume, starting with its first vertex.
+/// Clips a triangle to the volume of the frame, starting with its first vertex.
 pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
-    let (mut polygon, mut left) = (Polygon::empty(), Polygon::empty());
+    let (mut polygon, mut left) = (Polygon::default(), Polygon::default());
     triangle.into_iter().for_each(|vertex| polygon.push(vertex));
-    for plane in Plane::ALL {
+    for plane in planes(frame.volume) {
         if plane.cut(frame, &polygon, &mut left) {
             core::mem::swap(&mut polygon, &mut left);
         }

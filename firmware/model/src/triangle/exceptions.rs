@@ -36,12 +36,10 @@ pub fn clip_exceptions(
             continue;
         };
         let mut any = false;
-        clip_fan(frame, options.shading, &triangle, chunk, &mut |corners| {
+        clip_fan(frame, options, &triangle, chunk, &mut |corners| {
             let light = lit_corners(options.shading, corners);
             let vertices = corners.map(|corner| &corner.place);
-            if let Some(placed) =
-                Placed::new(frame, options.cull, &triangle, vertices, light.as_ref())
-            {
+            if let Some(placed) = Placed::new(frame, options, &triangle, vertices, light.as_ref()) {
                 emit(&placed.setup(), placed.colour);
                 any = true;
             }

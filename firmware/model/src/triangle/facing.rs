@@ -1,5 +1,12 @@
 //! The visible side of a triangle.
 
+/// The scalar product of a normal (s2.14) and the camera's forward direction (s2.23); below 2^41.
+pub fn along(normal: [i16; 3], n: &[i32; 3]) -> i64 {
+    core::iter::zip(normal, n)
+        .map(|(a, &b)| i64::from(a) * i64::from(b))
+        .sum()
+}
+
 /// The visible side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
@@ -10,6 +17,15 @@ pub enum Facing {
 }
 
 impl Facing {
+    /// The side of a surface with the normal `normal` that a camera with the forward direction `n` sees.
+    pub fn of(normal: [i16; 3], n: &[i32; 3]) -> Self {
+        if along(normal, n) <= 0 {
+            Self::Front
+        } else {
+            Self::Back
+        }
+    }
+
     /// Puts an attribute of the three vertices into clockwise order on the screen: for a front face, swaps the attributes
     /// of vertices 1 and 2.
     pub fn order<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {

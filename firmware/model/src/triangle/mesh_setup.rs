@@ -6,6 +6,7 @@ use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 use crate::depth::DepthScale;
 use crate::error::{MAX_EYE, RenderError, SIZES};
 use crate::triangle::rounding::nearest;
+use crate::triangle::volume::{Clip, Volume};
 
 /// The frame constants of the vertex stage (formats.md, "Frame constants").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,6 +30,8 @@ pub struct MeshSetup {
     pub near: i64,
     /// The scale K of depth codes.
     pub depth: DepthScale,
+    /// The volume to which triangles are clipped.
+    pub volume: Volume,
 }
 
 impl MeshSetup {
@@ -74,7 +77,26 @@ impl MeshSetup {
             translation,
             near,
             depth,
+            volume: Volume::Guard,
         })
+    }
+
+    /// Returns these constants with another clipping of triangles.
+    ///
+    /// # Errors
+    /// [`RenderError::Far`] for a far plane at the near plane or nearer.
+    pub fn with_clip(self, clip: Clip) -> Result<Self, RenderError> {
+        let volume = match clip {
+            Clip::Guard => Volume::Guard,
+            Clip::View { far } => {
+                let distance = (far.to_bits() as i64) << 9;
+                if distance <= self.near {
+                    return Err(RenderError::Far(far));
+                }
+                Volume::View { far: distance }
+            }
+        };
+        Ok(Self { volume, ..self })
     }
 }
 

@@ -1,6 +1,6 @@
 //! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
 use glint_core::mesh::{Chunk, Rgb565, Triangle};
 
 use crate::triangle::clip::{clip, off_picture};
@@ -19,15 +19,18 @@ pub struct Options {
     pub clear: u16,
     /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
+    /// The rule that tells which side of a triangle is seen.
+    pub winding: Winding,
 }
 
 impl Default for Options {
-    /// Back faces are left out, the background is black, and shading is flat.
+    /// Back faces are left out, the background is black, shading is flat, and the winding is that of the mesh.
     fn default() -> Self {
         Self {
             cull: true,
             clear: 0,
             shading: Shading::Flat,
+            winding: Winding::Mesh,
         }
     }
 }
@@ -48,14 +51,17 @@ impl Placed {
     /// Prepares a triangle; `None` for a culled back face, and for a triangle without a pixel centre in its bounds.
     pub fn new(
         frame: &MeshSetup,
-        cull: bool,
+        options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
+        if options.winding == Winding::Screen {
+            return Self::by_screen(frame, triangle, vertices, light);
+        }
         let oriented = Oriented::new(vertices.map(|v| *v))?;
         let facing = oriented.facing;
-        if cull && facing == Facing::Back {
+        if options.cull && facing == Facing::Back {
             return None;
         }
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
@@ -65,6 +71,33 @@ impl Placed {
             bounds,
             colour: lit(triangle.colour, intensity),
             lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
+        })
+    }
+
+    /// Prepares a triangle by its place on the screen ([`Winding::Screen`]). No triangle is culled for its facing.
+    ///
+    /// Not inlined, so that triangles with the winding of the mesh do not load this code into the instruction cache.
+    #[inline(never)]
+    fn by_screen(
+        frame: &MeshSetup,
+        triangle: &Triangle,
+        vertices: [&ScreenVertex; 3],
+        light: Option<&[Light; 3]>,
+    ) -> Option<Self> {
+        let vertices = vertices.map(|v| *v);
+        let order = Oriented::screen_order(&vertices);
+        let facing = Facing::of(triangle.normal, &frame.n);
+        let oriented = Oriented {
+            facing,
+            ..Oriented::new(order.map(|i| vertices[i]))?
+        };
+        let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
+        let intensity = intensity(triangle.normal, &frame.n, facing);
+        Some(Self {
+            oriented,
+            bounds,
+            colour: lit(triangle.colour, intensity),
+            lit: light.map(|light| order.map(|i| light[i].visible())),
         })
     }
 
@@ -106,7 +139,7 @@ pub fn lit_corners(shading: Shading, corners: [&Corner; 3]) -> Option<[Light; 3]
 /// Clips a triangle and emits the remaining polygon as a fan.
 pub fn clip_fan(
     frame: &MeshSetup,
-    shading: Shading,
+    options: &Options,
     triangle: &Triangle,
     chunk: &Chunk,
     emit: &mut dyn FnMut([&Corner; 3]),
@@ -117,15 +150,19 @@ pub fn clip_fan(
     // The fan starts at the vertex with the smallest position, so that the order of the triangle's
     // indices does not matter.
     let [p, q, r] = [&a, &b, &c].map(|vertex| vertex.position);
-    let vertices = if p <= q && p <= r {
+    let mut vertices = if p <= q && p <= r {
         [a, b, c]
     } else if q <= r {
         [b, c, a]
     } else {
         [c, a, b]
     };
+    if options.winding == Winding::Screen && vertices[2].position < vertices[1].position {
+        // The order in the mesh does not matter at all.
+        vertices.swap(1, 2);
+    }
     let corners = vertices.map(|vertex| CameraVertex {
-        light: match shading {
+        light: match options.shading {
             Shading::Flat => Light::default(),
             Shading::Smooth => Light::new(vertex.colour, vertex.normal, &frame.n),
         },

@@ -6,12 +6,14 @@ use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
+use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners, vertex_light};
 use crate::triangle::raster;
 use crate::triangle::shade::{Light, Lit};
 use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
+use crate::triangle::volume::Volume;
 
 /// Counts of the triangles and pixels of a mesh in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -216,8 +218,21 @@ impl Renderer<'_, '_> {
 
     /// Runs the vertex stage for all vertices of a chunk.
     fn project(&self, chunk: &Chunk, scratch: &mut [Projected]) {
+        let Self { frame, .. } = self;
+        if frame.volume == Volume::Guard {
+            for (vertex, projected) in chunk.vertices().zip(scratch) {
+                *projected = project(frame, &transform(frame, vertex.position));
+            }
+            return;
+        }
         for (vertex, projected) in chunk.vertices().zip(scratch) {
-            *projected = project(&self.frame, &transform(&self.frame, vertex.position));
+            let vertex = transform(frame, vertex.position);
+            *projected = match project(frame, &vertex) {
+                Projected::Visible(place) if !contains(frame, &vertex) => {
+                    Projected::BeyondGuard(place)
+                }
+                projected => projected,
+            };
         }
     }
 
@@ -249,10 +264,10 @@ impl Renderer<'_, '_> {
 
     /// Clips a triangle and draws its parts. Returns whether a part reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
-        let (frame, shading) = (self.frame, self.options.shading);
+        let (frame, options) = (self.frame, self.options);
         let mut any = false;
-        clip_fan(&frame, shading, triangle, chunk, &mut |corners| {
-            let light = lit_corners(shading, corners);
+        clip_fan(&frame, &options, triangle, chunk, &mut |corners| {
+            let light = lit_corners(options.shading, corners);
             any |= self.draw(
                 index,
                 triangle,
@@ -273,7 +288,7 @@ impl Renderer<'_, '_> {
         light: Option<&[Light; 3]>,
         clipped: bool,
     ) -> bool {
-        let Some(placed) = Placed::new(&self.frame, self.options.cull, triangle, vertices, light)
+        let Some(placed) = Placed::new(&self.frame, &self.options, triangle, vertices, light)
         else {
             return false;
         };

@@ -38,6 +38,26 @@ impl Oriented {
             }),
         }
     }
+
+    /// The indices of the vertices of a triangle by their place on the screen: the upper left one first, which is the highest one and of
+    /// equally high ones the left one, then the others clockwise.
+    pub fn screen_order(vertices: &[ScreenVertex; 3]) -> [usize; 3] {
+        let [a, b, c] = vertices.each_ref().map(|v| (v.y, v.x));
+        let order = if a <= b && a <= c {
+            [0, 1, 2]
+        } else if b <= c {
+            [1, 2, 0]
+        } else {
+            [2, 0, 1]
+        };
+        let [v0, v1, v2] = vertices;
+        if cross(*v0, *v1, *v2) < 0 {
+            let [first, second, third] = order;
+            [first, third, second]
+        } else {
+            order
+        }
+    }
 }
 
 /// The signed doubled area x10·y20 − x20·y10 of a triangle, positive if its vertices are clockwise.

@@ -2,16 +2,13 @@
 
 use glint_core::colour::Rgb565;
 
-use crate::triangle::facing::Facing;
+use crate::triangle::facing::{Facing, along};
 use crate::triangle::rounding::nearest;
 
 /// Intensity clamp(−N·n, 0, 1), u1.8, for the normal N (s2.14) and the camera's forward direction n (s2.23). A back face
 /// negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
-    // The scalar product is below 2^41.
-    let product: i64 = core::iter::zip(normal, n)
-        .map(|(a, &b)| i64::from(a) * i64::from(b))
-        .sum();
+    let product = along(normal, n);
     let towards = match facing {
         Facing::Front => -product,
         Facing::Back => product,
@@ -73,6 +70,12 @@ impl Light {
             Facing::Front => self.front,
             Facing::Back => self.back,
         }
+    }
+
+    /// Returns the light on the side that the camera sees: a vertex lights at most one side.
+    pub fn visible(self) -> Lit {
+        let (Lit(front), Lit(back)) = (self.front, self.back);
+        Lit([0, 1, 2].map(|channel| front[channel].max(back[channel])))
     }
 
     /// Combines two lights by `operation`, channel by channel and separately for front and back faces.

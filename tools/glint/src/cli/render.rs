@@ -15,11 +15,11 @@ use glint::render::{
 use glint::transfer::Progress;
 use glint::view;
 use glint_core::camera::View;
-use glint_core::colour::Shading;
+use glint_core::colour::{Shading, Winding};
+use glint_core::fixed::U8_28;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::picture::{Backend, Size};
-use glint_model::MAX_EYE;
-use glint_model::RenderError;
+use glint_model::{Clip, MAX_EYE, RenderError};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -81,6 +81,14 @@ pub struct RenderArguments {
     /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
     #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
     shading: Shading,
+    /// Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's
+    /// guard band.
+    #[arg(long, value_name = "DISTANCE", requires = "model")]
+    far: Option<String>,
+    /// The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the
+    /// upper left vertex: all triangles are seen, and none is culled).
+    #[arg(long, value_parser = named(Winding::ALL, Winding::name), default_value_t, requires = "model")]
+    winding: Winding,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
@@ -128,6 +136,7 @@ impl RenderArguments {
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
+        let clip = self.clip()?;
         let model = self.model.as_deref();
         let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
         let mesh = model.as_ref().map(|model| {
@@ -135,6 +144,8 @@ impl RenderArguments {
                 mesh: Mesh::new_checked(&model.mesh)?,
                 cull: !self.no_cull,
                 shading: self.shading,
+                clip,
+                winding: self.winding,
             })
         });
         let field = field.as_ref().map(|field| FieldSubject {
@@ -210,6 +221,21 @@ impl RenderArguments {
             ),
             None => Ok(view),
         }
+    }
+
+    fn clip(&self) -> anyhow::Result<Clip> {
+        let Some(text) = &self.far else {
+            return Ok(Clip::Guard);
+        };
+        let number: Option<U8_28> = text.parse().ok();
+        let far = number.filter(|far| *far < 256).ok_or_else(|| {
+            FormatError::whole(
+                "a distance from 0 to below 256",
+                glint::error::quote(text.as_bytes()),
+            )
+            .in_file("--far")
+        })?;
+        Ok(Clip::View { far })
     }
 
     /// Refuses a camera, given by `source`, that is too far away for a mesh.

@@ -5,7 +5,7 @@ use glint_core::camera::View;
 use glint_core::choice::switch_name;
 use glint_core::light::Hexadecimal;
 use glint_core::picture::Size;
-use glint_model::{FieldSubject, MeshSubject};
+use glint_model::{Clip, FieldSubject, MeshSubject};
 
 /// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {
@@ -13,10 +13,15 @@ pub fn size_command(size: Size) -> String {
 }
 
 /// The console commands that set the options of a mesh.
-pub fn mesh_commands(subject: &MeshSubject) -> [String; 2] {
+pub fn mesh_commands(subject: &MeshSubject) -> [String; 4] {
     [
         format!("cull {}", switch_name(subject.cull)),
         format!("shading {}", subject.shading),
+        match subject.clip {
+            Clip::Guard => "clip off".to_owned(),
+            Clip::View { far } => format!("clip {far}"),
+        },
+        format!("winding {}", subject.winding),
     ]
 }
 

@@ -7,7 +7,6 @@ use glint::picture::Image;
 use glint::render::{self, FieldSubject, Frame, MeshSubject, Route, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
-use glint_core::colour::Shading;
 use glint_core::field::Field;
 use glint_core::light::Material;
 use glint_core::mesh::Mesh;
@@ -42,11 +41,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         stereo: None,
         prepass: false,
     };
-    let triangles = MeshSubject {
-        mesh: Mesh::new_checked(&mesh).unwrap(),
-        cull: true,
-        shading: Shading::Flat,
-    };
+    let triangles = MeshSubject::new(Mesh::new_checked(&mesh).unwrap());
     let frame = Frame::new(
         Subject::MeshInField(triangles, field),
         view::parse(eye.as_bytes()).unwrap(),

@@ -18,9 +18,8 @@ fn smooth_shading_is_the_models_on_every_backend() {
     let mesh = mesh("icosphere:2");
     for backend in [None, Some(Backend::Cpu)] {
         let subject = Subject::Mesh(MeshSubject {
-            mesh: Mesh::new_checked(&mesh).unwrap(),
-            cull: true,
             shading: Shading::Smooth,
+            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
         });
         let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
         renderer.set_backend(backend);
@@ -60,9 +59,8 @@ fn the_monitor_shows_what_the_model_renders(name: &str) {
     let mesh = mesh(name);
     for (number, &(view, cull)) in cameras.iter().enumerate() {
         let subject = Subject::Mesh(MeshSubject {
-            mesh: Mesh::new_checked(&mesh).unwrap(),
             cull,
-            shading: Shading::Flat,
+            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
         });
         let frame = Frame::new(subject, view, size);
         let expected = render::on_model(&frame).unwrap();

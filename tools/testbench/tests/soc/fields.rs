@@ -8,7 +8,6 @@ use glint::render::{self, FieldSubject, Frame, MeshSubject, Rendered, Stats, Sub
 use glint::{convert, generate};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::Shading;
 use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::light::{Background, Light, Material};
@@ -275,9 +274,8 @@ fn the_soc_draws_a_mesh_in_a_field() {
     };
     let both = |view, size, cull| {
         let mesh = MeshSubject {
-            mesh: Mesh::new_checked(&mesh).unwrap(),
             cull,
-            shading: Shading::Flat,
+            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
         };
         Frame::new(Subject::MeshInField(mesh, field), view, size)
     };

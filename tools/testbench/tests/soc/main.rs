@@ -17,7 +17,6 @@ use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::render::{self, Frame, MeshSubject, Rendered, Stats, Subject};
 use glint::{convert, generate, view};
-use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::wire::Manifest;
@@ -242,9 +241,8 @@ fn draw(size: Size, scenes: Vec<Scene>) {
         for (number, (view, with_depth)) in [(view, true)].into_iter().chain(views).enumerate() {
             let name = format!("{name} {number} at {size}");
             let subject = Subject::Mesh(MeshSubject {
-                mesh: Mesh::new_checked(&mesh).unwrap(),
                 cull,
-                shading: Shading::Flat,
+                ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
             });
             let frame = Frame::new(subject, view, size);
             let Rendered { image, stats } = render::on_model(&frame).unwrap();

@@ -62,6 +62,7 @@ pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -
         cull,
         clear: CLEAR,
         shading: Shading::Smooth,
+        ..Options::default()
     };
     expected_with(options, mesh, view, size)
 }

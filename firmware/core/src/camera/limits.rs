@@ -1,0 +1,17 @@
+//! Ranges of the numbers of a camera.
+
+use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
+
+/// Largest accepted distance of an eye from the origin, in world units.
+pub const MAX_EYE: u32 = 32;
+/// Smallest and largest accepted half width of the image plane at distance 1, in world units.
+pub const HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.0087"), U8_28::lit("115")];
+/// Smallest and largest accepted horizontal field of view, 1° and 179°.
+pub const FIELD_OF_VIEW: [Turns; 2] = [
+    Turns::from_degrees(Q32_32::lit("1")),
+    Turns::from_degrees(Q32_32::lit("179")),
+];
+/// Smallest and largest accepted distance of the near plane from the eye, in world units.
+pub const NEAR: [U4_28; 2] = [U4_28::lit("0.01"), U4_28::lit("2")];
+/// Smallest and largest accepted distance of a camera of `View::spherical` from the origin, in world units.
+pub const RADIUS: [Q32_32; 2] = [Q32_32::lit("2"), Q32_32::lit("5")];

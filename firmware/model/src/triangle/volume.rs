@@ -1,0 +1,42 @@
+//! The volume to which triangles are clipped.
+
+use glint_core::fixed::U8_28;
+
+/// The clipping of triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Clip {
+    /// Triangles that cross the near plane or leave the guard band are clipped. There is no far plane.
+    #[default]
+    Guard,
+    /// Triangles that leave the view volume are clipped to its six planes: the sides of the picture, the near plane and a far
+    /// plane.
+    View {
+        /// Distance of the far plane from the eye along the camera's forward axis, in world units; beyond the near plane.
+        far: U8_28,
+    },
+}
+
+/// The volume to which triangles are clipped.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Volume {
+    /// Beyond the near plane and inside the guard band: the triangle engine's volume, which cuts the fewest triangles.
+    #[default]
+    Guard,
+    /// The view volume: inside the picture, and between the near plane and a far plane.
+    View {
+        /// Distance of the far plane from the eye, 37 fraction bits.
+        far: i64,
+    },
+}
+
+impl Volume {
+    /// The distances in half pixels from the middle of the picture, which has `size` pixels, to the two sides.
+    pub fn sides(self, size: u32) -> [i64; 2] {
+        let size = i64::from(size);
+        match self {
+            // The guard band ends at ±2047.5 pixels from the first column.
+            Self::Guard => [4095 + size, 4095 - size],
+            Self::View { .. } => [size, size],
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! Clipping to the six planes of the view volume, compared with a clipper in f64.
+
+use glint_core::camera::View;
+use glint_core::fixed::U8_28;
+use glint_core::mesh::Mesh;
+use glint_model::triangle::clip::{Plane, clip};
+use glint_model::triangle::vertex::{CameraVertex, snap, transform};
+use glint_model::triangle::volume::Volume;
+use glint_model::{Clip, MeshSetup, Options, Projected, RenderError, SIZES, trace_frame};
+use glint_vectors::{Camera, Model, Picture, Random};
+
+/// Radius of a mesh that may have vertices at all positions of the mesh format, 14 fraction bits.
+const RADIUS: u32 = 56_756;
+
+/// A vertex in pixels from the middle of the picture at distance 1, and depth in world units.
+type Point = [f64; 3];
+
+fn view_of(far: f64) -> Clip {
+    Clip::View {
+        far: U8_28::from_num(far),
+    }
+}
+
+fn random_frame(random: &mut Random) -> MeshSetup {
+    let (width, height) = SIZES[random.integer(0, 2) as usize];
+    let view = Camera::inside(random).rounded();
+    let far = view.near().to_num::<f64>() + random.logarithmic(0.05, 4.0);
+    let frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
+    frame.with_clip(view_of(far)).unwrap()
+}
+
+fn random_vertex(random: &mut Random, frame: &MeshSetup) -> CameraVertex {
+    transform(frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
+}
+
+fn point(frame: &MeshSetup, vertex: &CameraVertex) -> Point {
+    let unit = 0.5f64.powi(14 + frame.scale_shift as i32);
+    [
+        vertex.x as f64 * unit,
+        vertex.y as f64 * unit,
+        vertex.z as f64 * 0.5f64.powi(37),
+    ]
+}
+
+/// Clips a polygon to −w ≤ x, y ≤ w and near ≤ z ≤ far in homogeneous coordinates.
+fn reference(frame: &MeshSetup, far: f64, triangle: [Point; 3]) -> Vec<Point> {
+    let near = frame.near as f64 * 0.5f64.powi(37);
+    let [half_width, half_height] = [frame.width, frame.height].map(|size| f64::from(size) / 2.0);
+    let distances: [&dyn Fn(Point) -> f64; 6] = [
+        &|[_, _, z]| z - near,
+        &|[_, _, z]| far - z,
+        &|[x, _, z]| half_width * z + x,
+        &|[x, _, z]| half_width * z - x,
+        &|[_, y, z]| half_height * z + y,
+        &|[_, y, z]| half_height * z - y,
+    ];
+    let mut polygon = triangle.to_vec();
+    for distance in distances {
+        let mut left = Vec::new();
+        for (i, &to) in polygon.iter().enumerate() {
+            let from = polygon[(i + polygon.len() - 1) % polygon.len()];
+            let (a, b) = (distance(from), distance(to));
+            if (a >= 0.0) != (b >= 0.0) {
+                left.push([0, 1, 2].map(|k| from[k] + (to[k] - from[k]) * a / (a - b)));
+            }
+            if b >= 0.0 {
+                left.push(to);
+            }
+        }
+        polygon = left;
+    }
+    polygon
+}
+
+/// Vertices of clipped polygons on the screen are within 1/256 pixel of those of a clipper in f64.
+#[test]
+fn vertices_against_f64() {
+    let mut random = Random(20);
+    let (mut worst, mut vertices, mut most, mut unlike) = (0.0_f64, 0, 0, 0);
+    for _ in 0..100_000 {
+        let frame = random_frame(&mut random);
+        let far = match frame.volume {
+            Volume::View { far } => far as f64 * 0.5f64.powi(37),
+            other => panic!("{other:?}"),
+        };
+        let triangle = [0; 3].map(|_| random_vertex(&mut random, &frame));
+        let polygon = clip(&frame, triangle);
+        let expected = reference(&frame, far, triangle.each_ref().map(|v| point(&frame, v)));
+        most = most.max(polygon.vertices().len());
+        // A vertex at a plane, within the rounding of f64, may be inside for one clipper only.
+        if polygon.vertices().len() != expected.len() {
+            unlike += 1;
+            continue;
+        }
+        let pixels = |[x, y, z]: Point| {
+            [
+                f64::from(frame.width) / 2.0 + x / z,
+                f64::from(frame.height) / 2.0 + y / z,
+            ]
+        };
+        let expected: Vec<_> = expected.into_iter().map(pixels).collect();
+        for vertex in polygon.vertices() {
+            let place = snap(&frame, vertex);
+            let distance = |at: &[f64; 2]| {
+                let [x, y] = [place.x, place.y].map(f64::from);
+                (x - 256.0 * at[0]).abs().max((y - 256.0 * at[1]).abs())
+            };
+            let nearest = expected.iter().map(distance).fold(f64::INFINITY, f64::min);
+            worst = worst.max(nearest);
+            vertices += 1;
+        }
+    }
+    println!(
+        "{vertices} vertices, at most {worst:.3}/256 pixel off, polygons of up to {most} vertices, {unlike} unlike"
+    );
+    assert!(vertices > 60_000 && most <= 9 && unlike == 0);
+    assert!(worst <= 1.0, "{worst}");
+}
+
+/// Two triangles at an edge keep the same part of it, with the same vertices at its ends: no pixel on the edge is lost or drawn twice.
+///
+/// `GLINT_PAIRS` is the number of pairs.
+#[test]
+fn neighbours_have_no_cracks() {
+    let pairs = std::env::var("GLINT_PAIRS").map_or(50_000, |text| text.parse().expect("a number"));
+    let mut random = Random(21);
+    let (mut cut, mut cracks) = (0, 0);
+    for round in 0..pairs {
+        let frame = match random_frame(&mut random) {
+            frame if round % 2 == 0 => frame,
+            frame => frame.with_clip(Clip::Guard).unwrap(),
+        };
+        let [a, b, c, d] = [0; 4].map(|_| random_vertex(&mut random, &frame));
+        let edge = clip(&frame, [a, b, b]);
+        let (left, right) = (clip(&frame, [a, b, c]), clip(&frame, [b, a, d]));
+        let ends = edge.vertices();
+        let distinct: Vec<_> = (0..ends.len())
+            .filter(|&i| !ends[..i].contains(&ends[i]))
+            .map(|i| ends[i])
+            .collect();
+        let &[p, q] = distinct.as_slice() else {
+            // At most a point of the edge is inside.
+            assert!(distinct.len() < 2);
+            continue;
+        };
+        cut += u32::from([p, q].iter().any(|end| *end != a && *end != b));
+        let has = |vertices: &[CameraVertex], p: CameraVertex, q: CameraVertex| {
+            (0..vertices.len()).any(|i| vertices[i] == p && vertices[(i + 1) % vertices.len()] == q)
+        };
+        let forward = |vertices: &[CameraVertex]| has(vertices, p, q);
+        let backward = |vertices: &[CameraVertex]| has(vertices, q, p);
+        let (left, right) = (left.vertices(), right.vertices());
+        let fits = forward(left) && backward(right) || backward(left) && forward(right);
+        cracks += u32::from(!fits);
+    }
+    println!("{pairs} pairs, {cut} with a cut edge, {cracks} cracks");
+    assert!(cracks == 0 && cut > pairs / 10);
+}
+
+/// A camera at the origin that looks along y, with square view volume sides at ±0.9 at distance 1.
+fn level_frame() -> MeshSetup {
+    let camera = Camera {
+        eye: [0.0; 3],
+        u: [1.0, 0.0, 0.0],
+        v: [0.0, 0.0, -1.0],
+        n: [0.0, 1.0, 0.0],
+        half_width: 0.9,
+        near: 0.1,
+    };
+    let frame = MeshSetup::new(&camera.rounded(), 320, 180, RADIUS).unwrap();
+    frame.with_clip(view_of(1.5)).unwrap()
+}
+
+/// A triangle wholly outside one plane leaves nothing, for each of the six planes.
+#[test]
+fn nothing_is_left_outside_a_plane() {
+    let frame = level_frame();
+    let at = |[x, y, z]: [f64; 3]| transform(&frame, [x, y, z].map(|c| (c * 16384.0) as i16));
+    let triangle = |offset: [f64; 3]| {
+        [[0.0, 0.0, 0.0], [0.2, 0.1, 0.0], [0.0, 0.1, 0.2]]
+            .map(|p: [f64; 3]| at([0, 1, 2].map(|i| p[i] + offset[i])))
+    };
+    assert_eq!(clip(&frame, triangle([0.0, 0.7, 0.0])).vertices().len(), 3);
+    for (plane, offset) in [
+        (Plane::Near, [0.0, -0.15, 0.0]),
+        (Plane::Far, [0.0, 1.6, 0.0]),
+        (Plane::Left, [-1.2, 0.7, 0.0]),
+        (Plane::Right, [1.0, 0.7, 0.0]),
+        (Plane::Top, [0.0, 0.7, 0.8]),
+        (Plane::Bottom, [0.0, 0.7, -0.9]),
+    ] {
+        let vertices = triangle(offset);
+        assert!(vertices.iter().all(|v| plane.distance(&frame, v) < 0));
+        assert!(clip(&frame, vertices).vertices().is_empty(), "{plane:?}");
+    }
+}
+
+/// A vertex with w = 0, in the plane of the eye or at the eye itself, is nearer than the near plane and is cut off.
+#[test]
+fn vertices_at_the_eye_are_cut_off() {
+    let frame = level_frame();
+    let inside = [[0, 8192, 0], [2000, 9000, 0]].map(|p| transform(&frame, p));
+    for eye in [[0, 0, 0], [16384, 0, -300], [-1, 0, 32767]] {
+        let vertex = transform(&frame, eye);
+        assert_eq!(vertex.z, 0);
+        let polygon = clip(&frame, [inside[0], vertex, inside[1]]);
+        let vertices = polygon.vertices();
+        assert!(vertices.len() >= 3 && !vertices.contains(&vertex));
+        assert!(vertices.iter().all(|v| v.z >= frame.near));
+    }
+}
+
+/// A far plane must be beyond the near plane, and may be 10,000 times as far away.
+#[test]
+fn far_planes() {
+    let camera = Camera::looking([0.0, -2.0, 0.0], [0.0; 3], 0.9, 0.01).rounded();
+    let frame = MeshSetup::new(&camera, 320, 180, RADIUS).unwrap();
+    for far in [0.0, 0.005, 0.01] {
+        let far = U8_28::from_num(far);
+        let refused = frame.with_clip(Clip::View { far });
+        assert_eq!(refused, Err(RenderError::Far(far)));
+    }
+    let text = RenderError::Far(U8_28::from_num(0.005)).to_string();
+    assert_eq!(text, "far 0.005: expected a plane beyond the near plane");
+    let deep = frame.with_clip(view_of(100.0)).unwrap();
+    // The mesh reaches the near plane, so its code at the far plane is a 10,000th of the largest one.
+    let scale = f64::from(deep.depth.mantissa) * 2f64.powi(deep.depth.exponent);
+    assert!((scale / 100.0 - 26.2).abs() < 0.1, "{}", scale / 100.0);
+}
+
+fn picture_of(model: &Model, view: &View, clip: Clip) -> Picture {
+    let bytes = model.encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mut picture = Picture::blank(SIZES[0]);
+    let mut scratch = vec![Projected::Behind; mesh.largest_chunk()];
+    let options = Options {
+        cull: false,
+        ..Options::default()
+    };
+    let frame = MeshSetup::new(view, picture.width, picture.height, mesh.radius()).unwrap();
+    let frame = frame.with_clip(clip).unwrap();
+    let stats = trace_frame(
+        &mesh,
+        frame,
+        &mut picture.target(),
+        &mut scratch,
+        &options,
+        |_| {},
+    );
+    picture.stats = stats.unwrap();
+    picture
+}
+
+/// The six planes and the guard band give the same picture, apart from pixels at edges that the picture's sides cut.
+#[test]
+fn both_clips_draw_the_same_picture() {
+    let mut random = Random(22);
+    let (mut differing, mut pixels, mut clipped) = (0, 0, 0);
+    for _ in 0..40 {
+        let view = Camera::inside(&mut random).rounded();
+        let model = Model::random(&mut random, 20, 32768);
+        let guard = Picture::of(&model, &view, SIZES[0], false);
+        let volume = picture_of(&model, &view, view_of(100.0));
+        differing += (0..guard.depth.len())
+            .filter(|&i| (guard.depth[i] == 0) != (volume.depth[i] == 0))
+            .count();
+        pixels += guard.depth.len();
+        clipped += volume.stats.clipped;
+    }
+    println!("{differing} of {pixels} pixels differ in coverage, {clipped} triangles clipped");
+    assert!(clipped > 300 && differing < pixels / 10_000, "{differing}");
+}

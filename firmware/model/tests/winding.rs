@@ -1,0 +1,107 @@
+//! The winding of triangles by their place on the screen.
+
+use glint_core::colour::{Shading, Winding};
+use glint_core::mesh::{IndexedTriangle, Mesh, Rgb565, Vertex, encode};
+use glint_core::picture::Size;
+use glint_model::triangle::setup::Oriented;
+use glint_model::{Frame, FrameBuffer, MeshSubject, Projected, ScreenVertex, Subject};
+use glint_vectors::{Camera, Random};
+
+/// The orders of three vertices.
+const ORDERS: [[usize; 3]; 6] = [
+    [0, 1, 2],
+    [1, 2, 0],
+    [2, 0, 1],
+    [0, 2, 1],
+    [2, 1, 0],
+    [1, 0, 2],
+];
+
+#[test]
+fn the_upper_left_vertex_is_first_and_the_others_follow_clockwise() {
+    let mut random = Random(1);
+    for _ in 0..20_000 {
+        // Small numbers, so that vertices are often equally high.
+        let vertices = [0; 3].map(|_| ScreenVertex {
+            x: random.integer(-4, 4) as i32,
+            y: random.integer(-4, 4) as i32,
+            w: 0,
+        });
+        let [a, b, c] = Oriented::screen_order(&vertices).map(|i| vertices[i]);
+        let (ab, ac) = ((b.x - a.x, b.y - a.y), (c.x - a.x, c.y - a.y));
+        assert!(ab.0 * ac.1 - ac.0 * ab.1 >= 0, "{vertices:?}");
+        for other in [b, c] {
+            assert!((a.y, a.x) <= (other.y, other.x), "{vertices:?}");
+        }
+    }
+}
+
+fn drawn(frame: &Frame) -> (Vec<u16>, Vec<u32>) {
+    let [width, height] = frame.size.pixels();
+    let (mut colour, mut depth) = (
+        vec![0; frame.size.pixel_count()],
+        vec![0; frame.size.pixel_count()],
+    );
+    let mut buffer = FrameBuffer {
+        width,
+        height,
+        colour: &mut colour,
+        depth: &mut depth,
+    };
+    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+    let constants = frame.constants().unwrap();
+    frame
+        .draw(&constants, &mut buffer, &mut scratch, &mut || {})
+        .unwrap();
+    (colour, depth)
+}
+
+/// The picture does not depend on the order of the vertices in the mesh, nor on the side that a normal points to.
+#[test]
+fn the_order_in_the_mesh_does_not_matter() {
+    let mut random = Random(2);
+    let mut covered = 0;
+    for round in 0..30 {
+        let vertices: Vec<_> = (0..30)
+            .map(|_| Vertex {
+                position: [0; 3].map(|_| random.integer(-30_000, 30_000) as i16),
+                normal: random.direction().map(|x| (x * 16_384.0) as i16),
+                colour: Rgb565(random.bits() as u16),
+            })
+            .collect();
+        let triangles: Vec<_> = (0..20)
+            .map(|_| IndexedTriangle {
+                indices: [0; 3].map(|_| random.integer(0, 29) as u32),
+                colour: Rgb565(random.bits() as u16),
+                normal: random.direction().map(|x| (x * 16_384.0) as i16),
+            })
+            .collect();
+        let view = Camera::inside(&mut random).rounded();
+        let picture = |order: [usize; 3], sign: i16| {
+            let turned: Vec<_> = triangles
+                .iter()
+                .map(|t| IndexedTriangle {
+                    indices: order.map(|i| t.indices[i]),
+                    normal: t.normal.map(|x| x * sign),
+                    ..*t
+                })
+                .collect();
+            let bytes = encode(&vertices, &turned).unwrap();
+            let subject = MeshSubject {
+                shading: [Shading::Flat, Shading::Smooth][round % 2],
+                winding: Winding::Screen,
+                ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
+            };
+            drawn(&Frame::new(Subject::Mesh(subject), view, Size::W320))
+        };
+        let first = picture(ORDERS[0], 1);
+        covered += first.1.iter().filter(|&&code| code > 0).count();
+        for order in ORDERS {
+            assert!(
+                picture(order, 1) == first && picture(order, -1) == first,
+                "{order:?}"
+            );
+        }
+    }
+    assert!(covered > 100_000, "{covered}");
+}
