@@ -117,7 +117,7 @@ class Netlist:
 
 
 def placement(netlist, luts, carries):
-    """Control sets, slices and fan-outs of a netlist with so many LUTs and CARRY4, as a dictionary."""
+    """Control sets, slices and fan-outs of a netlist with the given numbers of LUTs and CARRY4, as a dictionary."""
     sets = netlist.control_sets()
     by_sets = sum(ceil(flip_flops / SLICE_FLIP_FLOPS) for flip_flops in sets.values())
     return {"control_sets": len(sets), "small_set_ff": sum(number for number in sets.values() if number < SLICE_FLIP_FLOPS),
