@@ -4,6 +4,10 @@ from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
 from litex.build.openfpgaloader import OpenFPGALoader
 from litex.build.xilinx import Xilinx7SeriesPlatform
 
+CONTROL_PIN_LOADS = 8
+"""Least number of flip-flops that an enable or a synchronous reset controls by their pins. For fewer, the synthesis puts it into
+the LUTs of their inputs, because each combination of clock, enable and reset takes slices of its own, of eight flip-flops."""
+
 # Bank 35 has the buttons and switches, and a differential pair that the board uses as LVDS_25, so the supply
 # of the bank is 2.5 V.
 _BANK_35 = IOStandard("LVCMOS25")
@@ -80,6 +84,12 @@ class Platform(Xilinx7SeriesPlatform):
         ):
             self.add_platform_command(f"set_property {setting} [current_design]")
         self.add_platform_command("set_property INTERNAL_VREF 0.675 [get_iobanks 34]")
+
+    def build(self, *arguments, **options):
+        # The threshold is the largest number of loads that leave the pins. LiteX has no parameter for it, and writes the
+        # directive into the command of the synthesis as it is.
+        directive = f"default -control_set_opt_threshold {CONTROL_PIN_LOADS - 1}"
+        return Xilinx7SeriesPlatform.build(self, *arguments, vivado_synth_directive=directive, **options)
 
     def create_programmer(self):
         """Returns openFPGALoader for the Arty S7, which has the same FPGA and USB bridge. The loader has no entry for this board."""

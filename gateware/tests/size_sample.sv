@@ -9,14 +9,15 @@ module size_sample (
     input  logic [9:0]  address,
     input  logic        bit_in,
     output logic        bit_out,
+    output logic [3:0]  kept,
     output logic [31:0] sum,
     output logic [31:0] product,
     output logic [31:0] large_out,
     output logic [15:0] small_out
 );
     // A sum of 32 LUTs and 8 CARRY4; a LUT memory that stores 6 bits of it (a RAM32M of 4 LUTs); a sum of these 6 bits and 32
-    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops. The memory is between the two sums, so the longest path is the read
-    // of the memory, a LUT and 8 CARRY4.
+    // other bits, 6 LUTs and 8 CARRY4; and 101 flip-flops without an enable. The memory is between the two sums, so the longest
+    // path is the read of the memory, a LUT and 8 CARRY4.
     (* ram_style = "distributed" *) logic [5:0] few [32];
     logic [31:0] a_held, b_held, first;
     logic [4:0] read_address_held;
@@ -33,6 +34,9 @@ module size_sample (
     logic [7:0] delay;
     always_ff @(posedge clk) delay <= {delay[6:0], bit_in};
     assign bit_out = delay[7];
+
+    // 4 flip-flops. Their enable has too few loads for a control set of its own, and becomes 4 LUTs.
+    always_ff @(posedge clk) if (bit_in) kept <= a[3:0];
 
     // A DSP48 with its registers.
     logic signed [15:0] left, right;

@@ -16,8 +16,10 @@ const NOTES: [&str; 11] = [
      carry chains, wide multiplexers, reads of LUT memories. A multiplier or block RAM ends a path even without its \
      registers. Clock domains and false paths are ignored. The path is only an indication of timing.",
     "Control sets: the flip-flops of a slice of the 7 series share clock, enable, and set or reset. A control set is one \
-     combination of these nets; a pin at a constant has none. Flip-flops in small sets are in sets of fewer than eight, and \
-     leave part of a slice empty.",
+     combination of these nets; a pin at a constant has none. An enable or a synchronous reset of fewer than eight flip-flops \
+     becomes logic instead, and is counted there, as in the Urbana's bitstream (`CONTROL_PIN_LOADS` in \
+     `gateware/glint_soc/urbana_platform.py`). Flip-flops in small sets are in sets of fewer than eight, and leave part of a \
+     slice empty.",
     "Slices: a lower bound, since nothing is placed. A slice has four LUTs, eight flip-flops and a CARRY4. The bound is the \
      largest of three: a quarter of the LUTs; the slices of each control set, an eighth of its flip-flops rounded up, summed; \
      the CARRY4. A placed design takes more: LUTs and flip-flops rarely all find room beside each other, and LUT memories and \
