@@ -47,30 +47,25 @@ impl MeshSetup {
         if !view.is_within(MAX_EYE) {
             return Err(RenderError::Eye(view.eye()));
         }
-        let (scale_shift, scale) = Scale::new(width, view);
+        let scale = Scale::new(width, view);
         // The vertex stage shifts X and Y right by at least 6 bits.
-        let least = U4_28::from_bits(1 << (31 - scale_shift));
+        let least = U4_28::from_bits(1 << (31 - scale.shift));
         if view.near() < least {
             let near = view.near();
             return Err(RenderError::Near { near, least });
         }
-        let (u, v) = (scale.row(view.u()), scale.row(view.v()));
+        let [u, v] = [view.u(), view.v()].map(|axis| axis.map(|r| scale.scaled(r)));
         let n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
         // than 2^24.5: |C·row| < 2^60.
         let eye = view.eye().map(Q32_32::to_bits);
-        let translation = [u, v, n].map(|row| {
-            let product: i64 = core::iter::zip(eye, row)
-                .map(|(c, r)| c * i64::from(r))
-                .sum();
-            nearest(-product, 18)
-        });
+        let translation = [u, v, n].map(|row| nearest(-dot(eye, row), 18));
         let near = i64::from(view.near().to_bits()) << 9;
         let depth = DepthScale::new(translation[2], near, radius);
         Ok(Self {
             width,
             height,
-            scale_shift,
+            scale_shift: scale.shift,
             u,
             v,
             n,
@@ -103,48 +98,57 @@ impl MeshSetup {
 /// The scale s·2^f (docs/formats.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
 /// picture and h the half width of the view with 28 fraction bits.
 struct Scale {
+    shift: u32,
     numerator: i64,
     half_width: i64,
+    /// ceil(s·2^(f + 6)), below 2^30.
+    ceil: i64,
 }
 
 impl Scale {
-    /// Returns the largest f up to 18 with ceil(s·2^f)·(1 + 2^−12) < 2^24, and the scale s·2^f.
+    /// Finds the largest f up to 18 with ceil(s·2^f)·(1 + 2^−12) < 2^24.
     ///
     /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
-    fn new(width: u32, view: &View) -> (u32, Self) {
+    fn new(width: u32, view: &View) -> Self {
+        /// The largest integer whose product with 1 + 2^−12 is below 2^24.
+        const LARGEST: i64 = ((1 << 36) - 1) / 4097;
         let half_width = view.half_width().to_bits() as i64;
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
-        // ceil(s·2^24). Rounding up its low bits gives ceil(s·2^f) for every smaller f.
-        let ceil = (numerator(24) + half_width - 1) / half_width;
-        let fits = |cut: u32| ((ceil + (1 << cut) - 1) >> cut) * 4097 < 1 << 36;
-        let cut = (6..17).find(|&cut| fits(cut)).unwrap_or(17);
-        let shift = 24 - cut;
-        (
-            shift,
-            Self {
-                numerator: numerator(shift),
-                half_width,
-            },
-        )
+        // ceil(s·2^24), of at least 25 bits. Without its last bits, rounded up, it is ceil(s·2^f) for a smaller f. Its leading
+        // 24 bits are then at most `LARGEST`, or else its leading 23 bits are.
+        let ceil: i64 = (numerator(24) + half_width - 1) / half_width;
+        let cut = (ceil.ilog2() - 23).max(6);
+        let cut = cut + u32::from(ceil > LARGEST << cut);
+        let spare = cut - 6;
+        Self {
+            shift: 24 - cut,
+            numerator: numerator(24 - cut),
+            half_width,
+            ceil: (ceil + (1 << spare) - 1) >> spare,
+        }
     }
 
-    /// Scales each component r of an axis of the view: nearest(r·s·2^f). The dividend is below 2^25·2^10·2^23.
-    fn row(&self, row: [Q2_23; 3]) -> [i32; 3] {
-        row.map(|r| {
-            let dividend = i64::from(r.to_bits()) * (self.numerator >> 23);
-            floor(2 * dividend + self.half_width, 2 * self.half_width) as i32
-        })
+    /// Scales a component r of an axis of the view: nearest(r·s·2^f), the quotient of 2·r·(numerator/2^23) + h and 2h, rounded
+    /// down.
+    ///
+    /// The soft core divides 64-bit numbers in software, in 1,200 clocks, so the only division is that of `ceil`. The
+    /// product r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.01: 2^−5 of the quotient's last place.
+    /// Rounded down, it is therefore the quotient or 1 less, and the remainder tells which.
+    // Not inlined: the soft core fetches code that runs once a frame from main memory, so small code is fast code.
+    #[inline(never)]
+    fn scaled(&self, r: Q2_23) -> i32 {
+        let divisor = 2 * self.half_width;
+        let r = i64::from(r.to_bits());
+        let quotient = (r * self.ceil) >> (23 + 6);
+        // The dividend is below 2^26·2^10·2^23.
+        let dividend = 2 * r * (self.numerator >> 23) + self.half_width;
+        let is_less = dividend - quotient * divisor >= divisor;
+        (quotient + i64::from(is_less)) as i32
     }
 }
 
-/// Divides by a divisor above 0 and rounds down. The code has only one unsigned division, because a 32-bit processor
-/// divides 64-bit numbers slowly, in software.
-const fn floor(dividend: i64, divisor: i64) -> i64 {
-    let divisor = divisor.unsigned_abs();
-    if dividend < 0 {
-        // floor(x/d) = −1 − floor((−1 − x)/d)
-        !((!dividend as u64 / divisor) as i64)
-    } else {
-        (dividend as u64 / divisor) as i64
-    }
+/// The scalar product. Not inlined, as [`Scale::scaled`].
+#[inline(never)]
+fn dot(a: [i64; 3], b: [i32; 3]) -> i64 {
+    core::iter::zip(a, b).map(|(a, b)| a * i64::from(b)).sum()
 }
