@@ -76,14 +76,15 @@ impl MainLoop {
         // SAFETY: this function does not return.
         unsafe { sensor::start(stream) };
         loop {
+            // Comes first after an interrupt, because the gateware waits between the passes of a frame.
+            self.draw();
+            self.poll_job();
             self.beat();
             self.poll_buttons();
             self.machine.terminal.listen();
             sensor::deliver(&mut self.machine.imu);
             self.answer();
             self.steer();
-            self.draw();
-            self.poll_job();
             interrupts::sleep_unless(|| self.is_busy());
         }
     }
