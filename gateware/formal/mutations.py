@@ -30,6 +30,10 @@ def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
 
+def _read(old, new, fails):
+    return Mutation("read_port.sv", old, new, fails)
+
+
 def _write(old, new, fails):
     return Mutation("write_port.sv", old, new, fails)
 
@@ -139,6 +143,20 @@ MUTATIONS = {
         _ring("steps_1 + 8'd1 >= tuning.cap", "steps_1 >= tuning.cap", "counts_steps"),
         Mutation("fifo.sv", "stored || out_valid && !out_ready;", "stored;", "ends.valid_stays"),
         Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "ends.payload_stable"),
+    ],
+    "read_port": [
+        _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "commands.valid_stays"),
+        _skid("if (!out_valid || out_ready)", "if (!out_valid || out_ready || in_valid)", "commands.payload_stable"),
+        _read(".in_data(ask_addr[turn *", ".in_data(ask_addr[chosen *", "first.commands_in_order"),
+        _read("(commands && moves) owners[asked[OWNER_BITS-1:0]] <= turn;", "(commands && moves) owners[asked[OWNER_BITS-1:0]] <= chosen;",
+              "first.words_in_order"),
+        # Fault: a word that comes while `drop` falls is stored.
+        _read(" && !drop && !rst;", " && !rst;", "first.words_in_order"),
+        _read("'(rdata_valid);", "'(rdata_valid && !drop);", "idle_is_answered"),
+        _read(".rst       (rst || drop)", ".rst       (rst)", "first.none_after_drop"),
+        _read("room[0] && !has_turn", "room[0]", "second.places_suffice"),
+        _fifo("out_valid <= stored ||", "out_valid <= stored && in_valid ||", "first.shown_in_time"),
+        _read("given <= any;", "given <= any && cmd_valid;", "first.taken_in_time"),
     ],
     "write_port": [
         _write("(cmd_ready && bursting)", "(cmd_ready)", "commands_in_order"),

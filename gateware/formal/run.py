@@ -64,6 +64,7 @@ PROOFS = [
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
     Proof("walker", "walker_proof", 16, ("any_stepper",)),
     Proof("lanes", "lanes_proof", 16),
+    Proof("read_port", "read_port_proof", 16),
     Proof("write_port", "write_port_proof", 16),
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
