@@ -129,9 +129,10 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     for (found, expected) in view[9..12].iter().zip([-sine, cosine, 0.0]) {
         assert!((found - expected).abs() < ANGLE.to_radians(), "{view:?}");
     }
-    // While the sensor is unplugged, the attitude is held.
+    // While the sensor is unplugged, the attitude is held. The first failure depends on where the transfer was; the search
+    // for the sensor, 30 ms later, finds no device.
     let sensor = board.unplug().expect("the sensor");
-    board.run(15 * MILLISECOND);
+    board.run(40 * MILLISECOND);
     let status = command(&mut board, "imu");
     assert_eq!(
         line(&status, "failure"),
