@@ -59,7 +59,7 @@ pub enum RenderError {
     },
     /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.
     Eye([Q32_32; 3]),
-    /// The near plane of a frame with a mesh is nearer than the half width and the width of the picture allow.
+    /// The near plane of a frame with a mesh is nearer than the half width, the width of the picture and the size of an object allow.
     Near {
         /// Distance of the near plane.
         near: U4_28,
@@ -114,7 +114,7 @@ impl fmt::Display for RenderError {
             }
             Self::Near { near, least } => write!(
                 f,
-                "near {near}: expected at least {least} for a mesh in a picture of this width and field of view"
+                "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"
             ),
             Self::Far(far) => write!(f, "far {far}: expected a plane beyond the near plane"),
             Self::HalfWidth(half_width) => write!(

@@ -18,7 +18,10 @@ use crate::mesh_in_field;
 use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
-use crate::triangle::{Clip, MeshSetup, Options, Projected, Stats, trace_frame};
+use crate::triangle::{
+    Clip, DrawnTriangle, MeshSetup, Options, Part, Placement, Projected, Stats, draw_parts,
+    trace_frame,
+};
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;
@@ -47,6 +50,19 @@ pub enum Subject<'a> {
     Field(FieldSubject<'a>),
     /// A mesh in a distance field.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
+    /// Several meshes, each with a place of its own. Of equal depths the later object wins.
+    Objects(&'a [Object<'a>]),
+}
+
+/// A mesh with a place in the world.
+#[derive(Clone, Copy, Debug)]
+pub struct Object<'a> {
+    /// The mesh and its options.
+    pub subject: MeshSubject<'a>,
+    /// The place: a model matrix.
+    pub placement: Placement,
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
 }
 
 /// A mesh and its options.
@@ -78,6 +94,15 @@ pub struct FieldSubject<'a> {
 }
 
 impl<'a> MeshSubject<'a> {
+    fn options(&self) -> Options {
+        Options {
+            cull: self.cull,
+            shading: self.shading,
+            winding: self.winding,
+            ..Options::default()
+        }
+    }
+
     /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
     pub const fn new(mesh: Mesh<'a>) -> Self {
         Self {
@@ -100,7 +125,15 @@ impl<'a> Subject<'a> {
     pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
         match self {
             Self::Mesh(mesh) | Self::MeshInField(mesh, _) => Some(mesh),
-            Self::Field(_) => None,
+            Self::Field(_) | Self::Objects(_) => None,
+        }
+    }
+
+    /// The objects, if the subject has several meshes.
+    pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
+        match self {
+            Self::Objects(objects) => Some(objects),
+            _ => None,
         }
     }
 
@@ -108,7 +141,7 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) => Some(field),
-            Self::Mesh(_) => None,
+            Self::Mesh(_) | Self::Objects(_) => None,
         }
     }
 }
@@ -186,6 +219,15 @@ impl FrameConstants {
                 self.mesh = Some(mesh.with_clip(clip)?);
                 self.set_field(field, &options);
             }
+            Subject::Objects(objects) => {
+                let mut camera = MeshSetup::new(view, width, height, 0)?;
+                let depths = objects.iter().map(|object| {
+                    let radius = object.subject.mesh.radius();
+                    object.placement.nearest(&camera, radius)
+                });
+                camera.set_nearest(depths.min());
+                self.mesh = Some(camera);
+            }
         }
         Ok(())
     }
@@ -228,8 +270,14 @@ impl<'a> Frame<'a> {
 
     /// Number of vertices for which the scratch memory of [`draw`](Self::draw) needs room.
     pub fn scratch_vertices(&self) -> usize {
-        let mesh = self.subject.mesh_part();
-        mesh.map_or(0, |subject| subject.mesh.largest_chunk())
+        let mesh = self.subject.mesh_part().map(|subject| &subject.mesh);
+        let objects = self.subject.objects().unwrap_or_default();
+        let meshes = objects.iter().map(|object| &object.subject.mesh);
+        meshes
+            .chain(mesh)
+            .map(Mesh::largest_chunk)
+            .max()
+            .unwrap_or(0)
     }
 
     /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. Calls
@@ -245,13 +293,15 @@ impl<'a> Frame<'a> {
         progress: &mut dyn FnMut(),
     ) -> Result<FrameStats, RenderError> {
         let mut stats = FrameStats::default();
+        if let (Some(objects), Some(camera)) = (self.subject.objects(), constants.mesh()) {
+            stats.mesh = Some(self.draw_objects(objects, camera, buffer, scratch, progress)?);
+            return Ok(stats);
+        }
         match (self.subject.mesh_part(), constants.mesh()) {
             (Some(subject), Some(setup)) => {
                 let options = Options {
-                    cull: subject.cull,
                     clear: self.clear.0,
-                    shading: subject.shading,
-                    winding: subject.winding,
+                    ..subject.options()
                 };
                 let mesh = &subject.mesh;
                 let drawn = trace_frame(mesh, *setup, buffer, scratch, &options, |triangle| {
@@ -272,5 +322,38 @@ impl<'a> Frame<'a> {
             stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
         }
         Ok(stats)
+    }
+
+    fn draw_objects(
+        &self,
+        objects: &[Object],
+        camera: &MeshSetup,
+        buffer: &mut FrameBuffer,
+        scratch: &mut [Projected],
+        progress: &mut dyn FnMut(),
+    ) -> Result<Stats, RenderError> {
+        let mut part = |number: usize| {
+            let Object {
+                subject,
+                placement,
+                colour,
+            } = &objects[number];
+            let camera = camera.with_clip(subject.clip)?;
+            Ok(Part {
+                mesh: subject.mesh,
+                frame: placement.setup(&self.view, &camera, subject.mesh.radius())?,
+                options: Options {
+                    colour: *colour,
+                    ..subject.options()
+                },
+            })
+        };
+        let mut show = |triangle: &DrawnTriangle| {
+            if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
+                progress();
+            }
+        };
+        let clear = self.clear.0;
+        draw_parts(objects.len(), &mut part, clear, buffer, scratch, &mut show)
     }
 }

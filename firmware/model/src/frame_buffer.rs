@@ -37,6 +37,16 @@ impl FrameBuffer<'_> {
         Ok(())
     }
 
+    /// Fills the picture with the colour `clear` (RGB565) and the depth codes with 0.
+    pub(crate) fn clear(&mut self, clear: u16) {
+        // A fill by the constant 0 becomes a `memset` of whole words.
+        match clear {
+            0 => self.colour.fill(0),
+            clear => self.colour.fill(clear),
+        }
+        self.depth.fill(0);
+    }
+
     /// Checks that the size of this buffer equals the size (`width`, `height`) of the frame constants.
     pub(crate) fn check_size(&self, (width, height): (u32, u32)) -> Result<(), RenderError> {
         if (self.width, self.height) == (width, height) {

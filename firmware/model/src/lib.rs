@@ -23,11 +23,11 @@ pub mod triangle;
 pub use depth::DepthScale;
 pub use error::{Buffer, MAX_EYE, RenderError, SIZES};
 pub use frame::{
-    FieldConstants, FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Subject,
+    FieldConstants, FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Object, Subject,
 };
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use triangle::{
-    Clip, DrawnTriangle, MeshSetup, Options, Projected, ScreenVertex, Stats, clip_exceptions,
-    render, trace, trace_frame,
+    Clip, DrawnTriangle, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,
+    clip_exceptions, render, trace, trace_frame,
 };

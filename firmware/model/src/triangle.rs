@@ -9,6 +9,7 @@ pub mod descriptor;
 mod exceptions;
 mod facing;
 mod mesh_setup;
+mod object;
 mod primitive;
 pub mod quotient;
 pub mod raster;
@@ -23,7 +24,8 @@ pub mod volume;
 
 pub use exceptions::clip_exceptions;
 pub use mesh_setup::MeshSetup;
+pub use object::Placement;
 pub use primitive::Options;
-pub use render::{DrawnTriangle, Stats, render, trace, trace_frame};
+pub use render::{DrawnTriangle, Part, Stats, draw_parts, render, trace, trace_frame};
 pub use vertex::{Projected, ScreenVertex};
 pub use volume::Clip;

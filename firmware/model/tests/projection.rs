@@ -162,7 +162,7 @@ fn fields_of_view_against_f64() {
     let refused = MeshSetup::new(&camera(0.06), 1280, 720, RADII[0]).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "near 0.06: expected at least 0.0625 for a mesh in a picture of this width and field of view"
+        "near 0.06: expected at least 0.0625 for a mesh of this size in a picture of this width and field of view"
     );
     assert!(MeshSetup::new(&camera(0.0625), 1280, 720, RADII[0]).is_ok());
     assert!(MeshSetup::new(&camera(0.016), 320, 180, RADII[0]).is_ok());

@@ -13,6 +13,8 @@ pub enum Fallback {
     Triangle(EngineError),
     /// The raymarcher of this gateware lacks a feature.
     Field(Missing),
+    /// The triangle engine draws one mesh a frame.
+    Objects,
     /// The triangle engine clips to the guard band only.
     Clip,
     /// The triangle engine knows the winding of the mesh only.
@@ -47,6 +49,7 @@ impl fmt::Display for Fallback {
         match self {
             Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
+            Self::Objects => f.write_str("triangle engine: one mesh a frame"),
             Self::Clip => f.write_str("triangle engine: no clipping to the view volume"),
             Self::Winding => f.write_str("triangle engine: no winding by the screen"),
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),

@@ -241,6 +241,9 @@ impl GatewareRenderer {
                 return Err(Fallback::Winding);
             }
         }
+        if frame.subject.objects().is_some() {
+            return Err(Fallback::Objects);
+        }
         Ok(self.constants[place].update(frame)?)
     }
 

@@ -17,6 +17,15 @@ pub enum Facing {
 }
 
 impl Facing {
+    /// The other side.
+    #[must_use]
+    pub const fn opposite(self) -> Self {
+        match self {
+            Self::Front => Self::Back,
+            Self::Back => Self::Front,
+        }
+    }
+
     /// The side of a surface with the normal `normal` that a camera with the forward direction `n` sees.
     pub fn of(normal: [i16; 3], n: &[i32; 3]) -> Self {
         if along(normal, n) <= 0 {

@@ -1,7 +1,7 @@
 //! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
 use glint_core::colour::{Shading, Winding};
-use glint_core::mesh::{Chunk, Rgb565, Triangle};
+use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 
 use crate::triangle::clip::{clip, off_picture};
 use crate::triangle::facing::Facing;
@@ -21,6 +21,8 @@ pub struct Options {
     pub shading: Shading,
     /// The rule that tells which side of a triangle is seen.
     pub winding: Winding,
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
 }
 
 impl Default for Options {
@@ -31,6 +33,7 @@ impl Default for Options {
             clear: 0,
             shading: Shading::Flat,
             winding: Winding::Mesh,
+            colour: None,
         }
     }
 }
@@ -57,20 +60,24 @@ impl Placed {
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
         if options.winding == Winding::Screen {
-            return Self::by_screen(frame, triangle, vertices, light);
+            return Self::by_screen(frame, options, triangle, vertices, light);
         }
-        let oriented = Oriented::new(vertices.map(|v| *v))?;
+        let mut oriented = Oriented::new(vertices.map(|v| *v))?;
+        let order = oriented.facing;
+        if frame.mirrors {
+            oriented.facing = oriented.facing.opposite();
+        }
         let facing = oriented.facing;
         if options.cull && facing == Facing::Back {
             return None;
         }
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
-        let intensity = intensity(triangle.normal, &frame.n, facing);
+        let intensity = intensity(frame.turned(triangle.normal), &frame.light, facing);
         Some(Self {
             oriented,
             bounds,
-            colour: lit(triangle.colour, intensity),
-            lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
+            colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
+            lit: light.map(|light| order.order(light.map(|light| light.to(facing)))),
         })
     }
 
@@ -80,23 +87,25 @@ impl Placed {
     #[inline(never)]
     fn by_screen(
         frame: &MeshSetup,
+        options: &Options,
         triangle: &Triangle,
         vertices: [&ScreenVertex; 3],
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
         let vertices = vertices.map(|v| *v);
         let order = Oriented::screen_order(&vertices);
-        let facing = Facing::of(triangle.normal, &frame.n);
+        let normal = frame.turned(triangle.normal);
+        let facing = Facing::of(normal, &frame.light);
         let oriented = Oriented {
             facing,
             ..Oriented::new(order.map(|i| vertices[i]))?
         };
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
-        let intensity = intensity(triangle.normal, &frame.n, facing);
+        let intensity = intensity(normal, &frame.light, facing);
         Some(Self {
             oriented,
             bounds,
-            colour: lit(triangle.colour, intensity),
+            colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
             lit: light.map(|light| order.map(|i| light[i].visible())),
         })
     }
@@ -114,13 +123,23 @@ impl Placed {
 ///
 /// Not inlined, so that flat triangles do not load this code into the instruction cache.
 #[inline(never)]
-pub fn vertex_light(frame: &MeshSetup, indices: [u16; 3], chunk: &Chunk) -> [Light; 3] {
+pub fn vertex_light(
+    frame: &MeshSetup,
+    options: &Options,
+    indices: [u16; 3],
+    chunk: &Chunk,
+) -> [Light; 3] {
     indices.map(|i| {
         // All indices of a checked mesh are valid.
-        chunk.vertex(usize::from(i)).map_or(Light::default(), |v| {
-            Light::new(v.colour, v.normal, &frame.n)
-        })
+        chunk
+            .vertex(usize::from(i))
+            .map_or(Light::default(), |v| light_of(frame, options, &v))
     })
+}
+
+fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
+    let colour = options.colour.unwrap_or(vertex.colour);
+    Light::new(colour, frame.turned(vertex.normal), &frame.light)
 }
 
 /// A vertex of a clipped triangle.
@@ -164,7 +183,7 @@ pub fn clip_fan(
     let corners = vertices.map(|vertex| CameraVertex {
         light: match options.shading {
             Shading::Flat => Light::default(),
-            Shading::Smooth => Light::new(vertex.colour, vertex.normal, &frame.n),
+            Shading::Smooth => light_of(frame, options, &vertex),
         },
         ..transform(frame, vertex.position)
     });

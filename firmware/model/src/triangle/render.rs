@@ -98,49 +98,105 @@ pub fn trace_frame(
     options: &Options,
     mut show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
-    draw_frame(mesh, frame, target, scratch, options, &mut show)
+    let mut part = |_| {
+        Ok(Part {
+            mesh: *mesh,
+            frame,
+            options: *options,
+        })
+    };
+    draw_parts(1, &mut part, options.clear, target, scratch, &mut show)
 }
 
-/// Does the work of [`trace_frame`] without its type parameter, so that it is compiled once, with the optimisation of
-/// this crate.
+/// A mesh of a frame: its frame constants and options.
+pub struct Part<'a> {
+    /// The mesh.
+    pub mesh: Mesh<'a>,
+    /// The frame constants of the mesh.
+    pub frame: MeshSetup,
+    /// Options of drawing the mesh. `clear` has no effect.
+    pub options: Options,
+}
+
+/// Draws the `count` parts of a frame, that `part` returns by their numbers, over the colour `clear`. `part` is called twice for a part
+/// with triangles to clip.
+///
+/// Unclipped triangles are drawn by part and index, then clipped triangles by part and index, as the gateware does with the lists of
+/// its passes.
+///
+/// Compiled once, with the optimisation of this crate.
+///
+/// # Errors
+/// [`RenderError`]. After an error of `part` the frame is incomplete; after any other the frame buffer is unchanged.
 #[inline(never)]
-fn draw_frame(
-    mesh: &Mesh,
-    frame: MeshSetup,
+pub fn draw_parts<'a>(
+    count: usize,
+    part: &mut dyn FnMut(usize) -> Result<Part<'a>, RenderError>,
+    clear: u16,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
-    options: &Options,
     show: &mut dyn FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
-    target.check_size((frame.width, frame.height))?;
-    let expected = mesh
-        .chunks()
-        .map(|chunk| chunk.vertex_count())
-        .max()
-        .unwrap_or(0);
-    let found = scratch.len();
-    let scratch = scratch
-        .get_mut(..expected)
-        .ok_or(RenderError::Scratch { expected, found })?;
-    // A fill by the constant 0 becomes a `memset` of whole words.
-    match options.clear {
-        0 => target.colour.fill(0),
-        clear => target.colour.fill(clear),
+    let mut stats = Stats::default();
+    // Number of the first part with triangles to clip, of all such parts, and of the part whose vertices are in the scratch memory.
+    let (mut first, mut projected) = (None, 0);
+    for number in 0..count {
+        let Part {
+            mesh,
+            frame,
+            options,
+        } = part(number)?;
+        target.check_size((frame.width, frame.height))?;
+        let (expected, found) = (mesh.largest_chunk(), scratch.len());
+        let scratch = scratch
+            .get_mut(..expected)
+            .ok_or(RenderError::Scratch { expected, found })?;
+        if number == 0 {
+            target.clear(clear);
+        }
+        stats.triangles_in += mesh.triangle_count();
+        let clipped = stats.clipped;
+        let mut renderer = Renderer {
+            frame,
+            options,
+            target,
+            show,
+            stats,
+        };
+        renderer.regular(&mesh, scratch);
+        stats = renderer.stats;
+        if stats.clipped > clipped && first.is_none() {
+            first = Some(number);
+        }
+        projected = number;
     }
-    target.depth.fill(0);
-
-    let mut renderer = Renderer {
-        frame,
-        options: *options,
-        target,
-        show,
-        stats: Stats::default(),
-    };
-    renderer.regular(mesh, scratch);
-    renderer.exceptions(mesh, scratch);
-    let mut stats = renderer.stats;
-    stats.triangles_in = mesh.triangle_count();
+    if count == 0 {
+        target.clear(clear);
+    }
+    let mut left = stats.clipped;
+    for number in first.unwrap_or(count)..count {
+        if left == 0 {
+            break;
+        }
+        let Part {
+            mesh,
+            frame,
+            options,
+        } = part(number)?;
+        let mut renderer = Renderer {
+            frame,
+            options,
+            target,
+            show,
+            stats,
+        };
+        // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
+        let is_projected = number == projected && mesh.chunks().nth(1).is_none();
+        left = renderer.exceptions(&mesh, scratch, is_projected, left);
+        stats = renderer.stats;
+        projected = number;
+    }
     stats.culled = stats.triangles_in - stats.drawn;
     Ok(stats)
 }
@@ -155,6 +211,7 @@ enum Path<'a> {
     Exception,
 }
 
+/// Draws the triangles of one mesh.
 struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options,
@@ -175,9 +232,12 @@ impl Renderer<'_, '_> {
                     Path::Regular(vertices) => {
                         let light = match self.options.shading {
                             Shading::Flat => None,
-                            Shading::Smooth => {
-                                Some(vertex_light(&self.frame, triangle.indices, &chunk))
-                            }
+                            Shading::Smooth => Some(vertex_light(
+                                &self.frame,
+                                &self.options,
+                                triangle.indices,
+                                &chunk,
+                            )),
                         };
                         let drawn = self.draw(index, &triangle, vertices, light.as_ref(), false);
                         self.stats.drawn += u32::from(drawn);
@@ -189,17 +249,18 @@ impl Renderer<'_, '_> {
         }
     }
 
-    /// Draws the triangles that need clipping.
-    fn exceptions(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
-        let mut left = self.stats.clipped;
-        if left == 0 {
-            return;
-        }
-        let several_chunks = mesh.chunks().nth(1).is_some();
+    /// Draws the triangles that need clipping, of which the frame has `left`. With `is_projected` the vertices of the mesh are in the
+    /// scratch memory. Returns the number of those that other meshes have.
+    fn exceptions(
+        &mut self,
+        mesh: &Mesh,
+        scratch: &mut [Projected],
+        is_projected: bool,
+        mut left: u32,
+    ) -> u32 {
         let mut index = 0;
         for chunk in mesh.chunks() {
-            // If the mesh has a single chunk, its projected vertices are still in the scratch memory.
-            if several_chunks {
+            if !is_projected {
                 self.project(&chunk, scratch);
             }
             for triangle in chunk.triangles() {
@@ -208,12 +269,13 @@ impl Renderer<'_, '_> {
                     self.stats.drawn += u32::from(drawn);
                     left -= 1;
                     if left == 0 {
-                        return;
+                        return 0;
                     }
                 }
                 index += 1;
             }
         }
+        left
     }
 
     /// Runs the vertex stage for all vertices of a chunk.

@@ -1,0 +1,353 @@
+//! Several objects in a frame: their model matrices, light, order and limits, compared with f64.
+
+use glint_core::camera::View;
+use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::fixed::{Q8_24, Turns, U8_28};
+use glint_core::matrix::{Axis, Matrix};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::triangle::setup::Facing;
+use glint_model::triangle::shade::intensity;
+use glint_model::triangle::vertex::{project, transform};
+use glint_model::{
+    Clip, Frame, FrameBuffer, FrameStats, MeshSetup, MeshSubject, Object, Placement, Projected,
+    RenderError, SIZES, Subject,
+};
+use glint_vectors::math::{dot, normalised, world};
+use glint_vectors::{Camera, Model, Random};
+
+/// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
+const RADIUS: u32 = 14_190;
+
+fn number(x: f64) -> Q8_24 {
+    Q8_24::from_num(x)
+}
+
+/// Rotations, scales of each axis between `scales`, of any sign, and a translation within `reach` of the origin.
+fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) -> Matrix {
+    loop {
+        let mut factor = || {
+            let size = random.logarithmic(scales[0], scales[1]);
+            number(if random.coin() { -size } else { size })
+        };
+        let mut factors = [0; 3].map(|_| factor());
+        if same {
+            factors = [factors[0]; 3];
+        }
+        let place = random.direction().map(|x| number(x * reach));
+        let [a, b, c, d] = [0; 4].map(|_| Turns(random.bits() as u32));
+        let matrix = Matrix::rotation(Axis::X, a)
+            .then(&Matrix::rotation(Axis::Y, b))
+            .and_then(|matrix| matrix.then(&Matrix::scale(factors)?))
+            .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, c)))
+            .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::X, d)))
+            .and_then(|matrix| matrix.then(&Matrix::translation(place)?));
+        // Matrices with very different scales may be refused as singular.
+        if let Ok(matrix) = matrix {
+            return matrix;
+        }
+    }
+}
+
+fn applied(matrix: &Matrix, point: [f64; 3]) -> [f64; 3] {
+    let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
+    let place = matrix.place().map(Q8_24::to_num::<f64>);
+    [0, 1, 2].map(|i| dot(rows[i], point) + place[i])
+}
+
+/// Positions and depth codes of the vertices of objects against f64, for sizes from 1/100 to 8.
+#[test]
+fn vertices_of_objects_against_f64() {
+    let mut random = Random(30);
+    for (width, height) in SIZES {
+        let (mut worst, mut share, mut depth, mut count) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
+        let mut halved = 0;
+        for round in 0..20_000 {
+            let same = round % 2 == 0;
+            let reach = random.real(0.0, 4.0);
+            let matrix = random_matrix(&mut random, [0.01, 8.0], same, reach);
+            let distance = random.real(0.0, 7.9);
+            let eye = random.direction().map(|x| x * distance);
+            let target = matrix
+                .place()
+                .map(|x| x.to_num::<f64>() + random.real(-0.5, 0.5));
+            let half_width = random.logarithmic(0.2, 4.0);
+            let towards = [0, 1, 2].map(|i| target[i] - eye[i]);
+            let camera = Camera::aimed(&mut random, eye, towards, [0.0; 2], half_width, 0.1);
+            let view = camera.rounded();
+            let placement = Placement::new(matrix);
+            let frame = MeshSetup::new(&view, width, height, 0).unwrap();
+            let Ok(setup) = placement.setup(&view, &frame, RADIUS) else {
+                panic!("{matrix:?}")
+            };
+            halved += u32::from(setup.near < frame.near);
+            for _ in 0..8 {
+                let position = [0; 3].map(|_| random.integer(-8192, 8192) as i16);
+                let place = applied(&matrix, world(position));
+                let [x, y, z] = Camera::of(&view).project(place, width, height);
+                if z < 0.1 {
+                    continue;
+                }
+                let Projected::Visible(found) = project(&setup, &transform(&setup, position))
+                else {
+                    continue;
+                };
+                if !(0.0..f64::from(width)).contains(&x) || !(0.0..f64::from(height)).contains(&y) {
+                    continue;
+                }
+                let error = (f64::from(found.x) - 256.0 * x)
+                    .abs()
+                    .max((f64::from(found.y) - 256.0 * y).abs());
+                // The bound of docs/formats.md.
+                let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
+                let length = dot(world(position), world(position)).sqrt();
+                let d = [0, 1, 2].map(|i| place[i] - eye[i]);
+                let longest = dot(d, d).sqrt();
+                let k = (frame.near / setup.near).ilog2();
+                let unit = |shift: u32| 0.5f64.powi(shift as i32 + 1) * 3f64.sqrt();
+                let rows = unit(frame.scale_shift) * longest
+                    + unit(setup.scale_shift - k) * length
+                    + unit(frame.scale_shift) * 0.001;
+                let across = (x - f64::from(width) / 2.0).hypot(y - f64::from(height) / 2.0);
+                let deep = unit(23) * longest + unit(23 - k) * length;
+                let bound = 0.75 + 256.0 * (rows / z + across * deep / z + scale * 1e-9);
+                worst = worst.max(error);
+                share = share.max(error / bound);
+                count += 1;
+                let exact =
+                    64.0 * f64::from(frame.depth.mantissa) * 2f64.powi(frame.depth.exponent) / z;
+                if exact < 64.0 * 262_140.0 {
+                    depth = depth.max((f64::from(found.w) - exact).abs() / 64.0);
+                }
+            }
+        }
+        println!(
+            "{width}x{height}: {count} vertices at most {worst:.3}/256 pixel off, {share:.3} of the bound, depth within {depth:.3} codes; {halved} setups halved"
+        );
+        assert!(count > 40_000 && halved > 500 && share <= 1.0 && depth <= 1.0);
+    }
+}
+
+/// The intensity of a face follows the inverse transpose of its matrix.
+#[test]
+fn light_on_objects_against_f64() {
+    let mut random = Random(31);
+    let mut worst = [0.0_f64; 2];
+    for round in 0..40_000 {
+        let same = round % 2 == 0;
+        let matrix = random_matrix(&mut random, [0.02, 4.0], same, 1.0);
+        let view = Camera::looking([4.0, 1.0, 2.0], [0.0; 3], 0.9, 0.1).rounded();
+        let frame = MeshSetup::new(&view, 320, 180, 0).unwrap();
+        let setup = Placement::new(matrix).setup(&view, &frame, RADIUS).unwrap();
+        assert_eq!(setup.normals.is_none(), same);
+        let normal = random.direction().map(|x| (x * 16_384.0).round() as i16);
+        let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
+        let cofactor = |i: usize, j: usize| {
+            let (p, q, r, s) = ((i + 1) % 3, (i + 2) % 3, (j + 1) % 3, (j + 2) % 3);
+            rows[p][r] * rows[q][s] - rows[p][s] * rows[q][r]
+        };
+        let sign = if matrix.mirrors() { -1.0 } else { 1.0 };
+        let turned = normalised([0, 1, 2].map(|i| {
+            sign * (0..3)
+                .map(|j| cofactor(i, j) * f64::from(normal[j]))
+                .sum::<f64>()
+        }));
+        let exact = -dot(turned, Camera::of(&view).n).min(0.0);
+        let found = intensity(setup.turned(normal), &setup.light, Facing::Front);
+        let error = (f64::from(found) - 256.0 * exact).abs();
+        worst[usize::from(same)] = worst[usize::from(same)].max(error);
+    }
+    println!(
+        "intensity: {:.3}/256 off with the normals turned, {:.3}/256 with the light turned",
+        worst[0], worst[1]
+    );
+    assert!(worst.iter().all(|&worst| worst <= 0.53));
+}
+
+fn drawn(frame: &Frame) -> (Vec<u16>, Vec<u32>, FrameStats) {
+    let [width, height] = frame.size.pixels();
+    let (mut colour, mut depth) = (
+        vec![0xDEAD; frame.size.pixel_count()],
+        vec![7; frame.size.pixel_count()],
+    );
+    let mut buffer = FrameBuffer {
+        width,
+        height,
+        colour: &mut colour,
+        depth: &mut depth,
+    };
+    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+    let constants = frame.constants().unwrap();
+    let stats = frame.draw(&constants, &mut buffer, &mut scratch, &mut || {});
+    (colour, depth, stats.unwrap())
+}
+
+fn object(mesh: Mesh, matrix: Matrix) -> Object {
+    Object {
+        subject: MeshSubject::new(mesh),
+        placement: Placement::new(matrix),
+        colour: None,
+    }
+}
+
+fn of(objects: &[Object], view: View) -> (Vec<u16>, Vec<u32>, FrameStats) {
+    drawn(&Frame::new(Subject::Objects(objects), view, Size::W320))
+}
+
+#[test]
+fn an_object_with_the_identity_is_the_mesh() {
+    let mut random = Random(32);
+    for round in 0..24 {
+        let bytes = Model::random(&mut random, 20, 30_000).encoded();
+        let subject = MeshSubject {
+            shading: [Shading::Flat, Shading::Smooth][round % 2],
+            winding: [Winding::Mesh, Winding::Screen][round / 2 % 2],
+            clip: match round / 4 % 2 {
+                0 => Clip::Guard,
+                _ => Clip::View {
+                    far: U8_28::lit("1.5"),
+                },
+            },
+            ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
+        };
+        let view = Camera::inside(&mut random).rounded();
+        let alone = drawn(&Frame::new(Subject::Mesh(subject), view, Size::W320));
+        let object = Object {
+            subject,
+            ..object(subject.mesh, Matrix::IDENTITY)
+        };
+        assert!(of(&[object], view) == alone, "round {round}");
+    }
+}
+
+/// A mirrored object has the picture of a mesh that is mirrored itself, with the windings of its triangles reversed.
+#[test]
+fn a_negative_scale_flips_the_winding() {
+    let mut random = Random(33);
+    let mut covered = 0;
+    for _ in 0..10 {
+        let mut model = Model::sphere(0.5, 5);
+        let plain = model.encoded();
+        for [x, _, _] in &mut model.positions {
+            *x = -*x;
+        }
+        let mirrored = model.flipped().encoded();
+        let azimuth = random.real(0.0, 6.28);
+        let eye = [
+            2.0 * azimuth.cos(),
+            2.0 * azimuth.sin(),
+            random.real(-1.0, 1.0),
+        ];
+        let view = Camera::looking(eye, [0.0; 3], 0.5, 0.1).rounded();
+        let matrix = Matrix::scale([number(-1.0), Q8_24::ONE, Q8_24::ONE]).unwrap();
+        let object = object(Mesh::new_checked(&plain).unwrap(), matrix);
+        let (_, depth, stats) = of(&[object], view);
+        let mesh = Mesh::new_checked(&mirrored).unwrap();
+        let (_, expected, expected_stats) =
+            drawn(&Frame::new(Subject::mesh(mesh), view, Size::W320));
+        let covered_by = |depth: &[u32]| depth.iter().map(|&code| code > 0).collect::<Vec<_>>();
+        assert!(covered_by(&depth) == covered_by(&expected));
+        let drawn = |stats: FrameStats| stats.mesh.unwrap().drawn;
+        assert_eq!(drawn(stats), drawn(expected_stats));
+        covered += covered_by(&depth).iter().filter(|&&on| on).count();
+    }
+    assert!(covered > 100_000, "{covered}");
+}
+
+/// Two objects in one frame cover what each covers alone, the nearer one hides the other, and of equal depths the later object wins.
+#[test]
+fn objects_share_one_depth() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let view = Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, 0.1).rounded();
+    let at = |x: f64, y: f64| Matrix::translation([x, y, 0.0].map(number)).unwrap();
+    let [red, blue] = [0xF800, 0x001F].map(|colour| Some(Rgb565(colour)));
+    let object = |matrix, colour| Object {
+        colour,
+        ..object(mesh, matrix)
+    };
+    let near = object(at(0.25, -0.5), red);
+    let far = object(at(-0.25, 0.5), blue);
+    let pictures = [of(&[near, far], view), of(&[far, near], view)];
+    // The order does not matter for different depths.
+    assert!(pictures[0].0 == pictures[1].0 && pictures[0].1 == pictures[1].1);
+    let alone = [of(&[near], view).1, of(&[far], view).1];
+    for (i, &colour) in pictures[0].0.iter().enumerate() {
+        let expected = match (alone[0][i] > 0, alone[1][i] > 0) {
+            (true, _) => colour & 0xF800 != 0 && colour & 0x001F == 0,
+            (false, true) => colour & 0x001F != 0 && colour & 0xF800 == 0,
+            (false, false) => colour == 0,
+        };
+        assert!(expected, "pixel {i}: {colour:#x}");
+    }
+    // The same place: every pixel has the colour of the later object.
+    let twice = of(
+        &[object(at(0.0, 0.0), red), object(at(0.0, 0.0), blue)],
+        view,
+    );
+    assert!(twice.0.iter().all(|colour| colour & 0xF800 == 0));
+    assert_eq!(twice.2.mesh.unwrap().triangles_in, 24);
+    // No object: an empty picture.
+    let (colour, depth, _) = of(&[], view);
+    assert!(colour.iter().all(|&x| x == 0) && depth.iter().all(|&x| x == 0));
+}
+
+/// Clipped triangles of all objects come after all others, as in the lists of the gateware.
+#[test]
+fn clipped_objects_are_drawn() {
+    let bytes = Model::sphere(0.5, 6).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let view = Camera::looking([0.0, -1.0, 0.0], [0.0; 3], 0.9, 0.1).rounded();
+    let at = |x: f64, size: f64| {
+        let place = Matrix::translation([x, 0.0, 0.0].map(number)).unwrap();
+        let matrix = Matrix::scale([number(size); 3]).unwrap().then(&place);
+        object(mesh, matrix.unwrap())
+    };
+    // The eye is inside of the second object and in the surface of the third.
+    let objects = [at(0.0, 0.5), at(0.0, 4.0), at(2.0, 4.4)].map(|mut object| {
+        object.subject.cull = false;
+        object
+    });
+    let (_, depth, stats) = of(&objects, view);
+    let stats = stats.mesh.unwrap();
+    assert!(
+        stats.clipped > 20 && depth.iter().all(|&code| code > 0),
+        "{stats:?}"
+    );
+    let sum: u32 = objects
+        .iter()
+        .map(|object| of(&[*object], view).2.mesh.unwrap().drawn)
+        .sum();
+    assert_eq!(stats.drawn, sum);
+}
+
+#[test]
+fn an_object_too_large_for_the_near_plane_is_refused() {
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let object = |size: f64| object(mesh, Matrix::scale([number(size); 3]).unwrap());
+    let view = |near| Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, near).rounded();
+    let refused = |size, near| {
+        let objects = [object(size)];
+        let frame = Frame::new(Subject::Objects(&objects), view(near), Size::W320);
+        let constants = frame.constants().unwrap();
+        let (mut colour, mut depth) = (vec![0; 320 * 180], vec![0; 320 * 180]);
+        let mut buffer = FrameBuffer {
+            width: 320,
+            height: 180,
+            colour: &mut colour,
+            depth: &mut depth,
+        };
+        let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+        frame
+            .draw(&constants, &mut buffer, &mut scratch, &mut || {})
+            .err()
+    };
+    assert_eq!(refused(1.0, 0.01), None);
+    assert_eq!(refused(16.0, 0.1), None);
+    let Some(RenderError::Near { near, least }) = refused(16.0, 0.02) else {
+        panic!("accepted")
+    };
+    assert!(near < least && least < 0.1, "{least}");
+    assert_eq!(refused(16.0, least.to_num()), None);
+}
