@@ -22,6 +22,7 @@ use crate::triangle::{
     Clip, DrawnTriangle, MeshSetup, Options, Part, Placement, Projected, Stats, draw_parts,
     trace_frame,
 };
+use crate::wireframe::{WireframeStats, WireframeSubject, render_wireframe};
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;
@@ -31,9 +32,9 @@ const PIXELS_A_CALL: u32 = 16;
 /// The description of one picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Mesh, field, or both.
+    /// Mesh, field, both, several meshes, or a wireframe.
     pub subject: Subject<'a>,
-    /// Camera.
+    /// Camera. A wireframe has its own eye and view plane.
     pub view: View,
     /// Size of the picture.
     pub size: Size,
@@ -52,6 +53,8 @@ pub enum Subject<'a> {
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
     /// Several meshes, each with a place of its own. Of equal depths the later object wins.
     Objects(&'a [Object<'a>]),
+    /// A program of the wireframe simulator.
+    Wireframe(WireframeSubject<'a>),
 }
 
 /// A mesh with a place in the world.
@@ -125,7 +128,7 @@ impl<'a> Subject<'a> {
     pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
         match self {
             Self::Mesh(mesh) | Self::MeshInField(mesh, _) => Some(mesh),
-            Self::Field(_) | Self::Objects(_) => None,
+            Self::Field(_) | Self::Objects(_) | Self::Wireframe(_) => None,
         }
     }
 
@@ -141,7 +144,7 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) => Some(field),
-            Self::Mesh(_) | Self::Objects(_) => None,
+            Self::Mesh(_) | Self::Objects(_) | Self::Wireframe(_) => None,
         }
     }
 }
@@ -228,6 +231,7 @@ impl FrameConstants {
                 camera.set_nearest(depths.min());
                 self.mesh = Some(camera);
             }
+            Subject::Wireframe(_) => {}
         }
         Ok(())
     }
@@ -245,6 +249,8 @@ pub struct FrameStats {
     pub mesh: Option<Stats>,
     /// Counts of the field, if any.
     pub field: Option<FieldStats>,
+    /// Counts of the wireframe, if any.
+    pub wireframe: Option<WireframeStats>,
 }
 
 impl<'a> Frame<'a> {
@@ -295,6 +301,10 @@ impl<'a> Frame<'a> {
         let mut stats = FrameStats::default();
         if let (Some(objects), Some(camera)) = (self.subject.objects(), constants.mesh()) {
             stats.mesh = Some(self.draw_objects(objects, camera, buffer, scratch, progress)?);
+            return Ok(stats);
+        }
+        if let Subject::Wireframe(subject) = &self.subject {
+            stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }
         match (self.subject.mesh_part(), constants.mesh()) {

@@ -220,6 +220,7 @@ impl GatewareRenderer {
             stats: FrameStats {
                 mesh,
                 field: field.as_ref().map(raymarch::ray_counts),
+                wireframe: None,
             },
             counters,
         }

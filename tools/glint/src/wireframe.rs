@@ -7,8 +7,8 @@ use crate::polygons::Polygons;
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{
-    self, Instruction, Key, MAX_SEGMENTS, Point, Program, ProgramError, Viewing, Window,
-    unique_edges,
+    self, Instruction, Key, MAX_SEGMENTS, Motion, Point, Pose, Program, ProgramError, Segment,
+    Viewing, Window, accumulate, unique_edges,
 };
 use std::fmt::Write;
 use std::path::Path;
@@ -277,6 +277,70 @@ pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
     Ok(actions)
 }
 
+/// The form of the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum MotionForm {
+    /// Each frame moves the points of the program anew.
+    #[default]
+    DriftFree,
+    /// The motion of the original: each step rounds the end points in place.
+    Accumulated,
+}
+
+impl MotionForm {
+    /// All forms.
+    pub const ALL: [Self; 2] = [Self::DriftFree, Self::Accumulated];
+
+    /// The form's name on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::DriftFree => "drift-free",
+            Self::Accumulated => "accumulated",
+        }
+    }
+}
+
+/// A program after some frames.
+pub struct Played {
+    /// The binary form of the program; its segments have moved if the motion is accumulated.
+    pub bytes: Vec<u8>,
+    /// The motion of the segments since this form.
+    pub pose: Pose,
+    /// Number of steps that were not possible, because segments would have left the range.
+    pub refused: usize,
+}
+
+/// Plays a script of keys: each press is the step of one frame.
+pub fn play(program: &Program, script: &[Action], form: MotionForm) -> Played {
+    let mut segments: Vec<Segment> = program.segments().collect();
+    let mut motion = Motion::default();
+    let (mut rotate, mut refused) = (false, 0);
+    for &action in script {
+        let step = match action {
+            Action::Rotate(on) => {
+                rotate = on;
+                continue;
+            }
+            Action::Press(key) => key.step(rotate),
+        };
+        let possible = match form {
+            MotionForm::DriftFree => motion.apply(step),
+            MotionForm::Accumulated => accumulate::apply(&mut segments, step),
+        };
+        refused += usize::from(!possible);
+    }
+    let mut moved = segments.into_iter();
+    let instructions = program.instructions().map(|instruction| match instruction {
+        Instruction::Segment(segment) => Instruction::Segment(moved.next().unwrap_or(segment)),
+        other => other,
+    });
+    Played {
+        bytes: instructions.flat_map(Instruction::encode).collect(),
+        pose: motion.pose(),
+        refused,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -356,6 +420,37 @@ mod tests {
             refused("cube", Some(4.0), &low),
             "expected a z of the eye above that of the view plane, 8, found 8"
         );
+    }
+
+    #[test]
+    fn both_forms_of_the_motion() {
+        let made = make(generate::named("cube").unwrap(), Some(4.0), &usual()).unwrap();
+        let program = check(&made.bytes).unwrap();
+        let end = |script_text: &str, form| {
+            let Played {
+                bytes,
+                pose,
+                refused,
+            } = play(&program, &script(script_text).unwrap(), form);
+            let program = check(&bytes).unwrap();
+            let ends = program.segments().flat_map(|segment| pose.segment(segment));
+            let ends: Vec<[f64; 3]> = ends.map(|end| end.map(f64::from)).collect();
+            (ends, refused)
+        };
+        let [exact, accumulated] =
+            MotionForm::ALL.map(|form| end("rotate,up:5,left:3,zoom-out,pan,right:2", form));
+        assert_eq!((exact.1, accumulated.1), (0, 0));
+        let distance = |a: &f64, b: &f64| (a - b).abs();
+        let pairs = exact
+            .0
+            .as_flattened()
+            .iter()
+            .zip(accumulated.0.as_flattened());
+        let largest = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
+        assert!(largest > 0.0 && largest < 8.0 / 2048.0, "{largest}");
+        // The cube's sides at ±2 reach the limit of Q5.11 after 223 pans, the displacement its limit after 256.
+        assert_eq!(end("right:300", MotionForm::Accumulated).1, 300 - 223);
+        assert_eq!(end("right:300", MotionForm::DriftFree).1, 300 - 256);
     }
 
     #[test]

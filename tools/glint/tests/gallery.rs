@@ -72,8 +72,9 @@ fn the_commands_produce_their_pictures() {
         assert!(output.status.success(), "{command:?}: {error}");
         let stats = std::fs::read(&stats).expect("the counts");
         let stats: serde_json::Value = serde_json::from_slice(&stats).expect("JSON");
-        assert_eq!(
-            stats["undecided"], 0,
+        // Only a picture of a field has rays.
+        assert!(
+            matches!(stats["undecided"].as_u64(), None | Some(0)),
             "{command:?}: undecided rays are visible"
         );
         assert!(
@@ -88,7 +89,8 @@ fn the_commands_produce_their_pictures() {
 
 #[test]
 fn every_field_has_a_picture() {
-    let commands = commands();
+    let mut commands = commands();
+    commands.retain(|command| command.iter().any(|word| word == "--field"));
     for (form, _) in KINDS {
         let kind = form.split(':').next().unwrap_or(form);
         let shows =

@@ -4,7 +4,9 @@ use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
+use glint::error::{FormatError, quote};
 use glint::transfer::Route;
+use glint_core::picture::Size;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::io::Write;
@@ -124,4 +126,13 @@ pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
 /// Writes `bytes` as the whole content of the file at `path`.
 pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     std::fs::write(path, bytes).with_context(|| format!("{}: cannot be written", path.display()))
+}
+
+/// Parses the option `--size`.
+pub fn size(text: &str) -> anyhow::Result<Size> {
+    let size = Size::ALL.into_iter().find(|size| size.to_string() == text);
+    size.ok_or_else(|| {
+        let error = FormatError::whole("320x180, 640x360 or 1280x720", quote(text.as_bytes()));
+        error.in_file("--size").into()
+    })
 }

@@ -1,6 +1,8 @@
 //! `glint render`.
 
-use super::common::{TransferArguments, advance, bar, named, print_json, say, spinner, write_file};
+use super::common::{
+    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file,
+};
 use super::convert::load;
 use super::field::FieldArguments;
 use anyhow::Context;
@@ -132,7 +134,7 @@ struct Totals<'a> {
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let view = self.camera()?;
-        let size = parse_size(&self.size)?;
+        let size = size(&self.size)?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
@@ -312,18 +314,8 @@ fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u1
     Ok(picture.scaled_back(scale)?)
 }
 
-fn parse_size(text: &str) -> anyhow::Result<Size> {
-    let size = Size::ALL.into_iter().find(|size| size.to_string() == text);
-    size.ok_or_else(|| {
-        let error = FormatError::whole(
-            "320x180, 640x360 or 1280x720",
-            glint::error::quote(text.as_bytes()),
-        );
-        error.in_file("--size").into()
-    })
-}
-
-fn print_stats(stats: &Stats) -> anyhow::Result<()> {
+/// Prints the statistics of a frame as text.
+pub fn print_stats(stats: &Stats) -> anyhow::Result<()> {
     if let Some(counts) = &stats.mesh {
         say(format_args!(
             "triangles  {} in, {} culled, {} clipped, {} drawn",
@@ -349,6 +341,12 @@ fn print_stats(stats: &Stats) -> anyhow::Result<()> {
             "field      {} evaluations, {:.2} a ray",
             counts.evaluations,
             counts.evaluations_per_ray()
+        ))?;
+    }
+    if let Some(counts) = &stats.wireframe {
+        say(format_args!(
+            "segments   {} in, {} drawn as lines, {} pixels",
+            counts.segments, counts.lines, counts.line_pixels
         ))?;
     }
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {

@@ -1,15 +1,19 @@
 //! `glint wireframe`.
 
-use super::common::{print_json, say, spinner, write_file};
+use super::common::{named, print_json, say, size, spinner, write_file};
+use super::render::print_stats;
+use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::error::FormatError;
 use glint::model;
-use glint::wireframe::{self, Form, Made};
+use glint::render::{Frame, Rendered, Subject, WireframeSubject, on_model};
+use glint::view;
+use glint::wireframe::{self, Form, Made, MotionForm, Played};
 use glint_core::wireframe::{Program, Viewing};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Wireframe simulator: check, convert and make programs.
+/// Wireframe simulator: check, convert, make and render programs.
 ///
 /// A PROGRAM is a file of the text form (.wft), one instruction a line, or of the binary form (.wfb), 16 bytes a word: the eye, the
 /// view plane, the window, up to 65535 segments, and an end. Numbers are from -16 to 15.9995, multiples of 1/2048.
@@ -18,6 +22,7 @@ pub enum WireframeCommand {
     Check(CheckArguments),
     Convert(ConvertArguments),
     Make(MakeArguments),
+    Render(RenderArguments),
 }
 
 /// Check a program, and show its viewing parameters and counts.
@@ -90,12 +95,39 @@ pub struct MakeArguments {
     json: bool,
 }
 
+/// Render a program to a picture with the bit-exact model, after a script of keys.
+#[derive(Args)]
+pub struct RenderArguments {
+    /// Program to read: .wft or .wfb.
+    program: PathBuf,
+    /// Picture file to write.
+    #[arg(long, value_name = "PICTURE.png")]
+    out: PathBuf,
+    /// Keys that are pressed, one a frame: up, down, left, right, zoom-in, zoom-out, or KEY:COUNT. After `rotate` the arrows rotate
+    /// by 1.79 degrees; at the start and after `pan` they pan by 0.0625. A zoom moves by 0.125 along z.
+    #[arg(long, value_name = "KEY,KEY,...")]
+    press: Option<String>,
+    /// The motion by the keys: `drift-free`, or `accumulated` as in the original design, which rounds the end points in place.
+    #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
+    motion: MotionForm,
+    /// Size of the picture: 320x180, 640x360 or 1280x720.
+    #[arg(long, value_name = "WxH", default_value = "640x360")]
+    size: String,
+    /// Write the counts of segments, lines and pixels as JSON.
+    #[arg(long, value_name = "STATS.json")]
+    stats: Option<PathBuf>,
+    /// Print the counts as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
 impl WireframeCommand {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Self::Check(arguments) => arguments.run(),
             Self::Convert(arguments) => arguments.run(),
             Self::Make(arguments) => arguments.run(),
+            Self::Render(arguments) => arguments.run(),
         }
     }
 }
@@ -210,5 +242,47 @@ impl MakeArguments {
             plane,
             window: wireframe::window(&self.window).map_err(|error| error.in_file("--window"))?,
         })
+    }
+}
+
+impl RenderArguments {
+    fn run(self) -> anyhow::Result<()> {
+        let size = size(&self.size)?;
+        let press = self.press.as_deref();
+        let script = press.map(wireframe::script).transpose();
+        let script = script.map_err(|error| error.in_file("--press"))?;
+        let bytes = wireframe::read(&self.program)?;
+        let Played {
+            bytes,
+            pose,
+            refused,
+        } = wireframe::play(
+            &wireframe::check(&bytes)?,
+            &script.unwrap_or_default(),
+            self.motion,
+        );
+        let program = wireframe::check(&bytes)?;
+        let subject = Subject::Wireframe(WireframeSubject { program, pose });
+        // The program has its own eye, so the frame's camera has no effect.
+        let camera = view::spherical("2,30,60")?;
+        let Rendered { image, stats } = on_model(&Frame::new(subject, camera, size))?;
+        image
+            .picture()
+            .save(&self.out)
+            .with_context(|| format!("{}: cannot be written", self.out.display()))?;
+        if let Some(path) = &self.stats {
+            let json = serde_json::to_string_pretty(&stats)? + "\n";
+            write_file(path, json.as_bytes())?;
+        }
+        if self.json {
+            return print_json(&stats);
+        }
+        print_stats(&stats)?;
+        if refused > 0 {
+            say(format_args!(
+                "note       {refused} steps would have left the range, and were left out"
+            ))?;
+        }
+        Ok(())
     }
 }

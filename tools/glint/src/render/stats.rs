@@ -17,6 +17,9 @@ pub struct Stats {
     /// Counts of the field; `None` for a frame without a field.
     #[serde(flatten)]
     pub rays: Option<RayCounts>,
+    /// Counts of the wireframe; `None` for a frame without one.
+    #[serde(flatten)]
+    pub wireframe: Option<WireframeCounts>,
     /// Frequency of the board's clock in Hz; `None` from the model.
     pub clock: Option<u64>,
     /// The backend of a board: `cpu` or `gateware`.
@@ -62,6 +65,17 @@ pub struct RayCounts {
     pub undecided: u32,
 }
 
+/// Counts of a wireframe's picture.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WireframeCounts {
+    /// Segments of the program.
+    pub segments: u32,
+    /// Segments with a part behind the view plane and within the guard band.
+    pub lines: u32,
+    /// Pixels written; a pixel of several lines counts for each of them.
+    pub line_pixels: u64,
+}
+
 impl RayCounts {
     /// Mean number of evaluations of the field per ray.
     pub fn evaluations_per_ray(&self) -> f64 {
@@ -78,7 +92,12 @@ impl Stats {
 
 /// Converts the statistics of a frame that the model has drawn.
 impl From<FrameStats> for Stats {
-    fn from(FrameStats { mesh, field }: FrameStats) -> Self {
+    fn from(stats: FrameStats) -> Self {
+        let FrameStats {
+            mesh,
+            field,
+            wireframe,
+        } = stats;
         let mesh = mesh.map(|counts| TriangleCounts {
             triangles_in: counts.triangles_in,
             triangles_culled: counts.culled,
@@ -95,10 +114,16 @@ impl From<FrameStats> for Stats {
             misses: counts.misses,
             undecided: counts.undecided,
         });
+        let wireframe = wireframe.map(|counts| WireframeCounts {
+            segments: counts.segments,
+            lines: counts.lines,
+            line_pixels: counts.pixels,
+        });
         Self {
             cycles: None,
             mesh,
             rays,
+            wireframe,
             clock: None,
             backend: None,
             engine: Counters::default(),

@@ -1,6 +1,6 @@
 //! `glint wireframe`.
 
-use crate::common::{SQUARE, folder, refused, succeed};
+use crate::common::{SQUARE, folder, picture, refused, succeed};
 
 const PROGRAM: &str = "\
 # a cross
@@ -139,4 +139,54 @@ fn refused_programs() {
         "error: cube: expected x of the window's lower corner below 0, found 0"
     );
     assert!(!folder.join("out.wfb").exists());
+}
+
+#[test]
+fn pictures_after_keys() {
+    let folder = folder("wireframe_pictures");
+    std::fs::write(folder.join("a.wft"), PROGRAM).unwrap();
+    let render = |arguments: &[&str]| {
+        let render = ["wireframe", "render", "a.wft", "--out", "a.png"];
+        let text = succeed(&folder, &[&render[..], arguments].concat());
+        (text, picture(&folder.join("a.png")))
+    };
+    let (text, still) = render(&[]);
+    // At z = 1 the scale is 2/3 of that in the view plane, 160 pixels a unit.
+    assert_eq!(text, "segments   2 in, 2 drawn as lines, 428 pixels\n");
+    assert_eq!(still.len(), 3 * 640 * 360);
+    let green = still
+        .chunks(3)
+        .filter(|pixel| *pixel == [0, 255, 0])
+        .count();
+    let black = still.chunks(3).filter(|pixel| *pixel == [0, 0, 0]).count();
+    assert_eq!((green, green + black), (427, 640 * 360));
+    let (_, moved) = render(&["--press", "up:2,rotate,left,pan,down:2"]);
+    assert!(moved != still);
+    let (_, back) = render(&[
+        "--press",
+        "up:2,rotate,left,right,pan,down:2,zoom-in,zoom-out",
+    ]);
+    assert!(back == still);
+    let (text, small) = render(&["--press=up:300", "--motion=accumulated", "--size=320x180"]);
+    assert_eq!(small.len(), 3 * 320 * 180);
+    assert!(
+        text.ends_with("note       61 steps would have left the range, and were left out\n"),
+        "{text}"
+    );
+    let (json, _) = render(&["--json"]);
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&json["segments"], &json["lines"]), (&2.into(), &2.into()));
+    let refused = |argument| {
+        let render = ["wireframe", "render", "a.wft", "--out", "b.png", argument];
+        refused(&folder, &render)
+    };
+    assert_eq!(
+        refused("--press=up,jump"),
+        "error: --press: expected up, down, left, right, zoom-in, zoom-out (or KEY:COUNT), rotate or pan, found 'jump'"
+    );
+    assert_eq!(
+        refused("--size=512x384"),
+        "error: --size: expected 320x180, 640x360 or 1280x720, found '512x384'"
+    );
+    assert!(!folder.join("b.png").exists());
 }

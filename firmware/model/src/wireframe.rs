@@ -1,0 +1,68 @@
+//! Pictures of the wireframe simulator: each segment of a program is moved, projected, and drawn as a line (docs/wireframe.md).
+
+use glint_core::colour::Rgb565;
+use glint_core::picture::Size;
+use glint_core::wireframe::{Pose, Program, Projection};
+
+use crate::error::RenderError;
+use crate::frame_buffer::FrameBuffer;
+use crate::line::{LineDepth, draw};
+use crate::triangle::ScreenVertex;
+
+/// The colour of the lines: green.
+pub const LINE_COLOUR: Rgb565 = Rgb565(0x07E0);
+
+/// Number of segments that are drawn between two calls of `progress`.
+const SEGMENTS_A_CALL: u32 = 16;
+
+/// A program and the motion of its segments.
+#[derive(Clone, Copy, Debug)]
+pub struct WireframeSubject<'a> {
+    /// The program.
+    pub program: Program<'a>,
+    /// The motion of all segments.
+    pub pose: Pose,
+}
+
+/// Counts of a wireframe's picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WireframeStats {
+    /// Segments of the program.
+    pub segments: u32,
+    /// Segments with a part behind the view plane and within the guard band.
+    pub lines: u32,
+    /// Pixels written; a pixel of several lines counts for each of them.
+    pub pixels: u64,
+}
+
+/// Clears a picture to `clear` and draws a program into it. The lines have the largest depth code, other pixels none. Calls
+/// `progress` at short intervals.
+///
+/// # Errors
+/// [`RenderError`] for a buffer of the wrong size.
+pub fn render_wireframe(
+    subject: &WireframeSubject,
+    clear: Rgb565,
+    target: &mut FrameBuffer,
+    progress: &mut dyn FnMut(),
+) -> Result<WireframeStats, RenderError> {
+    target.check()?;
+    let &mut FrameBuffer { width, height, .. } = target;
+    let size = Size::of(width, height).ok_or(RenderError::Size { width, height })?;
+    target.colour.fill(clear.0);
+    target.depth.fill(0);
+    let projection = Projection::new(subject.program.viewing(), size);
+    let mut stats = WireframeStats::default();
+    for segment in subject.program.segments() {
+        if stats.segments % SEGMENTS_A_CALL == 0 {
+            progress();
+        }
+        stats.segments += 1;
+        if let Some(line) = projection.line(subject.pose.segment(segment)) {
+            let ends = line.map(|[x, y]| ScreenVertex { x, y, w: 0 });
+            stats.lines += 1;
+            stats.pixels += u64::from(draw(&ends, LINE_COLOUR, LineDepth::Over, target));
+        }
+    }
+    Ok(stats)
+}

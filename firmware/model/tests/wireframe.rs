@@ -1,0 +1,148 @@
+//! Pictures of wireframe programs.
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q32_32, Turns};
+use glint_core::picture::Size;
+use glint_core::wireframe::text::assemble;
+use glint_core::wireframe::{Key, MAX_SEGMENTS, Motion, Program};
+use glint_model::wireframe::LINE_COLOUR;
+use glint_model::{Frame, FrameStats, Subject, WireframeStats, WireframeSubject};
+use glint_vectors::Picture;
+
+/// The window ±2 × ±1.125 at z = 2, seen from z = 4: 160 pixels a unit at the view plane of a picture 640 wide.
+const HEAD: &str = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\n";
+
+fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
+    let bytes = assemble(&format!("{HEAD}{segments}end\n")).unwrap();
+    let mut motion = Motion::default();
+    for key in keys {
+        assert!(motion.apply(key.step(false)));
+    }
+    let subject = Subject::Wireframe(WireframeSubject {
+        program: Program::new_checked(&bytes).unwrap(),
+        pose: motion.pose(),
+    });
+    let view = View::spherical(Q32_32::lit("3"), Turns(0), Turns::QUARTER).unwrap();
+    let frame = Frame::new(subject, view, size);
+    let [width, height] = size.pixels();
+    let mut picture = Picture::blank((width, height));
+    let mut calls = 0;
+    let stats = frame.draw(
+        &frame.constants().unwrap(),
+        &mut picture.target(),
+        &mut [],
+        &mut || calls += 1,
+    );
+    let FrameStats {
+        mesh: None,
+        field: None,
+        wireframe: Some(stats),
+    } = stats.unwrap()
+    else {
+        panic!("expected the counts of a wireframe alone");
+    };
+    assert_eq!(calls, stats.segments.div_ceil(16));
+    (picture, stats)
+}
+
+/// Columns and rows of the pixels that are drawn.
+fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
+    let drawn = picture.colour.iter().enumerate();
+    drawn
+        .filter(|&(_, &colour)| colour != 0)
+        .map(|(at, &colour)| {
+            assert_eq!(colour, LINE_COLOUR.0);
+            [at % width, at / width]
+        })
+        .collect()
+}
+
+#[test]
+fn a_horizontal_and_a_vertical_segment() {
+    let (picture, stats) = draw("segment -1 0.5 2 1 0.5 2\n", Size::W640, &[]);
+    // The segment is on the border between rows 99 and 100; the rule of the diamonds takes the upper one.
+    assert!(
+        pixels(&picture, 640)
+            .into_iter()
+            .eq((160..480).map(|x| [x, 99]))
+    );
+    assert_eq!(
+        stats,
+        WireframeStats {
+            segments: 1,
+            lines: 1,
+            pixels: 320
+        }
+    );
+    let (picture, _) = draw("segment 0.25 -1.125 2 0.25 1.125 2\n", Size::W640, &[]);
+    assert_eq!(pixels(&picture, 640).len(), 360);
+}
+
+#[test]
+fn keys_move_the_picture() {
+    let segment = "segment -1 0.5 2 1 0.5 2\n";
+    let shifted = |keys: &[Key]| {
+        let found = pixels(&draw(segment, Size::W640, keys).0, 640);
+        found.first().copied().unwrap()
+    };
+    let [x, y] = shifted(&[]);
+    // A pan of 0.0625 is 10 pixels in the view plane.
+    assert_eq!(shifted(&[Key::Up]), [x, y - 10]);
+    assert_eq!(shifted(&[Key::Right, Key::Right]), [x + 20, y]);
+    // A segment that is zoomed in front of the view plane disappears.
+    let (picture, stats) = draw(segment, Size::W640, &[Key::ZoomIn]);
+    assert!(pixels(&picture, 640).is_empty());
+    assert_eq!((stats.segments, stats.lines, stats.pixels), (1, 0, 0));
+}
+
+#[test]
+fn stiff_segments() {
+    // Without length, along the line of sight, in the view plane, through the eye, across the whole picture and far beyond it.
+    let cases = [
+        ("0 0 1 0 0 1", 1, 0),
+        ("0 0 -8 0 0 2", 1, 0),
+        ("-1 0 4 1 0 4", 0, 0),
+        ("0 0 4 0 0 0", 1, 0),
+        ("2 0 4 0 0 0", 1, 160),
+        ("-2 -1.125 2 2 1.125 2", 1, 640),
+        ("-16 -9 2 15.9995 9 2", 1, 640),
+        ("-15 0.25 2 15 0.25 2", 1, 640),
+        ("-16 8 2 15 8 2", 1, 0),
+    ];
+    for (segment, lines, count) in cases {
+        let (picture, stats) = draw(&format!("segment {segment}\n"), Size::W640, &[]);
+        let found = pixels(&picture, 640).len();
+        assert_eq!((stats.lines, found), (lines, count), "{segment}");
+    }
+}
+
+#[test]
+fn as_many_segments_as_there_can_be() {
+    let lines: String = (0..MAX_SEGMENTS)
+        .map(|i| {
+            let y = f64::from(i % 2304) / 1024.0 - 1.125;
+            format!("segment -2 {y} 2 2 {y} 2\n")
+        })
+        .collect();
+    let (picture, stats) = draw(&lines, Size::W320, &[]);
+    assert_eq!((stats.segments, stats.lines), (MAX_SEGMENTS, MAX_SEGMENTS));
+    // A line from border to border through the centres of its pixels lacks one of them, by the rule of the diamonds.
+    let segments = u64::from(MAX_SEGMENTS);
+    assert!((319 * segments..=320 * segments).contains(&stats.pixels));
+    assert_eq!(pixels(&picture, 320).len(), 320 * 180);
+}
+
+#[test]
+fn the_order_of_segments_does_not_matter() {
+    let (one, _) = draw(
+        "segment -1 0.3 0 1 -0.7 1\nsegment 0 1 0 0.5 -1 2\n",
+        Size::W1280,
+        &[],
+    );
+    let (other, _) = draw(
+        "segment 0 1 0 0.5 -1 2\nsegment -1 0.3 0 1 -0.7 1\n",
+        Size::W1280,
+        &[],
+    );
+    assert!(one.colour == other.colour && one.depth == other.depth);
+}
