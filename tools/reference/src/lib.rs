@@ -9,6 +9,7 @@
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //! - [`triangle`]: an exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
+//! - [`wireframe`]: drift of the wireframe simulator's motions over many steps.
 
 #![forbid(unsafe_code)]
 
@@ -20,3 +21,4 @@ pub mod raymarch;
 pub mod report;
 pub mod sine;
 pub mod triangle;
+pub mod wireframe;

@@ -1,0 +1,31 @@
+//! Drift of the wireframe simulator's motions over 10,000 steps.
+
+use glint_reference::wireframe::{Form, Session, drift};
+
+const STEPS: u32 = 10_000;
+
+/// The error after any number of steps is that of rounding once: three coordinates, each within half a unit of 2^−20.
+#[test]
+fn the_motion_is_free_of_drift() {
+    for session in Session::ALL {
+        for error in drift(Form::DriftFree, session, &[1, 100, STEPS, 10 * STEPS]) {
+            assert!(
+                error.distance < 1e-6 && error.growth.abs() < 3e-7,
+                "{session:?}: {error:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_motion_in_place_drifts() {
+    let last = |form, session| drift(form, session, &[STEPS])[0];
+    for session in Session::ALL {
+        let error = last(Form::Nearest, session);
+        // Half a unit of 2^−11 in two coordinates at each step is a bound that steps in different directions never reach.
+        assert!(error.distance < 0.2, "{session:?}: {error:?}");
+        let error = last(Form::Truncated, session);
+        assert!(error.distance > 0.2, "{session:?}: {error:?}");
+    }
+    assert!(last(Form::Nearest, Session::Wandering).distance > 0.01);
+}
