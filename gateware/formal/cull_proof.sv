@@ -1,6 +1,7 @@
-// Proof that culled triangles do not block the stage `cull`, for any triangles in any order. The limits count only clocks in
-// which no triangle waits at the output for the consumer. A triangle at the input waits for at most 4 such clocks. Each triangle
-// leaves once, culled or drawn; while triangles are inside, one leaves after at most 8 such clocks.
+// Proof of the control of the stage `cull`, with a FIFO of 8 places at its end, for any triangles in any order. The limits count
+// only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 10 such clocks.
+// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 11 such clocks. The FIFO does not
+// overflow.
 
 `default_nettype none
 
@@ -21,7 +22,7 @@ module cull_proof (
     logic                 busy, culled, in_ready, out_valid, held_up, leaves;
     setup_pkg::oriented_t out_triangle;
 
-    cull dut (
+    cull #(.PLACES(8)) dut (
         .clk, .rst, .width, .height, .cull_back, .busy, .culled,
         .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal, .out_valid, .out_ready, .out_triangle
     );
@@ -34,7 +35,7 @@ module cull_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_triangle.colour)
     );
 
-    logic [2:0] inside = '0;
+    logic [3:0] inside = '0;
     logic [3:0] waited = '0, stood = '0;
     logic       culled_before = 1'b0;
 
@@ -42,7 +43,7 @@ module cull_proof (
     assign leaves  = culled || out_valid && out_ready;
 
     always_ff @(posedge clk) if (!rst) begin
-        inside <= inside + 3'(in_valid && in_ready) - 3'(culled) - 3'(out_valid && out_ready);
+        inside <= inside + 4'(in_valid && in_ready) - 4'(culled) - 4'(out_valid && out_ready);
 
         if (in_valid && !in_ready) waited <= waited + 4'(!held_up);
         else                       waited <= '0;
@@ -52,9 +53,9 @@ module cull_proof (
 
         if (culled) culled_before <= 1'b1;
 
-        taken_in_time:     assert (waited <= 4'd4);
-        leaves_in_time:    assert (stood <= 4'd8);
-        nothing_too_many:  assert (inside <= 3'd3);
+        taken_in_time:     assert (waited <= 4'd10);
+        leaves_in_time:    assert (stood <= 4'd11);
+        nothing_too_many:  assert (inside <= 4'd7);
         nothing_made_up:   assert (!leaves || inside != '0);
         busy_while_inside: assert (busy == (inside != '0));
 

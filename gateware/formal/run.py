@@ -70,7 +70,7 @@ PROOFS = [
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
     Proof("band_pipe", "band_pipe_proof", 14),
-    Proof("cull", "cull_proof", 20, ("any_product",)),
+    Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
 ]
 

@@ -3,19 +3,22 @@
 // face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
 // picture are empty.
 //
-// Throughput a triangle in 4 clocks, latency 8. Two triangles are inside, in different stages; `phase` counts the 4
-// clocks of a stage:
+// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 8 or 11. Two triangles are inside, in
+// different stages; `phase` counts the 3 clocks of a stage:
 //
-//   in ─▶│ first 4 clocks: products of the area,  │─▶│ last 4 clocks: area,        │─▶ out
-//        │ minima and maxima, one in each clock   │  │ bounds, start; then verdict │
+//   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─▶ FIFO ─▶ out
+//        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │
 //
-// All stages stop while a triangle that is not culled waits in phase 3 for `out`; a culled triangle never waits. `in_ready` is a
-// register, decided a clock ahead: high in the clock in which the stages move. So it follows `out_ready` a clock later.
+// The stages cannot be stopped. A triangle moves in only if the FIFO has room for all triangles inside, so culled triangles leave
+// while earlier ones wait for `out`, as many as the FIFO has places: the later parts of the setup take longer for a triangle.
+// `in_ready` is a register, decided a clock ahead.
 
 `default_nettype none
 
 module cull #(
     parameter bit SMOOTH = 1'b0,
+    // Places of the FIFO at the end, a power of two.
+    parameter int unsigned PLACES = 32,
     localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
     localparam int unsigned LIT_BITS   = SMOOTH ? 40 : 1
 ) (
@@ -53,25 +56,31 @@ module cull #(
     assign v1 = in_vertices[1];
     assign v2 = in_vertices[2];
 
+    // `tall`: a product of `first` needs both halves of its height, in two turns of 3 clocks; `second` marks the last turn.
     logic [1:0] phase;
-    logic       advance, drop, drop_next, room;
+    logic       room, queue_idle, verdict, drop, tall, second, again;
     logic       first_valid, last_valid, first_x_21;
     triangle_t  first, last;
 
-    // `room`: the output is free in the next clock.
-    assign room    = !out_valid || out_ready;
-    assign advance = phase != 2'd3 || in_ready;
-    assign busy    = first_valid || last_valid || out_valid;
+    assign tall    = !fits(first.y01[20:17]) || !fits(first.y20[20:17]);
+    assign again   = first_valid && tall && !second;
+    assign verdict = phase == 2'd2 && last_valid;
+    assign culled  = verdict && drop;
+    assign busy    = first_valid || last_valid || !queue_idle;
 
     function automatic logic precedes(input logic [20:0] a, input logic [20:0] b);
         precedes = $signed(a) < $signed(b);
     endfunction
 
+    // Whether a number with these highest bits, from bit 17 on, fits the 18 bits of a factor, with its sign.
+    function automatic logic fits(input logic [3:0] highest);
+        fits = highest == '0 || highest == '1;
+    endfunction
+
     always_ff @(posedge clk) begin
-        if (advance) phase <= phase + 1'b1;
-        in_ready <= phase == 2'd2 && (!last_valid || drop_next || room) || phase == 2'd3 && !in_ready && room;
+        phase    <= phase == 2'd2 ? 2'd0 : phase + 2'd1;
+        in_ready <= phase == 2'd1 && room && !again;
         if (in_ready) begin
-            first_valid  <= in_valid;
             first.v0     <= v0;
             first.v1     <= v1;
             first.v2     <= v2;
@@ -84,8 +93,12 @@ module cull #(
             first_x_21   <= precedes(v2.x, v1.x);
             first.y_21   <= precedes(v2.y, v1.y);
             first.y_same <= v1.y == v2.y;
-            last_valid   <= first_valid;
-            last         <= first;
+        end
+        if (phase == 2'd2) begin
+            first_valid <= again || in_valid && in_ready;
+            second      <= again;
+            last_valid  <= first_valid && !again;
+            last        <= first;
         end
         if (rst) begin
             phase       <= '0;
@@ -95,8 +108,9 @@ module cull #(
         end
     end
 
-    // `area` is 2A = x10·y20 + x20·y01, twice the signed area. The products with the highest four bits of y20 and y01 come
-    // first, then the products with their low 17 bits. The sum is valid in phase 2 of a triangle's last 4 clocks.
+    // `area` is 2A = x10·y20 + x20·y01, twice the signed area, one product a clock in phases 0 and 1. Of a tall triangle the
+    // first turn takes the highest four bits of y20 and y01, the second turn their low 17 bits. The sum is valid in phases 1 and
+    // 2 of a triangle's last 3 clocks.
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, area;
@@ -105,43 +119,51 @@ module cull #(
     always_comb begin
         factor = phase[0] ? first.y01 : first.y20;
         a      = 25'($signed(phase[0] ? first.x20 : first.x10));
-        b      = phase[1] ? {1'b0, factor[16:0]} : 18'($signed(factor[20:17]));
-        unique case (phase)
-            2'd2:    c = '0;
-            2'd0:    c = {area[26:0], 17'b0};
-            default: c = area;
-        endcase
+        if (phase[1])    b = '0;
+        else if (again)  b = 18'($signed(factor[20:17]));
+        else             b = {factor[17] && !tall, factor[16:0]};
+        if (!phase[1])   c = area;
+        else if (second) c = {area[26:0], 17'b0};
+        else             c = '0;
     end
 
-    multiply_add #(.BITS(44)) dsp (.clk, .enable(advance), .a, .b, .c, .p(area));
+    multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p(area));
 
-    // Left, right, top and bottom of the bounds: selected in phases 0 to 3, rounded up to a pixel's centre one clock later,
-    // and then clamped to the picture.
-    logic [20:0] extreme;
-    logic [12:0] pixel;
-    logic [10:0] size, cut, left, right;
+    // Left and top of the bounds, then right and bottom: selected in phases 0 and 1, rounded up to a pixel's centre one clock
+    // later, and then clamped to the picture.
+    logic [20:0] extreme_x, extreme_y, rounded_x, rounded_y;
+    logic [12:0] pixel_x, pixel_y;
+    logic [10:0] cut_x, cut_y, left, right;
     logic [9:0]  top, bottom;
-    logic [1:0]  chosen;
-    logic        before_10, before_20, before_21;
-    logic [20:0] rounded;
+
+    // Returns the number of the vertex with the smallest coordinate, or with `largest` the largest. before_10: that of vertex 1
+    // is before that of vertex 0, and so on.
+    function automatic logic [1:0] choose(input logic largest, input logic before_10, input logic before_20, input logic before_21);
+        unique case ({largest, before_10})
+            2'b00:   choose = before_20 ? 2'd2 : 2'd0;
+            2'b01:   choose = before_21 ? 2'd2 : 2'd1;
+            2'b10:   choose = before_21 ? 2'd1 : 2'd2;
+            default: choose = before_20 ? 2'd0 : 2'd2;
+        endcase
+    endfunction
+
+    function automatic logic [10:0] clamp(input logic [12:0] pixel, input logic [10:0] size);
+        clamp = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
+    endfunction
+
+    logic [1:0] chosen_x, chosen_y;
 
     always_comb begin
-        before_10 = phase[1] ? !first.y01[20] : first.x10[20];
-        before_20 = phase[1] ? first.y20[20]  : first.x20[20];
-        before_21 = phase[1] ? first.y_21     : first_x_21;
-        unique case ({phase[0], before_10})
-            2'b00:   chosen = before_20 ? 2'd2 : 2'd0;
-            2'b01:   chosen = before_21 ? 2'd2 : 2'd1;
-            2'b10:   chosen = before_21 ? 2'd1 : 2'd2;
-            default: chosen = before_20 ? 2'd0 : 2'd2;
-        endcase
-        rounded = extreme + 21'd127;
-        size    = phase[1] ? width : {1'b0, height};
-        cut     = pixel[12] ? '0 : pixel[11:0] > {1'b0, size} ? size : pixel[10:0];
+        chosen_x  = choose(phase[0], first.x10[20], first.x20[20], first_x_21);
+        chosen_y  = choose(phase[0], !first.y01[20], first.y20[20], first.y_21);
+        rounded_x = extreme_x + 21'd127;
+        rounded_y = extreme_y + 21'd127;
+        cut_x     = clamp(pixel_x, width);
+        cut_y     = clamp(pixel_y, {1'b0, height});
     end
 
-    // The decision to cull the triangle, and the values that depend on its facing, registered for phase 3.
-    logic        front, no_column;
+    // The reasons to cull the triangle, and the values that depend on its facing, registered for phase 2.
+    logic        front, no_area, no_column, no_row;
     logic [39:0] flipped_area;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
@@ -158,34 +180,34 @@ module cull #(
         else                                                   topmost = last.y_21 ? 2'd2 : 2'd1;
     end
 
-    assign drop_next = area == '0 || top >= bottom || no_column || cull_back && !area[43];
+    assign drop = no_area || no_row || no_column || cull_back && !front;
 
     always_ff @(posedge clk) begin
-        if (advance) begin
-            extreme <= phase[1] ? (chosen[1] ? first.v2.y : chosen[0] ? first.v1.y : first.v0.y)
-                                : (chosen[1] ? first.v2.x : chosen[0] ? first.v1.x : first.v0.x);
-            pixel   <= rounded[20:8];
-            unique case (phase)
-                2'd2: begin
-                    left          <= cut;
-                    front         <= area[43];
-                    drop          <= drop_next;
-                    flipped_area  <= area[39:0] ^ {40{area[43]}};
-                    group_top     <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
-                end
-                2'd3: right <= cut;
-                2'd0: top   <= cut[9:0];
-                2'd1: begin
-                    bottom      <= cut[9:0];
-                    group_left  <= left[10:3];
-                    group_right <= right_last[10:3];
-                    no_column   <= left >= right;
-                end
-            endcase
-        end
+        extreme_x <= chosen_x[1] ? first.v2.x : chosen_x[0] ? first.v1.x : first.v0.x;
+        extreme_y <= chosen_y[1] ? first.v2.y : chosen_y[0] ? first.v1.y : first.v0.y;
+        pixel_x   <= rounded_x[20:8];
+        pixel_y   <= rounded_y[20:8];
+        unique case (phase)
+            2'd2: begin
+                left <= cut_x;
+                top  <= cut_y[9:0];
+            end
+            2'd0: begin
+                right  <= cut_x;
+                bottom <= cut_y[9:0];
+            end
+            default: begin
+                front        <= area[43];
+                no_area      <= area == '0;
+                no_column    <= left >= right;
+                no_row       <= top >= bottom;
+                flipped_area <= area[39:0] ^ {40{area[43]}};
+                group_top    <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
+                group_left   <= left[10:3];
+                group_right  <= right_last[10:3];
+            end
+        endcase
     end
-
-    assign culled = in_ready && last_valid && drop;
 
     // In a front face, vertices 1 and 2 are swapped. Values that change their sign use −v = ~v + 1.
     setup_pkg::oriented_t oriented;
@@ -212,18 +234,12 @@ module cull #(
         oriented.x0          = last.v0.x;
     end
 
-    always_ff @(posedge clk) begin
-        // A triangle that is not culled moves only when the output is free.
-        if (!out_valid) out_triangle <= oriented;
-        out_valid <= out_valid ? !out_ready : in_ready && last_valid && !drop;
-        if (rst) out_valid <= 1'b0;
-    end
-
     // Light of the vertices in the order after the swap; 0 for a vertex whose light belongs to the other side of the triangle.
+    logic [3*LIT_BITS-1:0] lit;
+
     if (SMOOTH) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
-        logic [3*LIT_BITS-1:0]   lit;
 
         for (genvar i = 0; i < 3; i++) begin : vertices
             localparam int unsigned OTHER = i == 0 ? 0 : 3 - i;
@@ -234,19 +250,22 @@ module cull #(
         end
 
         always_ff @(posedge clk) begin
-            if (in_ready) begin
-                first_light <= in_light;
-                last_light  <= first_light;
-            end
-            if (!out_valid) out_lit <= lit;
+            if (in_ready)      first_light <= in_light;
+            if (phase == 2'd2) last_light  <= first_light;
         end
     end else begin : flat
-        assign out_lit = '0;
+        assign lit = '0;
 
         wire _unused = &{1'b0, in_light};
     end
 
-    wire _unused = &{1'b0, area[42:40], rounded[7:0], right_last[2:0]};
+    // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
+    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2)) queue (
+        .clk, .rst, .idle(queue_idle), .room, .in_valid(verdict && !drop), .in_data({lit, oriented}),
+        .out_valid, .out_ready, .out_data({out_lit, out_triangle})
+    );
+
+    wire _unused = &{1'b0, area[42:40], rounded_x[7:0], rounded_y[7:0], right_last[2:0], cut_y[10]};
 endmodule
 
 `default_nettype wire

@@ -1,14 +1,14 @@
 // Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
 // setup"). The *start* is the pixel at which the edge functions and the depth in a descriptor_t are given.
 //
-//         4 clocks a triangle            11 clocks a triangle, all four in step with `count`
+//         3 clocks a triangle            11 clocks a triangle, all four in step with `count`
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, a culled one in 4; latency at most 75 clocks. A beat is the time in which each of
+// Throughput a drawn triangle in 11 clocks, a culled one in 3; latency at most 75 clocks. A beat is the time in which each of
 // the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if stage 4 has to wait for the output. All
 // stages move together in the last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
-// leaves before stage 1 and waits only for earlier triangles. `culled` and `drawn` are high for one clock for each triangle,
+// leaves before stage 1. It waits for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each triangle,
 // `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`)
 // must hold while `busy` and when a triangle comes.
 //
@@ -65,8 +65,7 @@ module setup #(
     } origin_t;
 
     // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both are registers, decided a
-    // clock ahead: `ending` is high if the next clock can be the last one of the beat. They drive hundreds of flip-flops, also in
-    // `cull`.
+    // clock ahead: `ending` is high if the next clock can be the last one of the beat. They drive hundreds of flip-flops.
     logic [3:0] count;
     logic       enable, beat, ending, waits;
     logic [4:1] valid;

@@ -447,7 +447,7 @@ fn clocks(shading: Shading) {
         "{drawn} clocks for {COUNT} triangles drawn"
     );
     assert!(
-        culled <= 4 * COUNT + 12,
+        culled <= 3 * COUNT + 12,
         "{culled} clocks for {COUNT} triangles culled"
     );
 }
