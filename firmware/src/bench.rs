@@ -6,12 +6,14 @@ use glint_core::trig::{sin_cos_q14, sin_cos_q30};
 #[cfg(feature = "peers")]
 mod attitude;
 mod measure;
+mod object;
 #[cfg(feature = "peers")]
 mod peers;
 
 #[cfg(feature = "peers")]
 pub use attitude::attitude;
 pub use measure::{Cycles, Report};
+pub use object::object;
 
 use measure::measure;
 

@@ -63,6 +63,8 @@ impl Matrix {
     ///
     /// # Errors
     /// The first row that violates a condition.
+    // Not inlined, as the firmware has one copy of each operation.
+    #[inline(never)]
     pub fn new_checked(
         linear: [[Q8_24; 3]; 3],
         translation: [Q8_24; 3],
@@ -104,6 +106,7 @@ impl Matrix {
     /// The rotation about `axis` by `angle`: x turns to y about the z axis, y to z about the x axis, and z to x about the y axis.
     ///
     /// Quarter turns are exact; the error of other entries is at most 0.51 units (2^−24).
+    #[inline(never)]
     pub fn rotation(axis: Axis, angle: Turns) -> Self {
         let narrow = |x: Q2_30| Q8_24::from_bits((x.to_bits() + (1 << 5)) >> 6);
         let (sin, cos) = sin_cos_q30(angle);
@@ -148,6 +151,7 @@ impl Matrix {
     ///
     /// # Errors
     /// The result is out of range or singular.
+    #[inline(never)]
     pub fn then(&self, next: &Self) -> Result<Self, MatrixError> {
         // An entry is at most 2^28 and a component of the translation at most 2^29, so the sums are below 2^59. The result is at most
         // 3·16·32 + 32, which is not in the range of Q8.24; it saturates there, far out of the range of a matrix.
@@ -184,6 +188,7 @@ impl Matrix {
     }
 
     /// The matrix for the normals of the mesh.
+    #[inline(never)]
     pub fn normals(&self) -> Normals {
         let rows = self.linear.map(|row| row.map(Q8_24::to_bits));
         let [a, b, c] = rows;
@@ -247,6 +252,8 @@ impl Normals {
     /// Transforms a normal (s2.14) and scales it to length 1, s2.14; the zero vector stays.
     ///
     /// The error of each component is at most 0.51 units (2^−14).
+    // Not inlined, because most meshes have no matrix for their normals.
+    #[inline(never)]
     pub fn apply(&self, normal: [i16; 3]) -> [i16; 3] {
         let turned = self.cofactors.map(|row| {
             core::iter::zip(row, normal)

@@ -97,7 +97,7 @@ pub struct FieldSubject<'a> {
 }
 
 impl<'a> MeshSubject<'a> {
-    fn options(&self) -> Options {
+    fn options(&self) -> Options<'a> {
         Options {
             cull: self.cull,
             shading: self.shading,
@@ -336,7 +336,7 @@ impl<'a> Frame<'a> {
 
     fn draw_objects(
         &self,
-        objects: &[Object],
+        objects: &'a [Object<'a>],
         camera: &MeshSetup,
         buffer: &mut FrameBuffer,
         scratch: &mut [Projected],
@@ -354,6 +354,7 @@ impl<'a> Frame<'a> {
                 frame: placement.setup(&self.view, &camera, subject.mesh.radius())?,
                 options: Options {
                     colour: *colour,
+                    normals: placement.normals(),
                     ..subject.options()
                 },
             })

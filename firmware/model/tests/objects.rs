@@ -138,8 +138,9 @@ fn light_on_objects_against_f64() {
         let matrix = random_matrix(&mut random, [0.02, 4.0], same, 1.0);
         let view = Camera::looking([4.0, 1.0, 2.0], [0.0; 3], 0.9, 0.1).rounded();
         let frame = MeshSetup::new(&view, 320, 180, 0).unwrap();
-        let setup = Placement::new(matrix).setup(&view, &frame, RADIUS).unwrap();
-        assert_eq!(setup.normals.is_none(), same);
+        let placement = Placement::new(matrix);
+        let setup = placement.setup(&view, &frame, RADIUS).unwrap();
+        assert_eq!(placement.normals().is_none(), same);
         let normal = random.direction().map(|x| (x * 16_384.0).round() as i16);
         let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
         let cofactor = |i: usize, j: usize| {
@@ -153,7 +154,10 @@ fn light_on_objects_against_f64() {
                 .sum::<f64>()
         }));
         let exact = -dot(turned, Camera::of(&view).n).min(0.0);
-        let found = intensity(setup.turned(normal), &setup.light, Facing::Front);
+        let turned = placement
+            .normals()
+            .map_or(normal, |normals| normals.apply(normal));
+        let found = intensity(turned, &setup.light, Facing::Front);
         let error = (f64::from(found) - 256.0 * exact).abs();
         worst[usize::from(same)] = worst[usize::from(same)].max(error);
     }

@@ -7,10 +7,10 @@ use crate::machine::Machine;
 
 /// Names of the kernels that `bench` accepts.
 #[cfg(not(feature = "peers"))]
-const KERNELS: &[&str] = &["sine", "triangle", "field"];
+const KERNELS: &[&str] = &["sine", "object", "triangle", "field"];
 /// Names of the kernels that `bench` accepts in a build with the feature `peers`.
 #[cfg(feature = "peers")]
-const KERNELS: &[&str] = &["sine", "attitude", "triangle", "field"];
+const KERNELS: &[&str] = &["sine", "object", "attitude", "triangle", "field"];
 
 /// Number of frames that the gateware draws back to back for a measurement.
 const FRAMES: u32 = 8;
@@ -36,6 +36,7 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
             }
         }
         Some("sine") => bench::sine(&mut print),
+        Some("object") => bench::object(&mut print),
         #[cfg(feature = "peers")]
         Some("attitude") => bench::attitude(&mut print),
         Some("triangle" | "field") if !has_engine => return Err(CommandError::NoEngine),

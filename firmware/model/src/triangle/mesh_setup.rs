@@ -2,7 +2,6 @@
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
-use glint_core::matrix::Normals;
 
 use crate::depth::DepthScale;
 use crate::error::{MAX_EYE, RenderError, SIZES};
@@ -33,10 +32,10 @@ pub struct MeshSetup {
     pub depth: DepthScale,
     /// The volume to which triangles are clipped.
     pub volume: Volume,
+    /// Whether the mesh is an object, with a model matrix and a colour of its own.
+    pub is_placed: bool,
     /// The direction of the light that is at the camera, s2.23: `n`, or its direction in the axes of an object's mesh.
     pub light: [i32; 3],
-    /// The matrix that turns normals to the axes of `light`; `None` if they have these axes.
-    pub normals: Option<Normals>,
     /// Whether the mesh is mirrored, so that its front faces are clockwise on the screen.
     pub mirrors: bool,
 }
@@ -80,8 +79,8 @@ impl MeshSetup {
             near,
             depth,
             volume: Volume::Guard,
+            is_placed: false,
             light: n,
-            normals: None,
             mirrors: false,
         })
     }
@@ -91,14 +90,6 @@ impl MeshSetup {
     pub(crate) fn set_nearest(&mut self, nearest: Option<i64>) {
         let nearest = nearest.unwrap_or(self.near).max(self.near);
         self.depth = DepthScale::from_nearest(nearest);
-    }
-
-    /// Turns a normal of the mesh to the axes of the light.
-    pub fn turned(&self, normal: [i16; 3]) -> [i16; 3] {
-        match &self.normals {
-            None => normal,
-            Some(normals) => normals.apply(normal),
-        }
     }
 
     /// Returns these constants with another clipping of triangles.

@@ -15,36 +15,46 @@ pub struct Placement {
     matrix: Matrix,
     /// The matrix for normals; `None` if normals stay as they are and the light is turned by `rotation`.
     normals: Option<Normals>,
-    /// The rotation or reflection of the matrix, without its scale, Q2.30; the identity if there are `normals`.
+    /// The columns of the 3×3 matrix, 24 fraction bits.
+    columns: [[i32; 3]; 3],
+    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if there are
+    /// `normals`.
     rotation: [[i32; 3]; 3],
     /// A length that no vector of length 1 exceeds after the matrix, 24 fraction bits: the scale, if there is one, otherwise the
     /// root of the sum of the squares of all entries.
-    stretch: i64,
+    stretch: u32,
 }
 
 impl Placement {
     /// Prepares a model matrix.
+    #[inline(never)]
     pub fn new(matrix: Matrix) -> Self {
-        const ONE: i32 = 1 << 30;
+        const ONE: i32 = 1 << 24;
         let entries = matrix.linear().map(|row| row.map(Q8_24::to_bits));
         let square = |row: [i32; 3]| row.iter().map(|&x| i64::from(x).pow(2)).sum::<i64>();
         let [a, b, c] = entries.map(square);
         let normals = matrix.normals();
         let (kept, rotation, squared) = match normals.rotation() {
             // The squares of the rows differ by at most a part of 2^−12 from the first one.
-            Some(rotation) => (None, *rotation, a.max(b).max(c)),
+            Some(rotation) => (
+                None,
+                transposed(rotation.map(|row| row.map(|x| (x + (1 << 5)) >> 6))),
+                a.max(b).max(c),
+            ),
             None => (
                 Some(normals),
                 [[ONE, 0, 0], [0, ONE, 0], [0, 0, ONE]],
                 a + b + c,
             ),
         };
-        let root = squared.unsigned_abs().isqrt() as i64;
+        // At most 2^28·3, because there are nine entries.
+        let root = squared.unsigned_abs().isqrt();
         Self {
             matrix,
             normals: kept,
+            columns: transposed(entries),
             rotation,
-            stretch: root + i64::from(root * root < squared),
+            stretch: root as u32 + u32::from(root * root < squared.unsigned_abs()),
         }
     }
 
@@ -53,16 +63,23 @@ impl Placement {
         &self.matrix
     }
 
+    /// The matrix that turns the normals of the mesh to the world; `None` if they stay as they are, because the light is turned.
+    pub const fn normals(&self) -> Option<&Normals> {
+        self.normals.as_ref()
+    }
+
     /// Returns the largest distance of a vertex from the origin of a mesh with the given `radius` (14 fraction bits), in world
     /// units with 38 fraction bits; below 2^46.
     fn reach(&self, radius: u32) -> i64 {
-        i64::from(radius) * self.stretch
+        (u64::from(radius) * u64::from(self.stretch)) as i64
     }
 
     /// Returns the smallest depth of a mesh at this place, with 37 fraction bits, in the camera's frame constants `camera`. As the
     /// axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
+    #[inline(never)]
     pub fn nearest(&self, camera: &MeshSetup, radius: u32) -> i64 {
-        let [.., z] = self.origin(camera);
+        let place = self.matrix.place().map(Q8_24::to_bits);
+        let z = camera.translation[2] + ((dot(&camera.n, &place) + (1 << 9)) >> 10);
         let reach = self.reach(radius);
         z - (reach >> 1) - (reach >> 14) - 2
     }
@@ -72,10 +89,7 @@ impl Placement {
         let place = self.matrix.place().map(Q8_24::to_bits);
         let along = |row: &[i32; 3], translation: i64| {
             // A row is shorter than 2^24.5 and a place at most √3·2^29, so the product is below 2^55.
-            let product: i64 = core::iter::zip(row, place)
-                .map(|(&r, p)| i64::from(r) * i64::from(p))
-                .sum();
-            translation + ((product + (1 << 9)) >> 10)
+            translation + ((dot(row, &place) + (1 << 9)) >> 10)
         };
         let [x, y, z] = camera.translation;
         [
@@ -93,63 +107,58 @@ impl Placement {
     ///
     /// # Errors
     /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object.
+    #[inline(never)]
     pub fn setup(
         &self,
         view: &View,
         camera: &MeshSetup,
         radius: u32,
     ) -> Result<MeshSetup, RenderError> {
-        // Products of a row and the matrix: below 3·2^24·2^28, with 24 more fraction bits.
-        let [a, b, c] = self.matrix.linear().map(|row| row.map(Q8_24::to_bits));
-        let product = |row: &[i32; 3]| {
-            let [x, y, z] = row.map(i64::from);
-            [0, 1, 2].map(|j| x * i64::from(a[j]) + y * i64::from(b[j]) + z * i64::from(c[j]))
-        };
-        let (u, v, n) = (product(&camera.u), product(&camera.v), product(&camera.n));
+        // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after the first rounding.
+        let [u, v, n] = [&camera.u, &camera.v, &camera.n].map(|row| product(row, &self.columns));
         let [x, y, z] = self.origin(camera);
         let reach = self.reach(radius);
         // A part of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
-        let farthest = z.abs() + (reach >> 1);
-        let k = (0..=MOST_HALVINGS)
-            .find(|&k| fits(&n, 24 + k) && farthest >> k < 1 << 41)
-            .unwrap_or(MOST_HALVINGS);
+        let k = excess(largest(&n)).max(halvings(((z.abs() + (reach >> 1)) >> 41) as u32));
         // The rows u and v get as many fraction bits as fit: f + k − cut.
-        let widest = x.abs().max(y.abs()) + reach;
         let f = camera.scale_shift;
-        let cut = ((f + k).saturating_sub(18)..f + k)
-            .find(|&cut| fits(&u, 24 + cut) && fits(&v, 24 + cut) && widest >> cut < (1 << 43) - 1)
-            .unwrap_or(f + k);
+        let widest = x.abs().max(y.abs()) + reach;
+        let cut = excess(largest(&u).max(largest(&v)))
+            .max(halvings((widest >> 42) as u32))
+            .max((f + k).saturating_sub(18));
         let scale_shift = f + k - cut;
 
         // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
-        let least = (1 << 30).max(1 << (40_u32.saturating_sub(scale_shift)));
-        if camera.near >> k < least || k == MOST_HALVINGS {
+        let lead = 40_u32.saturating_sub(scale_shift).max(30);
+        let near = camera.near >> k;
+        if near >> lead == 0 {
+            let least = u32::try_from((1_u64 << (lead + k)) >> 9);
             return Err(RenderError::Near {
                 near: view.near(),
-                least: U4_28::from_bits(u32::try_from((least << k) >> 9).unwrap_or(u32::MAX)),
+                least: U4_28::from_bits(least.unwrap_or(u32::MAX)),
             });
         }
-        let row = |row: [i64; 3], shift: u32| row.map(|x| shifted(x, shift) as i32);
         Ok(MeshSetup {
+            width: camera.width,
+            height: camera.height,
             scale_shift,
-            u: row(u, 24 + cut),
-            v: row(v, 24 + cut),
-            n: row(n, 24 + k),
+            u: halved(u, cut),
+            v: halved(v, cut),
+            n: halved(n, k),
             translation: [shifted(x, cut), shifted(y, cut), shifted(z, k)],
-            near: camera.near >> k,
+            near,
             depth: DepthScale {
+                mantissa: camera.depth.mantissa,
                 exponent: camera.depth.exponent - k as i32,
-                ..camera.depth
             },
             volume: match camera.volume {
                 Volume::Guard => Volume::Guard,
                 Volume::View { far } => Volume::View { far: far >> k },
             },
+            is_placed: true,
             light: self.light(view),
-            normals: self.normals,
             mirrors: self.matrix.mirrors(),
-            ..*camera
         })
     }
 
@@ -159,26 +168,66 @@ impl Placement {
         if self.normals.is_some() {
             return n;
         }
-        // The sum is at most √3·2^54.
-        [0, 1, 2].map(|j| {
-            let sum: i64 = (0..3)
-                .map(|i: usize| i64::from(self.rotation[i][j]) * i64::from(n[i]))
-                .sum();
-            shifted(sum, 30) as i32
-        })
+        product(&n, &self.rotation)
     }
 }
 
-/// Largest number of halvings of the homogeneous coordinates: with near at most 2, no more leave it at 2^−7.
-const MOST_HALVINGS: u32 = 8;
-
-/// Whether all numbers, divided by 2^`shift` and rounded, are less than 2^24 in magnitude.
-fn fits(row: &[i64; 3], shift: u32) -> bool {
-    row.iter()
-        .all(|&x| shifted(x, shift).unsigned_abs() < 1 << 24)
+/// The exact scalar product; below 2^62 for the numbers of rows, matrices and places.
+///
+/// Not inlined, because code that is executed once takes longer to load into the instruction cache than to run.
+#[inline(never)]
+fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
+    i64::from(a[0]) * i64::from(b[0])
+        + i64::from(a[1]) * i64::from(b[1])
+        + i64::from(a[2]) * i64::from(b[2])
 }
 
-/// Divides by 2^`shift`, rounded to nearest; `shift` may be 0.
+/// Multiplies a row by a matrix, given by its columns with 24 fraction bits, and rounds to nearest.
+#[inline(never)]
+fn product(row: &[i32; 3], columns: &[[i32; 3]; 3]) -> [i32; 3] {
+    let [a, b, c] = columns;
+    [a, b, c].map(|column| ((dot(row, column) + (1 << 23)) >> 24) as i32)
+}
+
+fn transposed([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
+    [0, 1, 2].map(|j| [a[j], b[j], c[j]])
+}
+
+/// Number of halvings after which a number is 0.
+const fn halvings(x: u32) -> u32 {
+    // A loop, because the soft core counts leading zeros in software and most numbers are 0.
+    let (mut x, mut count) = (x, 0);
+    while x > 0 {
+        x >>= 1;
+        count += 1;
+    }
+    count
+}
+
+/// The largest magnitude of a row; below 2^30.
+fn largest(row: &[i32; 3]) -> u32 {
+    let [x, y, z] = row.map(i32::unsigned_abs);
+    x.max(y).max(z)
+}
+
+/// Smallest number of halvings after which a number below 2^30, rounded, is less than 2^24.
+const fn excess(x: u32) -> u32 {
+    // Adding the largest rounding keeps a rounded number below the next power of two.
+    halvings((x + MOST_ROUNDING) >> 24)
+}
+
+/// Half a unit of the result after six halvings.
+const MOST_ROUNDING: u32 = 1 << 5;
+
+/// Divides by 2^`shift`, rounded to nearest.
+fn halved(row: [i32; 3], shift: u32) -> [i32; 3] {
+    row.map(|x| (x + ((1 << shift) >> 1)) >> shift)
+}
+
+/// Divides by 2^`shift`, rounded to nearest. Most objects need no division.
 const fn shifted(x: i64, shift: u32) -> i64 {
-    (x + ((1 << shift) >> 1)) >> shift
+    if shift == 0 {
+        return x;
+    }
+    ((x >> (shift - 1)) + 1) >> 1
 }

@@ -1,6 +1,7 @@
 //! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
 use glint_core::colour::{Shading, Winding};
+use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 
 use crate::triangle::clip::{clip, off_picture};
@@ -12,7 +13,7 @@ use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 
 /// Options of drawing a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct Options<'a> {
     /// Whether back faces are left out.
     pub cull: bool,
     /// Colour of pixels without a triangle, RGB565.
@@ -23,9 +24,20 @@ pub struct Options {
     pub winding: Winding,
     /// Colour in place of those of the mesh.
     pub colour: Option<Rgb565>,
+    /// The matrix that turns the normals of an object to the axes of the light; `None` if they have these axes.
+    pub normals: Option<&'a Normals>,
 }
 
-impl Default for Options {
+impl Options<'_> {
+    fn turned(&self, normal: [i16; 3]) -> [i16; 3] {
+        match self.normals {
+            None => normal,
+            Some(normals) => normals.apply(normal),
+        }
+    }
+}
+
+impl Default for Options<'_> {
     /// Back faces are left out, the background is black, shading is flat, and the winding is that of the mesh.
     fn default() -> Self {
         Self {
@@ -34,6 +46,7 @@ impl Default for Options {
             shading: Shading::Flat,
             winding: Winding::Mesh,
             colour: None,
+            normals: None,
         }
     }
 }
@@ -59,33 +72,29 @@ impl Placed {
         vertices: [&ScreenVertex; 3],
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
-        if options.winding == Winding::Screen {
-            return Self::by_screen(frame, options, triangle, vertices, light);
+        if frame.is_placed || options.winding == Winding::Screen {
+            return Self::optional(frame, options, triangle, vertices, light);
         }
-        let mut oriented = Oriented::new(vertices.map(|v| *v))?;
-        let order = oriented.facing;
-        if frame.mirrors {
-            oriented.facing = oriented.facing.opposite();
-        }
+        let oriented = Oriented::new(vertices.map(|v| *v))?;
         let facing = oriented.facing;
         if options.cull && facing == Facing::Back {
             return None;
         }
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
-        let intensity = intensity(frame.turned(triangle.normal), &frame.light, facing);
+        let intensity = intensity(triangle.normal, &frame.light, facing);
         Some(Self {
             oriented,
             bounds,
-            colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
-            lit: light.map(|light| order.order(light.map(|light| light.to(facing)))),
+            colour: lit(triangle.colour, intensity),
+            lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
         })
     }
 
-    /// Prepares a triangle by its place on the screen ([`Winding::Screen`]). No triangle is culled for its facing.
+    /// Prepares a triangle of an object, or one by its place on the screen ([`Winding::Screen`]), which is never culled.
     ///
-    /// Not inlined, so that triangles with the winding of the mesh do not load this code into the instruction cache.
+    /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
-    fn by_screen(
+    fn optional(
         frame: &MeshSetup,
         options: &Options,
         triangle: &Triangle,
@@ -93,20 +102,41 @@ impl Placed {
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
         let vertices = vertices.map(|v| *v);
-        let order = Oriented::screen_order(&vertices);
-        let normal = frame.turned(triangle.normal);
-        let facing = Facing::of(normal, &frame.light);
+        let normal = options.turned(triangle.normal);
+        let by_screen = options.winding == Winding::Screen;
+        let (order, facing) = if by_screen {
+            let facing = Facing::of(normal, &frame.light);
+            (Oriented::screen_order(&vertices), facing)
+        } else {
+            let facing = Oriented::new(vertices)?.facing;
+            let seen = if frame.mirrors {
+                facing.opposite()
+            } else {
+                facing
+            };
+            if options.cull && seen == Facing::Back {
+                return None;
+            }
+            (facing.order([0, 1, 2]), seen)
+        };
         let oriented = Oriented {
             facing,
             ..Oriented::new(order.map(|i| vertices[i]))?
         };
         let bounds = Bounds::new(&oriented.vertices, frame.width, frame.height)?;
         let intensity = intensity(normal, &frame.light, facing);
+        let light_of = |light: Light| {
+            if by_screen {
+                light.visible()
+            } else {
+                light.to(facing)
+            }
+        };
         Some(Self {
             oriented,
             bounds,
             colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
-            lit: light.map(|light| order.map(|i| light[i].visible())),
+            lit: light.map(|light| order.map(|i| light_of(light[i]))),
         })
     }
 
@@ -139,7 +169,7 @@ pub fn vertex_light(
 
 fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     let colour = options.colour.unwrap_or(vertex.colour);
-    Light::new(colour, frame.turned(vertex.normal), &frame.light)
+    Light::new(colour, options.turned(vertex.normal), &frame.light)
 }
 
 /// A vertex of a clipped triangle.

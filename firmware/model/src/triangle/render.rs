@@ -115,7 +115,7 @@ pub struct Part<'a> {
     /// The frame constants of the mesh.
     pub frame: MeshSetup,
     /// Options of drawing the mesh. `clear` has no effect.
-    pub options: Options,
+    pub options: Options<'a>,
 }
 
 /// Draws the `count` parts of a frame, that `part` returns by their numbers, over the colour `clear`. `part` is called twice for a part
@@ -214,7 +214,7 @@ enum Path<'a> {
 /// Draws the triangles of one mesh.
 struct Renderer<'a, 'b> {
     frame: MeshSetup,
-    options: Options,
+    options: Options<'a>,
     target: &'a mut FrameBuffer<'b>,
     show: &'a mut dyn FnMut(&DrawnTriangle),
     stats: Stats,
@@ -279,22 +279,29 @@ impl Renderer<'_, '_> {
     }
 
     /// Runs the vertex stage for all vertices of a chunk.
+    ///
+    /// Not inlined, so that the loop over vertices keeps the registers for itself.
+    #[inline(never)]
     fn project(&self, chunk: &Chunk, scratch: &mut [Projected]) {
-        let Self { frame, .. } = self;
-        if frame.volume == Volume::Guard {
-            for (vertex, projected) in chunk.vertices().zip(scratch) {
-                *projected = project(frame, &transform(frame, vertex.position));
-            }
-            return;
+        for (vertex, projected) in chunk.vertices().zip(&mut *scratch) {
+            *projected = project(&self.frame, &transform(&self.frame, vertex.position));
         }
+        if self.frame.volume != Volume::Guard {
+            self.mark_outside(chunk, scratch);
+        }
+    }
+
+    /// Marks the vertices outside of the view volume, which need clipping.
+    ///
+    /// Not inlined, so that frames with the guard band do not load this code into the instruction cache.
+    #[inline(never)]
+    fn mark_outside(&self, chunk: &Chunk, scratch: &mut [Projected]) {
         for (vertex, projected) in chunk.vertices().zip(scratch) {
-            let vertex = transform(frame, vertex.position);
-            *projected = match project(frame, &vertex) {
-                Projected::Visible(place) if !contains(frame, &vertex) => {
-                    Projected::BeyondGuard(place)
-                }
-                projected => projected,
-            };
+            if let Projected::Visible(place) = *projected
+                && !contains(&self.frame, &transform(&self.frame, vertex.position))
+            {
+                *projected = Projected::BeyondGuard(place);
+            }
         }
     }
 

@@ -1,0 +1,47 @@
+//! The constants of an object, which the soft core computes once a frame for each object.
+
+use core::hint::black_box;
+
+use glint_core::camera::View;
+use glint_core::fixed::{Q8_24, Q32_32, Turns};
+use glint_core::matrix::{Axis, Matrix};
+use glint_core::picture::Size;
+use glint_model::{MeshSetup, Placement};
+
+use super::measure::{Report, measure};
+
+/// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
+const RADIUS: u32 = 14_190;
+
+/// Measures the smallest depth and the frame constants of objects, turned and of one scale or of three.
+pub fn object(report: Report) {
+    let [width, height] = Size::W640.pixels();
+    let view = View::spherical(Q32_32::lit("3"), Turns(1 << 29), Turns(1 << 29));
+    let Ok(view) = view else { return };
+    let Ok(camera) = MeshSetup::new(&view, width, height, 0) else {
+        return;
+    };
+    let [half, quarter, one] = ["0.5", "0.25", "1.5"].map(|x| x.parse().unwrap_or(Q8_24::ONE));
+    for (name, scale) in [
+        ("object", [half; 3]),
+        ("object_stretched", [half, quarter, one]),
+    ] {
+        let placements = [1_u32, 3, 5, 7].map(|eighths| {
+            let turned = Matrix::scale(scale)
+                .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, Turns(eighths << 28))))
+                .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::X, Turns(eighths << 27))))
+                .and_then(|matrix| matrix.then(&Matrix::translation([half, quarter, one])?));
+            Placement::new(turned.unwrap_or(Matrix::IDENTITY))
+        });
+        measure(
+            report,
+            name,
+            |phase| &placements[(phase >> 30) as usize],
+            |placement| {
+                // The constants stay where they are made, as in the drawing of a frame.
+                black_box(&placement.setup(&view, &camera, RADIUS));
+                placement.nearest(&camera, RADIUS)
+            },
+        );
+    }
+}
