@@ -27,6 +27,7 @@ pub mod generate;
 pub mod imu;
 pub mod model;
 pub mod normals;
+pub mod object;
 pub mod picture;
 pub mod polygons;
 pub mod render;

@@ -10,6 +10,8 @@ use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::error::FormatError;
+use glint::model::Model;
+use glint::object::Description;
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
     Renderer, Route, Stats, Subject,
@@ -19,9 +21,10 @@ use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::U8_28;
+use glint_core::matrix::Matrix;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::picture::{Backend, Size};
-use glint_model::{Clip, MAX_EYE, RenderError};
+use glint_model::{Clip, MAX_EYE, Object, Placement, RenderError};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -31,8 +34,12 @@ const VIRTUAL: ModelOrBoard = ModelOrBoard::Board(BoardName::Virtual);
 #[derive(Args)]
 pub struct RenderArguments {
     /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
-    #[arg(required_unless_present = "field")]
+    #[arg(required_unless_present_any = ["field", "object"])]
     model: Option<String>,
+    /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
+    /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
+    #[arg(long, value_name = "MODEL PLACE", conflicts_with = "field")]
+    object: Vec<String>,
     #[command(flatten)]
     field: FieldArguments,
     /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The image plane at
@@ -141,22 +148,38 @@ impl RenderArguments {
         let clip = self.clip()?;
         let model = self.model.as_deref();
         let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
-        let mesh = model.as_ref().map(|model| {
-            Ok::<_, MeshError>(MeshSubject {
-                mesh: Mesh::new_checked(&model.mesh)?,
-                cull: !self.no_cull,
-                shading: self.shading,
-                clip,
-                winding: self.winding,
-            })
-        });
+        let mesh: Option<Result<_, MeshError>> =
+            model.as_ref().map(|model| self.subject(model, clip));
+        let descriptions = self.objects()?;
+        let models = descriptions
+            .iter()
+            .map(|object| load(&object.model, self.keep_scale))
+            .collect::<anyhow::Result<Vec<_>>>()?;
         let field = field.as_ref().map(|field| FieldSubject {
             field,
             appearance: &appearance,
             stereo,
             prepass: self.field.prepass(),
         });
-        let subject = match (mesh.transpose()?, field) {
+        let mesh = mesh.transpose()?;
+        let objects = mesh
+            .filter(|_| !descriptions.is_empty())
+            .map(|subject| Ok((subject, Matrix::IDENTITY, None)))
+            .into_iter()
+            .chain(descriptions.iter().zip(&models).map(|(object, model)| {
+                self.subject(model, clip)
+                    .map(|subject| (subject, object.matrix, object.colour))
+            }))
+            .map(|object| {
+                object.map(|(subject, matrix, colour)| Object {
+                    subject,
+                    placement: Placement::new(matrix),
+                    colour,
+                })
+            })
+            .collect::<Result<Vec<_>, MeshError>>()?;
+        let subject = match (mesh, field) {
+            _ if !objects.is_empty() => Subject::Objects(&objects),
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
             (Some(mesh), None) => Subject::Mesh(mesh),
             (None, Some(field)) => Subject::Field(field),
@@ -223,6 +246,29 @@ impl RenderArguments {
             ),
             None => Ok(view),
         }
+    }
+
+    fn subject<'m>(&self, model: &'m Model, clip: Clip) -> Result<MeshSubject<'m>, MeshError> {
+        Ok(MeshSubject {
+            mesh: Mesh::new_checked(&model.mesh)?,
+            cull: !self.no_cull,
+            shading: self.shading,
+            clip,
+            winding: self.winding,
+        })
+    }
+
+    fn objects(&self) -> anyhow::Result<Vec<Description>> {
+        anyhow::ensure!(
+            self.object.is_empty() || self.board == ModelOrBoard::Model,
+            "--object: expected --board model, found --board {}",
+            self.board
+        );
+        let objects = self
+            .object
+            .iter()
+            .map(|text| Description::parse(text).map_err(|error| error.in_file("--object").into()));
+        objects.collect()
     }
 
     fn clip(&self) -> anyhow::Result<Clip> {
