@@ -227,8 +227,8 @@ fn a_camera_may_be_far_away() {
     let mut camera = at([0.0, -30.0, 0.0], [0.125, 0.0, 0.0625]);
     camera.half_width = 0.05;
     // The camera looks along the walls of the sponge's tunnels, so the picture shows mostly the depths of tunnels. The threshold
-    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. So many rays that should pass through
-    // a tunnel end at its wall.
+    // of a hit grows with the distance, and here a tunnel is only a few thresholds wide. Therefore, many rays end at the wall of a
+    // tunnel that they would pass through with a threshold of 0.
     let seen = see("far away", "menger:4", &camera);
     assert!(seen.found.iou >= 0.98);
     seen.decided(0).near(1e-4, 0.9).faced(0.13).cheap(16.0);

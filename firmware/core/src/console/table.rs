@@ -20,8 +20,8 @@ macro_rules! commands {
             $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?): $summary:literal;)+
         }
     )+) => {
-        /// A command with its arguments. Each argument is valid by itself; whether it suits the state of
-        /// the machine is not checked.
+        /// A command with its arguments. Each argument is in its range. The state of the machine may still exclude the command; its
+        /// handler checks this.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,

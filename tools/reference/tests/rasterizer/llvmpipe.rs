@@ -1,7 +1,8 @@
 //! Compares the model's coverage with Mesa's software rasterizer llvmpipe, on machines that have Mesa and moderngl.
 //!
-//! llvmpipe draws each triangle twice. From the model's snapped vertices, it must cover the same pixels as the model. From
-//! unsnapped vertices, which it snaps by itself, pixels may differ only if llvmpipe snaps a vertex differently.
+//! llvmpipe draws each triangle twice. From the vertices that the model has snapped to its subpixel grid, llvmpipe must cover the
+//! same pixels as the model. From the vertices before snapping, which llvmpipe snaps to its own grid, pixels may differ only if
+//! llvmpipe snaps a vertex to another position.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

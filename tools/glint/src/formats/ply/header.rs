@@ -154,7 +154,8 @@ pub struct Header {
 }
 
 impl Header {
-    /// Parses the header up to and including the line `end_header`. What is left of `lines` are the values that follow it.
+    /// Parses the header up to and including the line `end_header`. After the call, `lines` starts at the values that follow the
+    /// header.
     ///
     /// # Errors
     /// The first line that violates the format.
