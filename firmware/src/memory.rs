@@ -3,10 +3,11 @@
 use core::mem::MaybeUninit;
 use core::ptr;
 use core::slice;
-use core::sync::atomic::{AtomicBool, Ordering};
+use core::sync::atomic::{AtomicBool, AtomicPtr, Ordering};
 
 use glint_model::Projected;
 use litex_pac::cpu;
+use litex_pac::memories::MAIN_RAM;
 
 use crate::models::Buffer;
 
@@ -37,9 +38,21 @@ unsafe extern "C" {
     static _mesh_size: u8;
     static mut _lists: u8;
     static _lists_size: u8;
+    static mut _windows_end: u8;
     static mut _fast: u8;
     static _fast_size: u8;
     static _fast_loaded: u8;
+}
+
+/// The end of the windows. Tools find this value by its symbol.
+#[unsafe(no_mangle)]
+static GLINT_WINDOWS_END: AtomicPtr<u8> = AtomicPtr::new(&raw mut _windows_end);
+
+/// Size of main memory in bytes that the windows need.
+pub fn size() -> u32 {
+    // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value in the program's file.
+    let end = unsafe { GLINT_WINDOWS_END.as_ptr().read_volatile() };
+    end.addr() as u32 - MAIN_RAM.base
 }
 
 /// Expands to a slice of a window of memory. The arguments are the linker symbols of its first byte and of its size in

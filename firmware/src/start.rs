@@ -5,11 +5,12 @@ use core::fmt::{self, Write as _};
 use glint_core::camera::ViewError;
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
+use glint_hal::frequency::{Frequency, NotAFrequency};
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::raymarch::Raymarcher;
 use glint_hal::scanout::{Display, Scanout};
-use glint_hal::timer::{Clock, FREQUENCY, Stopped};
+use glint_hal::timer::{Clock, Stopped};
 use glint_hal::triangle::TriangleEngine;
 use glint_hal::uart::Direct;
 use litex_pac::{BUILD_ID, Peripherals};
@@ -30,6 +31,15 @@ static GLINT_BUILD_ID: u32 = BUILD_ID;
 pub enum StartError {
     /// The machine was started before.
     Started,
+    /// The gateware states a clock frequency that the firmware does not support.
+    Frequency(NotAFrequency),
+    /// Main memory is smaller than the memory map of the firmware. Both sizes are in bytes.
+    MainRam {
+        /// Size that the memory map needs.
+        needed: u32,
+        /// Size that the gateware states.
+        found: u32,
+    },
     /// The uptime counter does not advance.
     Clock(Stopped),
     /// The built-in model is not a mesh.
@@ -42,6 +52,14 @@ impl fmt::Display for StartError {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Started => f.write_str("the machine was started before"),
+            Self::Frequency(error) => error.fmt(f),
+            Self::MainRam { needed, found } => write!(
+                f,
+                "main memory: this firmware expects at least {} MB, the board has {} MB; \
+                 build the firmware of this board with `cargo xtask firmware --board BOARD`",
+                needed >> 20,
+                found >> 20
+            ),
             Self::Clock(stopped) => stopped.fmt(f),
             Self::Cube(error) => write!(f, "the built-in cube: {error}"),
             Self::Camera(error) => write!(f, "the first camera: {error}"),
@@ -52,10 +70,11 @@ impl fmt::Display for StartError {
 /// Starts the machine.
 ///
 /// The banner is printed first and needs only the UART, so that later errors are visible. If the build id of the gateware
-/// differs from that of the firmware, only the console is started.
+/// differs from that of the firmware, only the console is started, and the clock is assumed to have its default frequency.
 ///
 /// # Errors
-/// The timer, the built-in model or the camera at start fails.
+/// The gateware states a clock frequency that is not supported, or less memory than the firmware's memory map needs; or the timer,
+/// the built-in model or the camera at start fails.
 pub fn machine() -> Result<Machine, StartError> {
     // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };
@@ -64,7 +83,6 @@ pub fn machine() -> Result<Machine, StartError> {
 
     memory::load_fast_code();
     let peripherals = Peripherals::take().ok_or(StartError::Started)?;
-    let memory = Memory::take().ok_or(StartError::Started)?;
     let identity = Identity {
         // SAFETY: the pointer refers to a static. The read is volatile, because tools change the value
         // in the program's file.
@@ -72,13 +90,23 @@ pub fn machine() -> Result<Machine, StartError> {
         gateware: peripherals.identity.build_id().read(),
         blocks: peripherals.identity.blocks().read(),
     };
+    let frequency = if identity.matches() {
+        Frequency::new(peripherals.identity.clock().read()).map_err(StartError::Frequency)?
+    } else {
+        Frequency::DEFAULT
+    };
     let _ = write!(
         banner,
         "gateware {:#010x}, {} kHz\r\n",
         identity.gateware,
-        FREQUENCY / 1000
+        frequency.hertz() / 1000
     );
-    if !identity.matches() {
+    if identity.matches() {
+        let (needed, found) = (memory::size(), peripherals.identity.main_ram().read());
+        if found < needed {
+            return Err(StartError::MainRam { needed, found });
+        }
+    } else {
         let _ = write!(
             banner,
             "MISMATCH: this firmware was built for gateware {:#010x}, whose registers may lie elsewhere.\r\n\
@@ -87,7 +115,8 @@ pub fn machine() -> Result<Machine, StartError> {
         );
     }
 
-    let clock = Clock::new(peripherals.timer0).map_err(StartError::Clock)?;
+    let memory = Memory::take().ok_or(StartError::Started)?;
+    let clock = Clock::new(peripherals.timer0, frequency).map_err(StartError::Clock)?;
     UART.start(peripherals.uart);
     let (scanout, engine, raymarcher, devices) = if identity.matches() {
         let devices = Devices {
@@ -108,7 +137,7 @@ pub fn machine() -> Result<Machine, StartError> {
     interrupts::start(devices.is_some(), scanout.is_some(), engine.is_some());
     let gateware = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
-        GatewareRenderer::new(engine, raymarcher, memory.lists, first_buffer)
+        GatewareRenderer::new(engine, raymarcher, memory.lists, first_buffer, frequency)
     });
     let backend = if gateware.is_some() {
         Backend::Gateware

@@ -35,7 +35,8 @@ def main():
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", choices=list(BUILDS),
                         help="build of the raymarcher (default: all; for a board with an FPGA: faces)")
-    parser.add_argument("--clock", type=float, metavar="MHZ", help="frequency of the system clock (default: the board's)")
+    parser.add_argument("--clock", type=float, metavar="MHZ",
+                        help="frequency of the system clock, a multiple of 0.25 (default: the board's)")
     arguments = parser.parse_args()
     logging.getLogger().setLevel(logging.WARNING)
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.

@@ -26,6 +26,9 @@ from .video import CEA_1280X720
 SYS_CLK_FREQ = 81.25e6
 """System clock in Hz. With it DDR3-650 and the fabric meet the specification of the -1 speed grade."""
 
+CLOCK_UNIT = 250e3
+"""The firmware converts between time and cycles with a whole number of cycles in 4 µs: the clock must be a multiple of this."""
+
 _PORT_BITS = 128
 """Width of the memory ports of the accelerators."""
 
@@ -47,6 +50,8 @@ class GlintSoC(SoCCore):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
+        if sys_clk_freq % CLOCK_UNIT:
+            raise ValueError(f"system clock of {sys_clk_freq / 1e6} MHz: expected a multiple of {CLOCK_UNIT / 1e6} MHz")
         self.draws_triangles = "triangle" in blocks
         self.blocks = frozenset({*blocks, "triangle"} if "raymarch" in blocks else blocks)
         self.mode = mode
@@ -73,7 +78,8 @@ class GlintSoC(SoCCore):
         self.add_constant("UART_POLLING")
         self.add_constant("BUILD_ID", build_id)
 
-        self.identity = Identity(build_id, sum(1 << OPTIONAL_BLOCKS[name] for name in set(blocks)))
+        enabled = sum(1 << OPTIONAL_BLOCKS[name] for name in set(blocks))
+        self.identity = Identity(build_id, enabled, self.sys_clk_freq)
         self.i2c = I2CMaster(platform, platform.request("i2c"), sys_clk_freq)
         self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
         self.switches = GPIOIn(self._inputs("switches", 16))
@@ -107,6 +113,7 @@ class GlintSoC(SoCCore):
         # LiteDRAM puts a converter between a port and a narrower memory.
         width = self.sdram.crossbar.controller.data_width
         port = self.sdram.crossbar.get_port("both", max(width, bus.data_width))
+        self.identity.add_main_ram(size)
         self.memory_bridge = MemoryBridge(bus, port, main_ram.origin, early=width < bus.data_width)
         self.bus.add_slave("main_ram", bus, main_ram)
         if "scanout" in self.blocks:

@@ -28,6 +28,9 @@ _DETECTOR, _VCO, _OUTPUTS = (10, 400), (400, 800), (3.125, 400)
 # Bits of the capabilities: the sizes 320x180 and 640x360, and the scales 1 and 2.
 _CAPABILITIES = {"SIZES": 0b011, "MEMORY_BITS": 21, "H_ACTIVE": 640, "V_ACTIVE": 360, "V_BORDER": 60}
 
+# Values of the board's identity registers, in Hz and bytes.
+_IDENTITY = {"clock": 40_000_000, "main_ram": 32 << 20}
+
 
 def generate():
     """Elaborates the board (no BIOS, no synthesis) and returns its constraints, Verilog and Yosys script as text."""
@@ -54,6 +57,13 @@ def check_constraints(lpf, verilog, script):
         if found != [str(value)]:
             problems.append(f"{name}: expected {value} once, got {found}")
     return problems
+
+
+def check_identity(*_files):
+    """Checks the clock frequency and the size of memory that the board states for the firmware."""
+    identity = Ulx3sSoC(build_id=0, blocks=OPTIONAL_BLOCKS).identity
+    stated = {name: getattr(identity, name).status.reset.value for name in _IDENTITY}
+    return [] if stated == _IDENTITY else [f"expected {_IDENTITY}, got {stated}"]
 
 
 def check_clocks(_lpf, verilog, _script):
@@ -118,6 +128,7 @@ def check_serializer(_lpf, _verilog, _script):
 CHECKS = {
     "pins as in the table, both ways": check_pins,
     "constraints, script and capabilities": check_constraints,
+    "identity": check_identity,
     "clocks exact": check_clocks,
     "serializer": check_serializer,
     "design complete": check_complete,

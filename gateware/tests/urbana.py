@@ -103,8 +103,9 @@ def check_100_mhz(*_files):
         name, refresh = type(soc).__name__, soc.sdram.controller.settings.timing.tREFI
         if refresh != _REFRESH_100_MHZ:
             problems.append(f"{name}: a refresh every {refresh} clocks")
-        if soc.constants["CONFIG_CLOCK_FREQUENCY"] != 100_000_000:
-            problems.append(f"{name}: {soc.constants['CONFIG_CLOCK_FREQUENCY']} Hz")
+        stated = soc.constants["CONFIG_CLOCK_FREQUENCY"], soc.identity.clock.status.reset.value
+        if stated != (100_000_000, 100_000_000):
+            problems.append(f"{name}: the BIOS has {stated[0]} Hz, the identity {stated[1]} Hz")
     return problems
 
 

@@ -26,12 +26,11 @@ use litex_pac::i2c::{
     self, Command, Control, Error, EvEnable, EvPending, Operation as Action, Rounds, Status,
 };
 
-use crate::timer::{Clock, Deadline, cycles, microseconds};
+use crate::timer::{Clock, Deadline};
 
 /// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
 /// after which the master reports `ClockStuck`, and than the 1 ms that the 33 bytes of a full queue take on the bus.
 const WAIT: Duration = Duration::from_millis(100);
-const WAIT_CYCLES: u64 = cycles(WAIT);
 
 /// Largest number of bytes received by one command.
 const MOST_RECEIVED: usize = 256;
@@ -43,6 +42,8 @@ const MOST_IN_READ: usize = 32;
 pub struct I2c {
     registers: i2c::I2c,
     clock: Clock,
+    /// [`WAIT`] in clock cycles.
+    wait: u64,
     periodic: Option<Periodic>,
 }
 
@@ -123,6 +124,7 @@ impl I2c {
         let mut master = Self {
             registers,
             clock,
+            wait: clock.frequency().cycles(WAIT),
             periodic: None,
         };
         master.clear();
@@ -187,7 +189,7 @@ impl I2c {
                     (Err(error), _) => Poll::Ready(Err(error)),
                     (_, Some(deadline)) if deadline.passed() => Poll::Ready(Err(BusError::Timeout)),
                     _ => {
-                        deadline.get_or_insert_with(|| self.clock.after_cycles(WAIT_CYCLES));
+                        deadline.get_or_insert_with(|| self.clock.after_cycles(self.wait));
                         Poll::Pending
                     }
                 };
@@ -246,7 +248,7 @@ impl I2c {
                     return Poll::Ready(Err(BusError::Timeout));
                 }
             }
-            _ => *deadline = Some(self.clock.after_cycles(WAIT_CYCLES)),
+            _ => *deadline = Some(self.clock.after_cycles(self.wait)),
         }
         Poll::Pending
     }
@@ -416,7 +418,8 @@ impl PeriodicI2c for I2c {
     fn begin(&mut self, read: PeriodicRead) -> Result<(), BusError> {
         self.clear();
         let length = usize::from(read.length);
-        let period = cycles(Duration::from_micros(read.period.into()));
+        let frequency = self.clock.frequency();
+        let period = frequency.cycles_of_microseconds(read.period);
         let last_clock = u32::try_from(period)
             .ok()
             .and_then(|period| period.checked_sub(1));
@@ -463,7 +466,7 @@ impl PeriodicI2c for I2c {
             next: periodic.next + periodic.period,
             ..periodic
         });
-        Ok(microseconds(periodic.next))
+        Ok(self.clock.frequency().microseconds(periodic.next))
     }
 }
 

@@ -9,27 +9,14 @@ use core::task::Poll;
 use core::time::Duration;
 
 use embedded_hal::delay::DelayNs;
-use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::timer0::{EvEnable, EvPending, Timer0};
 
-/// Clock cycles per second of the SoC that the firmware is built for: `cargo xtask firmware` sets the variable for a SoC with
-/// another clock than the one in the register access crate.
-pub const FREQUENCY: u32 = match option_env!("GLINT_CLOCK_FREQUENCY") {
-    Some(text) => match u32::from_str_radix(text, 10) {
-        Ok(frequency) => frequency,
-        Err(_) => panic!("GLINT_CLOCK_FREQUENCY: expected a number of Hz"),
-    },
-    None => CONFIG_CLOCK_FREQUENCY,
-};
+use crate::frequency::Frequency;
 
-/// Number of clock cycles in 4 µs, which the assertion below shows to be a whole number.
-const QUARTERS: u64 = FREQUENCY as u64 / 250_000;
-const _: () = assert!(FREQUENCY.is_multiple_of(250_000));
-
-/// Handle of the SoC's uptime counter.
+/// Handle of the SoC's uptime counter, with the frequency of the SoC's clock.
 #[derive(Clone, Copy)]
 pub struct Clock {
-    _running: (),
+    frequency: Frequency,
 }
 
 /// Error: the uptime counter stands still, because the SoC has no such counter.
@@ -45,17 +32,23 @@ impl core::fmt::Display for Stopped {
 impl core::error::Error for Stopped {}
 
 impl Clock {
-    /// Returns the clock that reads the uptime counter of `timer0`.
+    /// Returns the clock that reads the uptime counter of `timer0`, which counts with `frequency`.
     ///
     /// # Errors
     /// Two readings of the counter are equal.
-    pub fn new(_timer: Timer0) -> Result<Self, Stopped> {
-        let clock = Self { _running: () };
+    pub fn new(_timer: Timer0, frequency: Frequency) -> Result<Self, Stopped> {
+        let clock = Self { frequency };
         if clock.cycles() == clock.cycles() {
             Err(Stopped)
         } else {
             Ok(clock)
         }
+    }
+
+    /// The frequency of the SoC's clock.
+    #[must_use]
+    pub const fn frequency(self) -> Frequency {
+        self.frequency
     }
 
     /// Clock cycles since reset.
@@ -70,13 +63,13 @@ impl Clock {
     /// Whole milliseconds since reset.
     #[must_use]
     pub fn milliseconds(self) -> u64 {
-        self.cycles() / u64::from(FREQUENCY / 1000)
+        self.frequency.milliseconds(self.cycles())
     }
 
     /// The point in time `span` from now.
     #[must_use]
     pub fn after(self, span: Duration) -> Deadline {
-        self.after_cycles(cycles(span))
+        self.after_cycles(self.frequency.cycles(span))
     }
 
     /// The point in time `cycles` from now.
@@ -117,15 +110,17 @@ impl DelayNs for Clock {
 /// poll with another cause.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
-        self.wait(cycles(Duration::from_nanos(ns.into()))).await;
+        self.wait(self.frequency.cycles(Duration::from_nanos(ns.into())))
+            .await;
     }
 
     async fn delay_us(&mut self, us: u32) {
-        self.wait((u64::from(us) * QUARTERS).div_ceil(4)).await;
+        self.wait(self.frequency.cycles_of_microseconds(us)).await;
     }
 
     async fn delay_ms(&mut self, ms: u32) {
-        self.wait(u64::from(ms) * 250 * QUARTERS).await;
+        self.wait(self.frequency.cycles(Duration::from_millis(ms.into())))
+            .await;
     }
 }
 
@@ -162,26 +157,6 @@ pub fn acknowledge() {
     timer
         .ev_pending()
         .write(EvPending::default().with_zero(true));
-}
-
-/// Converts clock cycles to µs, rounded down.
-#[must_use]
-pub const fn microseconds(cycles: u64) -> u64 {
-    // The reciprocal 4/`QUARTERS` in µs per cycle, with 64 fraction bits and rounded up. The result is exact below 2^55
-    // cycles, which is 14 years. A division would take a thousand cycles instead.
-    const INVERSE: u128 = (4_u128 << 64).div_ceil(QUARTERS as u128);
-    ((cycles as u128 * INVERSE) >> 64) as u64
-}
-
-/// Converts a span to clock cycles, rounded up; saturates.
-#[must_use]
-pub const fn cycles(span: Duration) -> u64 {
-    let frequency = FREQUENCY as u64;
-    // A number of ns below 10^9 times a frequency below 2^27 cannot overflow.
-    let part = (span.subsec_nanos() as u64 * frequency).div_ceil(1_000_000_000);
-    span.as_secs()
-        .saturating_mul(frequency)
-        .saturating_add(part)
 }
 
 #[cfg(test)]
@@ -236,14 +211,14 @@ pub(crate) mod tests {
     /// A clock whose registers are the model that this thread has connected to the bus.
     pub fn clock() -> Clock {
         // SAFETY: a model on the bus answers all accesses, so no device is affected.
-        Clock::new(unsafe { Timer0::steal() }).unwrap()
+        Clock::new(unsafe { Timer0::steal() }, Frequency::DEFAULT).unwrap()
     }
 
     #[test]
     fn a_clock_without_a_counter_is_refused() {
         bus::connect(Uptime::new(0));
         // SAFETY: a model on the bus answers all accesses, so no device is affected.
-        assert!(Clock::new(unsafe { Timer0::steal() }).is_err());
+        assert!(Clock::new(unsafe { Timer0::steal() }, Frequency::DEFAULT).is_err());
     }
 
     #[test]
@@ -295,22 +270,5 @@ pub(crate) mod tests {
         }
         // The delay takes 8125 cycles, and each reading of the clock advances the model by 1000.
         assert_eq!((looks, asked.get()), (9, 8_126));
-    }
-
-    #[test]
-    fn cycles_become_microseconds() {
-        assert_eq!(microseconds(u64::from(FREQUENCY) * 3_600), 3_600_000_000);
-        assert_eq!(
-            microseconds(u64::from(FREQUENCY) * 3_600 - 1),
-            3_599_999_999
-        );
-    }
-
-    #[test]
-    fn spans_become_cycles() {
-        assert_eq!(cycles(Duration::from_secs(2)), 2 * u64::from(FREQUENCY));
-        assert_eq!(cycles(Duration::from_nanos(1)), 1);
-        assert_eq!(cycles(Duration::ZERO), 0);
-        assert_eq!(cycles(Duration::MAX), u64::MAX);
     }
 }

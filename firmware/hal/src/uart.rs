@@ -6,12 +6,13 @@
 //!
 //! ```no_run
 //! # use core::time::Duration;
-//! # use glint_hal::{timer::Clock, uart::Uart};
+//! # use glint_hal::{frequency::Frequency, timer::Clock, uart::Uart};
 //! use embedded_io::Write;
 //! static UART: Uart<1024, 1024> = Uart::new();
 //!
 //! let peripherals = litex_pac::Peripherals::take().unwrap();
-//! let clock = Clock::new(peripherals.timer0)?;
+//! let frequency = Frequency::new(peripherals.identity.clock().read())?;
+//! let clock = Clock::new(peripherals.timer0, frequency)?;
 //! UART.start(peripherals.uart);
 //! let mut console = UART.writer(clock, Duration::from_millis(100));
 //! writeln!(console, "hello")?;

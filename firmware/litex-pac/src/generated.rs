@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xafae_6a44;
+pub const BUILD_ID: u32 = 0xa7da_05be;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -244,6 +244,22 @@ pub mod identity {
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_0804) }
+        }
+
+        /// `clock`, 32 bits: Frequency of the system clock in Hz.
+        #[inline]
+        #[must_use]
+        pub const fn clock(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_0808) }
+        }
+
+        /// `main_ram`, 32 bits: Size of main memory in bytes.
+        #[inline]
+        #[must_use]
+        pub const fn main_ram(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_080c) }
         }
     }
 }

@@ -3,7 +3,6 @@
 use core::fmt::{self, Display};
 
 use glint_core::console::{MachineCommands, write_help};
-use glint_hal::timer::FREQUENCY;
 use litex_pac::ctrl;
 
 use crate::error::CommandError;
@@ -50,7 +49,7 @@ impl<'l> MachineCommands<'l> for Machine {
             ("gateware_id", format_args!("{:#010x}", identity.gateware)),
             ("blocks", format_args!("{:#x}", identity.blocks)),
             ("gateware_draws", format_args!("{subjects}")),
-            ("clock", format_args!("{FREQUENCY}")),
+            ("clock", format_args!("{}", clock.frequency().hertz())),
             ("scene", format_args!("{shown}{with_mesh}")),
             ("vertices", format_args!("{}", mesh.vertex_count())),
             ("triangles", format_args!("{}", mesh.triangle_count())),

@@ -1,7 +1,7 @@
 //! The command `stats`: statistics of the last frame, as keys and values.
 
 use glint_core::picture::Backend;
-use glint_hal::timer::FREQUENCY;
+use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
 use glint_model::FrameStats;
 use glint_model::raymarch::FieldStats;
@@ -17,7 +17,10 @@ use crate::scene::RenderedBy;
 /// No frame was drawn, or its drawing failed.
 pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'static>> {
     let Machine {
-        terminal, scene, ..
+        terminal,
+        scene,
+        clock,
+        ..
     } = machine;
     let drawn = scene
         .drawn()
@@ -32,7 +35,7 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
         }
         RenderedBy::Gateware(counters) => (Backend::Gateware, Some(counters)),
     };
-    let values = frame_values(drawn.cycles, &drawn.stats)
+    let values = frame_values(drawn.cycles, &drawn.stats, clock.frequency())
         .into_iter()
         .chain(engine.iter().flat_map(engine_values));
     if !json {
@@ -52,7 +55,11 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
 
 /// Statistics of a frame that both backends (CPU and gateware) report, as names and values. The capacity of the list suffices
 /// for all statistics.
-fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16> {
+fn frame_values(
+    cycles: u64,
+    stats: &FrameStats,
+    frequency: Frequency,
+) -> Vec<(&'static str, u64), 16> {
     let mut values = Vec::new();
     let _ = values.push(("cycles", cycles));
     if let Some(mesh) = &stats.mesh {
@@ -72,7 +79,7 @@ fn frame_values(cycles: u64, stats: &FrameStats) -> Vec<(&'static str, u64), 16>
     if let Some(field) = &stats.field {
         let _ = values.extend_from_slice(&ray_values(field));
     }
-    let _ = values.push(("clock", FREQUENCY.into()));
+    let _ = values.push(("clock", frequency.hertz().into()));
     values
 }
 

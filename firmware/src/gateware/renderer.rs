@@ -2,6 +2,7 @@
 
 use glint_core::colour::{Shading, Winding};
 use glint_core::picture::Size;
+use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{
     Counters, EngineError, Error, Geometry, Prepared, Raster, Set, TriangleEngine,
@@ -72,13 +73,14 @@ pub struct GatewareRenderer {
 }
 
 impl GatewareRenderer {
-    /// A renderer for two frame buffers, of which the first is at `first_frame_buffer`; `None` if
+    /// A renderer for two frame buffers, of which the first is at `first_frame_buffer`, and a clock of `frequency`; `None` if
     /// `memory` is too small.
     pub fn new(
         engine: TriangleEngine,
         raymarcher: Option<Raymarcher>,
         mut memory: &'static mut [u32],
         first_frame_buffer: u32,
+        frequency: Frequency,
     ) -> Option<Self> {
         let room = Room::of(memory.len())?;
         Some(Self {
@@ -94,7 +96,7 @@ impl GatewareRenderer {
             drawn_sizes: [None; 2],
             stage: Stage::Idle,
             constants: Default::default(),
-            watchdog: Watchdog::default(),
+            watchdog: Watchdog::new(frequency),
             start: Start::default(),
         })
     }
@@ -187,7 +189,7 @@ impl GatewareRenderer {
 
     /// Stores the time and the counters at the start of a measurement, and resets the watchdog.
     pub(super) fn start_measurement(&mut self, frame: &Frame) {
-        self.watchdog = Watchdog::default();
+        self.watchdog.reset();
         self.start = Start {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
             cycles: cpu::cycles(),

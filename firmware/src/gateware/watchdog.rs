@@ -1,22 +1,34 @@
 //! Detection of passes that make no progress.
 
-use glint_hal::timer;
+use glint_hal::frequency::Frequency;
 use glint_hal::triangle::{Counters, TIMEOUT};
 use litex_pac::cpu;
 
-/// Number of clock cycles without progress after which a pass is cancelled.
-const LIMIT: u64 = timer::cycles(TIMEOUT);
-
 /// Watchdog of the triangle engine. It checks that the sum of some of the engine's counters changes, because these counters
 /// grow while the engine works.
-#[derive(Default)]
 pub struct Watchdog {
+    /// Number of clock cycles without progress after which a pass is cancelled.
+    limit: u64,
     progress: u32,
     since: Option<u64>,
 }
 
 impl Watchdog {
-    /// Whether the triangle engine has made no progress for longer than `LIMIT`. The first call starts the measurement of
+    /// A watchdog for a clock of `frequency`, before its first measurement.
+    pub const fn new(frequency: Frequency) -> Self {
+        Self {
+            limit: frequency.cycles(TIMEOUT),
+            progress: 0,
+            since: None,
+        }
+    }
+
+    /// Ends the measurement; the next call of [`is_stuck`](Self::is_stuck) starts another.
+    pub const fn reset(&mut self) {
+        self.since = None;
+    }
+
+    /// Whether the triangle engine has made no progress for longer than [`TIMEOUT`]. The first call starts the measurement of
     /// this time.
     pub fn is_stuck(&mut self, counters: &Counters) -> bool {
         let progress = counters
@@ -25,7 +37,7 @@ impl Watchdog {
             .wrapping_add(counters.cycles_walking);
         let now = cpu::cycles();
         match self.since {
-            Some(since) if progress == self.progress => now - since > LIMIT,
+            Some(since) if progress == self.progress => now - since > self.limit,
             _ => {
                 (self.progress, self.since) = (progress, Some(now));
                 false

@@ -16,42 +16,23 @@ use crate::{paths, run};
 /// Rust target of the soft core.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// What the firmware must know of a board's SoC and does not read from its registers.
-struct Machine {
-    /// Clock cycles per second; `None` for the clock of the register access crate.
-    clock: Option<u64>,
-    /// Size of main memory in bytes.
-    main_ram: u64,
-}
-
-impl Machine {
-    /// The SoC of `board`. The virtual board's and the Urbana's are in the register access crate; the description of any other is
-    /// an output of its gateware build.
-    fn of(board: Board) -> Result<Self> {
-        if board != Board::Ulx3s {
-            return Ok(Self {
-                clock: board.clock()?,
-                main_ram: MAIN_RAM.size.into(),
-            });
-        }
-        let path = board.folder().join("csr.json");
-        let text = fs::read_to_string(&path).with_context(|| {
-            format!(
-                "reading {} (`cargo xtask gateware --board {}` makes it)",
-                path.display(),
-                board.name()
-            )
-        })?;
-        let soc: serde_json::Value = serde_json::from_str(&text)?;
-        let number = |pointer: &str| {
-            let value = soc.pointer(pointer).and_then(serde_json::Value::as_u64);
-            value.with_context(|| format!("{}: no number at {pointer}", path.display()))
-        };
-        Ok(Self {
-            clock: Some(number("/constants/config_clock_frequency")?),
-            main_ram: number("/memories/main_ram/size")?,
-        })
+/// Size in bytes of the main memory of `board`. The virtual board's and the Urbana's is in the register access crate; the description
+/// of any other board is an output of its gateware build.
+fn main_ram(board: Board) -> Result<u64> {
+    if board != Board::Ulx3s {
+        return Ok(MAIN_RAM.size.into());
     }
+    let path = board.folder().join("csr.json");
+    let text = fs::read_to_string(&path).with_context(|| {
+        format!(
+            "reading {} (`cargo xtask gateware --board {}` makes it)",
+            path.display(),
+            board.name()
+        )
+    })?;
+    let soc: serde_json::Value = serde_json::from_str(&text)?;
+    let size = soc["memories"]["main_ram"]["size"].as_u64();
+    size.with_context(|| format!("{} states no size of main memory", path.display()))
 }
 
 /// Builds the firmware for `board` with `features` and returns its image: `target/firmware/glint.bin` for the virtual board and the
@@ -60,7 +41,7 @@ impl Machine {
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
-    let machine = Machine::of(board)?;
+    let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
         Board::Virtual | Board::Urbana => &["glint"],
         Board::Ulx3s => &["glint", board.name()],
@@ -78,10 +59,7 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
         TARGET,
     ]);
     cargo.arg("--features").arg(features.join(","));
-    cargo.env("GLINT_MAIN_RAM_MB", (machine.main_ram >> 20).to_string());
-    if let Some(clock) = machine.clock {
-        cargo.env("GLINT_CLOCK_FREQUENCY", clock.to_string());
-    }
+    cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
     if features.contains(&"peers") {
         // Benchmarked functions of other crates that are generic are compiled in the firmware's crate, so it gets the same
         // optimization level as those crates.
@@ -100,8 +78,7 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
 
     let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware"))
         .context("reading the firmware")?;
-    let (image, sizes) =
-        image(&elf, machine.main_ram).with_context(|| format!("firmware {name}"))?;
+    let (image, sizes) = image(&elf, main_ram).with_context(|| format!("firmware {name}"))?;
     let folder = paths::target().join("firmware");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     let path = folder.join(&name).with_extension("bin");
@@ -138,7 +115,7 @@ fn image(elf: &[u8], main_ram: u64) -> Result<(Vec<u8>, String)> {
             .map(|symbol| symbol.address())
             .with_context(|| format!("no symbol {name}"))
     };
-    let windows_end = symbol("_lists")? + symbol("_lists_size")?;
+    let windows_end = symbol("_windows_end")?;
     ensure!(
         windows_end <= end,
         "the windows end at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"

@@ -11,7 +11,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result};
-use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 
 use crate::{paths, run};
 
@@ -39,22 +38,6 @@ impl Board {
     /// Build folder.
     pub fn folder(self) -> PathBuf {
         paths::target().join("gateware").join(self.name())
-    }
-
-    /// Clock cycles per second of the SoC of the last build, if it is not the frequency that the register access crate states.
-    ///
-    /// # Errors
-    /// The description of the last build is incomplete.
-    pub fn clock(self) -> Result<Option<u64>> {
-        let path = self.folder().join("csr.json");
-        let Ok(text) = fs::read_to_string(&path) else {
-            return Ok(None);
-        };
-        let soc: serde_json::Value = serde_json::from_str(&text)?;
-        let clock = soc["constants"]["config_clock_frequency"]
-            .as_u64()
-            .with_context(|| format!("{} states no frequency of the clock", path.display()))?;
-        Ok((clock != u64::from(CONFIG_CLOCK_FREQUENCY)).then_some(clock))
     }
 }
 

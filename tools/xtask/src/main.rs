@@ -39,7 +39,7 @@ enum Task {
         /// Fields of the raymarcher [default: all; faces for a board with an FPGA]
         #[arg(long, value_enum)]
         fields: Option<gateware::Fields>,
-        /// Frequency of the system clock; `cargo xtask firmware` then builds for it [default: 81.25; 40 for the ulx3s]
+        /// Frequency of the system clock, a multiple of 0.25 [default: 81.25; 40 for the ulx3s]
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
         /// Optional blocks of the build: scanout, triangle, raymarch [default: all]
@@ -57,7 +57,7 @@ enum Task {
     },
     /// Build the firmware
     Firmware {
-        /// Board whose last gateware build states the clock; the ULX3S also has less memory than the others
+        /// Board to build for; the ULX3S has less memory than the others
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
         /// Cargo features of the firmware; `peers` lets the console command `bench` measure other crates too

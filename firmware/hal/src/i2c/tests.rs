@@ -9,6 +9,7 @@ use litex_pac::Peripherals;
 use litex_pac::bus::{self, Bus};
 
 use super::*;
+use crate::frequency::Frequency;
 use crate::timer::tests::{Uptime, clock};
 
 /// Capacity of the command queue and of the receive queue.
@@ -316,7 +317,10 @@ fn periodic_reads_are_taken_one_by_one_with_their_times() {
     }
     for (index, first) in [(1, 0xa0), (2, 0xa3)] {
         let (time, bytes) = look(&mut i2c).unwrap();
-        assert_eq!(time, Ok(microseconds(begun + index * 39_000)));
+        assert_eq!(
+            time,
+            Ok(Frequency::DEFAULT.microseconds(begun + index * 39_000))
+        );
         assert_eq!(bytes, [first, first + 1, first + 2]);
     }
     assert!(look(&mut i2c).is_none());

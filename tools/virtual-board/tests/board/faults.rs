@@ -2,6 +2,8 @@
 
 use crate::firmware::{LIMIT, PROMPT, address, command, image, patch, started};
 use litex_pac::BUILD_ID;
+use litex_pac::memories::MAIN_RAM;
+use virtual_board::{Start, VirtualBoard};
 
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {
@@ -31,6 +33,24 @@ fn gateware_of_another_build_is_reported_and_the_console_works() {
     assert!(command(&mut board, "leds 1").contains("error: "));
     assert_eq!(board.leds(), 0);
     assert!(command(&mut board, "selftest").contains("selftest identity FAILED"));
+}
+
+#[test]
+fn firmware_for_more_memory_than_the_board_has_is_refused() {
+    let mut image = image();
+    // Changes the end of the firmware's memory map from 128 MB to 256 MB.
+    let end = MAIN_RAM.base + 2 * MAIN_RAM.size;
+    patch(&mut image, address(&["GLINT_WINDOWS_END"]), &[end]);
+    let mut board = VirtualBoard::builder()
+        .start(Start::Fast { firmware: &image })
+        .build()
+        .expect("a virtual board");
+    let said = board
+        .read_until("press Enter to restart\r\n", LIMIT)
+        .expect("a refusal");
+    let refusal = "\r\ncannot start: main memory: this firmware expects at least 256 MB, the board has 128 MB; build the firmware of \
+                   this board with `cargo xtask firmware --board BOARD`\r\n";
+    assert!(said.contains(refusal), "{said}");
 }
 
 /// For each trap: its cause, machine code that triggers it, and the trap value. (An access to an address without a device
