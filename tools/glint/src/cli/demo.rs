@@ -142,12 +142,13 @@ impl DemoArguments {
         }
         let path = self.out.join("orbit.png");
         let cycles = self.orbit(&mut renderer, &path)?;
+        let clock = renderer.board().inner().clock_hz();
         let around = format!("{} frames around {name}", self.orbit);
-        let orbit = line(&path, &around, ORBIT_SIZE, cycles);
+        let orbit = line(&path, &around, ORBIT_SIZE, cycles, clock);
         let path = self.out.join("sponge.png");
         let cycles = self.sponge(&mut renderer, &path)?;
         let towards = format!("{} frames towards {SPONGE}, for two eyes", self.sponge);
-        let sponge = line(&path, &towards, SIZE, cycles);
+        let sponge = line(&path, &towards, SIZE, cycles, clock);
         Ok((rows, [orbit, sponge]))
     }
 
@@ -272,12 +273,15 @@ impl DemoArguments {
     }
 }
 
-/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame.
-fn line(path: &Path, what: &str, size: Size, cycles: u64) -> String {
+/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, `clock` the frequency of the board's
+/// clock in Hz.
+fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String {
+    let clock = f64::from(clock);
     format!(
-        "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at 81.25 MHz",
+        "{}: {what}, {size}, by the gateware in {cycles} cycles each: {:.0} frames a second at {} MHz",
         path.display(),
-        81.25e6 / cycles as f64
+        clock / cycles as f64,
+        clock / 1e6
     )
 }
 
@@ -349,10 +353,10 @@ fn file_stem(name: &str) -> String {
 
 fn print_table(rows: &[Row]) -> anyhow::Result<()> {
     say(
-        "                                        cycles a frame      speed-up   frames a second    simulated",
+        "                                        cycles a frame     speed-up     frames  simulated",
     )?;
     say(
-        "picture                triangles   gateware   soft core             81.25 MHz  100 MHz   cycles/s",
+        "picture                triangles   gateware   soft core               a second   cycles/s",
     )?;
     for Row {
         picture,
@@ -363,7 +367,7 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
     } in rows
     {
         let cycles = stats.cycles.unwrap_or_default();
-        let rate = |hertz: f64| hertz / cycles as f64;
+        let rate = stats.clock.unwrap_or_default() as f64 / cycles as f64;
         let (by_cpu, speed_up) = match cpu_cycles {
             Some(by_cpu) => (
                 by_cpu.to_string(),
@@ -372,12 +376,10 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
             None => ("-".to_owned(), "-".to_owned()),
         };
         say(format_args!(
-            "{:<23}{:>9}{:>11}{by_cpu:>12}{speed_up:>12}{:>12.0}{:>9.0}{:>11.0}",
+            "{:<23}{:>9}{:>11}{by_cpu:>12}{speed_up:>12}{rate:>11.0}{:>11.0}",
             picture.display(),
             stats.triangles().triangles_in,
             cycles,
-            rate(81.25e6),
-            rate(100e6),
             cycles_per_second
         ))?;
     }
