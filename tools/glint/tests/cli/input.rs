@@ -179,6 +179,41 @@ fn bad_names_and_numbers() {
             "error: --camera: expected a camera, found radius 6",
         ),
         (
+            &[
+                "render",
+                "cube",
+                "--out",
+                "out.png",
+                "--look-at",
+                "1,2,3,0,0,0",
+            ],
+            "error: --look-at: expected a camera, found gaze (0, 0, 0): expected a non-zero direction",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--fov", "179.5"],
+            "error: --fov: expected 1 to 179 degrees, found '179.5'",
+        ),
+        (
+            &[
+                "render",
+                "--out",
+                "out.png",
+                "--object",
+                "cube matrix 1,0,0,2,0,0,0,0,1",
+            ],
+            "error: --object: expected a model matrix, found matrix row 2: singular",
+        ),
+        (
+            &[
+                "render",
+                "--out",
+                "out.png",
+                "--object",
+                "cube move nan,0,0",
+            ],
+            "error: --object: expected a vector X,Y,Z, found 'nan,0,0'",
+        ),
+        (
             &["render", "cube", "--out", "out.png", "--view", "view.json"],
             "error: view.json: expected {\"eye\":[x,y,z]",
         ),

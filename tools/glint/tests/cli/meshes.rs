@@ -27,6 +27,25 @@ fn renders_and_their_files() {
         picture,
         render("s.png", &["--view", "view.json", "--shading", "smooth"])
     );
+    assert_eq!(picture, render("l.png", &["--look-at", "0,-2,0,0,5,0"]));
+    let view = ["--view", "view.json"];
+    assert_eq!(
+        picture,
+        render("f.png", &[&view[..], &["--far", "100"]].concat())
+    );
+    assert_ne!(
+        picture,
+        render("n.png", &[&view[..], &["--far", "1.8"]].concat())
+    );
+    assert_ne!(
+        picture,
+        render("w.png", &[&view[..], &["--fov", "150"]].concat())
+    );
+    let object = [
+        "--object",
+        "cube scale 0.2 rotate x 30 move 0,-0.6,0 colour ff0000",
+    ];
+    assert_ne!(picture, render("o.png", &[&view[..], &object].concat()));
     assert_eq!(
         render("d.png", &["--size", "1280x720"]).len(),
         1280 * 720 * 3
