@@ -10,11 +10,11 @@ use glint_model::triangle::setup::Facing;
 use glint_model::triangle::shade::intensity;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
-    Clip, Frame, FrameBuffer, FrameStats, MeshSetup, MeshSubject, Object, Placement, Projected,
-    RenderError, SIZES, Subject,
+    Clip, Frame, FrameBuffer, MeshSetup, MeshSubject, Object, Placement, Projected, RenderError,
+    SIZES, Subject,
 };
 use glint_vectors::math::{dot, normalised, world};
-use glint_vectors::{Camera, Model, Random};
+use glint_vectors::{Camera, Model, Picture, Random};
 
 /// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
 const RADIUS: u32 = 14_190;
@@ -168,24 +168,6 @@ fn light_on_objects_against_f64() {
     assert!(worst.iter().all(|&worst| worst <= 0.53));
 }
 
-fn drawn(frame: &Frame) -> (Vec<u16>, Vec<u32>, FrameStats) {
-    let [width, height] = frame.size.pixels();
-    let (mut colour, mut depth) = (
-        vec![0xDEAD; frame.size.pixel_count()],
-        vec![7; frame.size.pixel_count()],
-    );
-    let mut buffer = FrameBuffer {
-        width,
-        height,
-        colour: &mut colour,
-        depth: &mut depth,
-    };
-    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-    let constants = frame.constants().unwrap();
-    let stats = frame.draw(&constants, &mut buffer, &mut scratch, &mut || {});
-    (colour, depth, stats.unwrap())
-}
-
 fn object(mesh: Mesh, matrix: Matrix) -> Object {
     Object {
         subject: MeshSubject::new(mesh),
@@ -194,8 +176,8 @@ fn object(mesh: Mesh, matrix: Matrix) -> Object {
     }
 }
 
-fn of(objects: &[Object], view: View) -> (Vec<u16>, Vec<u32>, FrameStats) {
-    drawn(&Frame::new(Subject::Objects(objects), view, Size::W320))
+fn of(objects: &[Object], view: View) -> Picture {
+    Picture::of_frame(&Frame::new(Subject::Objects(objects), view, Size::W320))
 }
 
 #[test]
@@ -215,7 +197,7 @@ fn an_object_with_the_identity_is_the_mesh() {
             ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
         };
         let view = Camera::inside(&mut random).rounded();
-        let alone = drawn(&Frame::new(Subject::Mesh(subject), view, Size::W320));
+        let alone = Picture::of_frame(&Frame::new(Subject::Mesh(subject), view, Size::W320));
         let object = Object {
             subject,
             ..object(subject.mesh, Matrix::IDENTITY)
@@ -245,15 +227,12 @@ fn a_negative_scale_flips_the_winding() {
         let view = Camera::looking(eye, [0.0; 3], 0.5, 0.1).rounded();
         let matrix = Matrix::scale([number(-1.0), Q8_24::ONE, Q8_24::ONE]).unwrap();
         let object = object(Mesh::new_checked(&plain).unwrap(), matrix);
-        let (_, depth, stats) = of(&[object], view);
+        let found = of(&[object], view);
         let mesh = Mesh::new_checked(&mirrored).unwrap();
-        let (_, expected, expected_stats) =
-            drawn(&Frame::new(Subject::mesh(mesh), view, Size::W320));
-        let covered_by = |depth: &[u32]| depth.iter().map(|&code| code > 0).collect::<Vec<_>>();
-        assert!(covered_by(&depth) == covered_by(&expected));
-        let drawn = |stats: FrameStats| stats.mesh.unwrap().drawn;
-        assert_eq!(drawn(stats), drawn(expected_stats));
-        covered += covered_by(&depth).iter().filter(|&&on| on).count();
+        let expected = Picture::of_frame(&Frame::new(Subject::mesh(mesh), view, Size::W320));
+        assert!(found.coverage() == expected.coverage());
+        assert_eq!(found.stats.drawn, expected.stats.drawn);
+        covered += found.covered();
     }
     assert!(covered > 100_000, "{covered}");
 }
@@ -274,9 +253,9 @@ fn objects_share_one_depth() {
     let far = object(at(-0.25, 0.5), blue);
     let pictures = [of(&[near, far], view), of(&[far, near], view)];
     // The order does not matter for different depths.
-    assert!(pictures[0].0 == pictures[1].0 && pictures[0].1 == pictures[1].1);
-    let alone = [of(&[near], view).1, of(&[far], view).1];
-    for (i, &colour) in pictures[0].0.iter().enumerate() {
+    assert!(pictures[0].colour == pictures[1].colour && pictures[0].depth == pictures[1].depth);
+    let alone = [of(&[near], view).depth, of(&[far], view).depth];
+    for (i, &colour) in pictures[0].colour.iter().enumerate() {
         let expected = match (alone[0][i] > 0, alone[1][i] > 0) {
             (true, _) => colour & 0xF800 != 0 && colour & 0x001F == 0,
             (false, true) => colour & 0x001F != 0 && colour & 0xF800 == 0,
@@ -289,11 +268,11 @@ fn objects_share_one_depth() {
         &[object(at(0.0, 0.0), red), object(at(0.0, 0.0), blue)],
         view,
     );
-    assert!(twice.0.iter().all(|colour| colour & 0xF800 == 0));
-    assert_eq!(twice.2.mesh.unwrap().triangles_in, 24);
+    assert!(twice.colour.iter().all(|colour| colour & 0xF800 == 0));
+    assert_eq!(twice.stats.triangles_in, 24);
     // No object: an empty picture.
-    let (colour, depth, _) = of(&[], view);
-    assert!(colour.iter().all(|&x| x == 0) && depth.iter().all(|&x| x == 0));
+    let empty = of(&[], view);
+    assert!(empty.colour.iter().all(|&x| x == 0) && empty.covered() == 0);
 }
 
 /// Clipped triangles of all objects come after all others, as in the lists of the gateware.
@@ -312,15 +291,15 @@ fn clipped_objects_are_drawn() {
         object.subject.cull = false;
         object
     });
-    let (_, depth, stats) = of(&objects, view);
-    let stats = stats.mesh.unwrap();
+    let picture = of(&objects, view);
+    let stats = picture.stats;
     assert!(
-        stats.clipped > 20 && depth.iter().all(|&code| code > 0),
+        stats.clipped > 20 && picture.covered() == picture.depth.len(),
         "{stats:?}"
     );
     let sum: u32 = objects
         .iter()
-        .map(|object| of(&[*object], view).2.mesh.unwrap().drawn)
+        .map(|object| of(&[*object], view).stats.drawn)
         .sum();
     assert_eq!(stats.drawn, sum);
 }

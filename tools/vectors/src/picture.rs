@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, Stats, trace};
+use glint_model::{DrawnTriangle, Frame, FrameBuffer, Options, Projected, Stats, trace};
 
 use crate::model::Model;
 
@@ -94,6 +94,22 @@ impl Picture {
     #[must_use]
     pub fn of(model: &Model, view: &View, size: (u32, u32), cull: bool) -> Self {
         Self::of_bytes(&model.encoded(), view, size, cull)
+    }
+
+    /// Renders a frame. The list of drawn triangles stays empty.
+    ///
+    /// # Panics
+    /// If the renderer refuses the frame.
+    #[must_use]
+    pub fn of_frame(frame: &Frame) -> Self {
+        let [width, height] = frame.size.pixels();
+        let mut picture = Self::blank((width, height));
+        picture.depth.fill(0xDEAD);
+        let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+        let constants = frame.constants().unwrap();
+        let stats = frame.draw(&constants, &mut picture.target(), &mut scratch, &mut || {});
+        picture.stats = stats.unwrap().mesh.unwrap_or_default();
+        picture
     }
 
     /// Whether each pixel is covered by a triangle, line by line.
