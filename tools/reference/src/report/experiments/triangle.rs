@@ -44,7 +44,7 @@ struct Case {
 /// 96 % of the picture's height.
 const FILLING: f64 = 0.4781;
 
-const CASES: [Case; 7] = [
+const CASES: [Case; 9] = [
     Case {
         name: "one triangle over the whole screen",
         mesh: screen,
@@ -74,6 +74,20 @@ const CASES: [Case; 7] = [
         target: Target::Triangle(28.0, 10.0),
     },
     Case {
+        name: "scan:59, 69,620 triangles",
+        mesh: || named("scan:59"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Triangle(5.0, 4.5),
+    },
+    Case {
+        name: "scan:59, order of its file",
+        mesh: || in_file_order("scan:59"),
+        size: (320, 180),
+        half_width: FILLING,
+        target: Target::Triangle(9.0, 8.0),
+    },
+    Case {
         name: "icosphere:10, 2,000 triangles",
         mesh: || named("icosphere:10"),
         size: (320, 180),
@@ -97,8 +111,20 @@ const CASES: [Case; 7] = [
 ];
 
 fn named(name: &str) -> Result<Vec<u8>> {
+    generated(name, Options::default())
+}
+
+fn in_file_order(name: &str) -> Result<Vec<u8>> {
+    let options = Options {
+        keep_order: true,
+        ..Options::default()
+    };
+    generated(name, options)
+}
+
+fn generated(name: &str, options: Options) -> Result<Vec<u8>> {
     let polygons = generate::named(name).map_err(|error| anyhow::anyhow!("{name}: {error}"))?;
-    Ok(convert::convert(&polygons, Options::default())
+    Ok(convert::convert(&polygons, options)
         .map_err(|error| anyhow::anyhow!("{name}: {error}"))?
         .0)
 }
