@@ -9,11 +9,13 @@ use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::picture::Size;
 use glint_core::wire::Failure;
+use glint_core::wireframe::ProgramError;
 use glint_model::RenderError;
 
 use crate::gateware::Fallback;
 use crate::models::{FIELDS, Model};
 use crate::sensor::{CalibrationError, SensorError};
+use crate::wireframe::WIREFRAME;
 
 /// Reason why a command failed. `Display` is the text after `error: `.
 #[derive(Debug)]
@@ -59,6 +61,12 @@ pub enum CommandError<'l> {
     Transfer(Failure),
     /// The upload is not a mesh.
     Mesh(MeshError),
+    /// The upload is not a wireframe program.
+    Program(ProgramError<'static>),
+    /// A key of the wireframe was pressed while no wireframe is shown.
+    NoWireframe,
+    /// A key would move the wireframe out of range.
+    Reach,
     /// The frame could not be drawn.
     Render(RenderError),
     /// No frame has been drawn yet.
@@ -95,7 +103,8 @@ impl Display for CommandError<'_> {
                 write!(f, "scene `{name}`: expected")?;
                 let models = Model::ALL.iter().map(|model| model.name());
                 let fields = FIELDS.iter().map(|(name, _)| *name);
-                models.chain(fields).enumerate().try_for_each(|(i, name)| {
+                let names = models.chain(fields).chain([WIREFRAME]);
+                names.enumerate().try_for_each(|(i, name)| {
                     write!(f, "{} {name}", if i == 0 { "" } else { " or" })
                 })
             }
@@ -129,6 +138,13 @@ impl Display for CommandError<'_> {
             } => write!(f, "{command} {bytes}: expected at most {room} bytes"),
             Self::Transfer(error) => error.fmt(f),
             Self::Mesh(error) => write!(f, "load: not a mesh, previous mesh kept: {error}"),
+            Self::Program(error) => write!(f, "program: previous scene kept: {error}"),
+            Self::NoWireframe => f.write_str(
+                "press: no wireframe shown, expected `scene wireframe` or `program` first",
+            ),
+            Self::Reach => {
+                f.write_str("press: the wireframe is 16 from its start, expected another key")
+            }
             Self::Render(error) => write!(f, "render: {error}"),
             Self::NoFrame => f.write_str("stats: no frame drawn, expected `render` first"),
             Self::Kernel { name, expected } => {

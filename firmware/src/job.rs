@@ -23,6 +23,8 @@ pub enum Reply {
 
 /// Work that continues after a command has returned.
 pub enum Job {
+    /// Draw the scene.
+    Draw,
     /// Draw the scene, then print the frame's statistics.
     Render,
     /// Draw the scene, then send the frame.

@@ -13,6 +13,7 @@ use crate::scene::Scene;
 use crate::sensor::Imu;
 use crate::terminal::{ConsoleUart, Terminal};
 use crate::transfer::Downloads;
+use crate::wireframe::Keypad;
 
 /// Build ids of firmware and gateware.
 #[derive(Clone, Copy)]
@@ -56,7 +57,7 @@ pub struct Machine {
     pub terminal: Terminal,
     /// Camera, field, size and appearance.
     pub scene: Scene,
-    /// The built-in mesh, the uploaded mesh and the staging memory.
+    /// The built-in mesh and wireframe program, the uploaded one and the staging memory.
     pub models: Models,
     /// Frame buffers and renderers.
     pub renderer: Renderer,
@@ -64,6 +65,8 @@ pub struct Machine {
     pub imu: Imu,
     /// The devices; `None` if the build ids differ.
     pub devices: Option<Devices>,
+    /// The buttons, and the requests of the wireframe's keys.
+    pub keypad: Keypad,
     /// The registers that reset the SoC.
     pub ctrl: Ctrl,
     /// Whether the first LED blinks: true until a command sets the LEDs.
@@ -95,6 +98,7 @@ impl Machine {
             renderer,
             imu: Imu::default(),
             devices,
+            keypad: Keypad::default(),
             ctrl,
             heartbeat: true,
             downloads: Downloads::new(&UART, clock),

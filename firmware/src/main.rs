@@ -33,7 +33,7 @@ mod machine;
 mod main_loop;
 #[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
 mod memory;
-#[allow(unsafe_code)] // Keeps a mesh beyond the borrow of its buffer.
+#[allow(unsafe_code)] // Keeps a mesh or a program beyond the borrow of its buffer.
 mod models;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
@@ -47,6 +47,7 @@ mod sensor;
 mod start;
 mod terminal;
 mod transfer;
+mod wireframe;
 
 use main_loop::MainLoop;
 

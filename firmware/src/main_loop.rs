@@ -11,16 +11,18 @@ use core::time::Duration;
 use embedded_hal::digital::StatefulOutputPin;
 use glint_core::calibration::SAMPLES;
 use glint_core::mpu6050::Stream;
-use glint_hal::timer::Deadline;
+use glint_hal::timer::{Clock, Deadline};
 use litex_pac::cpu;
 
 use crate::commands::{self, imu, replay, statistics};
 use crate::error::CommandError;
 use crate::interrupts;
 use crate::job::{Job, Reply};
-use crate::machine::Machine;
-use crate::sensor::{self, Inbox};
+use crate::machine::{Devices, Machine};
+use crate::scene::Scene;
+use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::Input;
+use crate::wireframe::{self, Keypad};
 
 /// Idle time after a reply before the scene is redrawn. It is too short to be visible, but a series of commands then
 /// causes a single frame.
@@ -40,8 +42,6 @@ pub struct MainLoop {
     job: Option<Job>,
     /// Time of the next change of the blinking LED.
     beat: Deadline,
-    /// Buttons that were pressed at the last poll, one bit each.
-    pressed: u8,
     /// Time at which the idle time after a reply ends.
     quiet: Deadline,
 }
@@ -54,7 +54,6 @@ impl MainLoop {
             machine,
             job: None,
             beat: clock.after(Duration::ZERO),
-            pressed: 0,
             quiet: clock.after(QUIET),
         }
     }
@@ -85,6 +84,7 @@ impl MainLoop {
             sensor::deliver(&mut self.machine.imu);
             self.answer();
             self.steer();
+            self.step();
             interrupts::sleep_unless(|| self.is_busy());
         }
     }
@@ -94,6 +94,8 @@ impl MainLoop {
         // The last condition is for SoCs without scan-out, where no interrupt would wake the loop for the blinking LED.
         self.answers_next()
             || self.machine.renderer.is_ready(&self.machine.scene)
+            || self.machine.keypad.is_changing()
+            || self.may_step()
             || sensor::has_events()
             || matches!(self.job, Some(Job::Replay))
             || !self.machine.renderer.display.is_visible()
@@ -157,6 +159,36 @@ impl MainLoop {
         }
     }
 
+    /// Whether a key has requested a step of the wireframe, and a frame can be drawn.
+    fn may_step(&mut self) -> bool {
+        let Machine {
+            keypad,
+            scene,
+            renderer,
+            ..
+        } = &mut self.machine;
+        keypad.has_request()
+            && !scene.changed()
+            && !renderer.is_busy()
+            && renderer.display.back().is_some()
+    }
+
+    /// Moves the wireframe by the request of one key, if a frame can be drawn: each frame has at most one step.
+    fn step(&mut self) {
+        if !self.may_step() {
+            return;
+        }
+        let Machine {
+            keypad,
+            scene,
+            devices,
+            ..
+        } = &mut self.machine;
+        if let (Some(key), Some(devices)) = (keypad.take(), devices) {
+            scene.move_wireframe(key.step(wireframe::rotates(devices.switches.read())));
+        }
+    }
+
     /// Draws the scene if it has changed and a frame buffer is free.
     fn draw(&mut self) {
         let Machine {
@@ -165,17 +197,22 @@ impl MainLoop {
             models,
             renderer,
             imu,
+            devices,
+            keypad,
+            clock,
             ..
         } = &mut self.machine;
-        if matches!(self.job, Some(Job::Render | Job::Frame { .. })) && scene.changed() {
+        if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && scene.changed()
+        {
             renderer.drop_pending();
         }
         let progress = || {
             terminal.listen();
             sensor::deliver(imu);
+            poll_buttons(devices, keypad, *clock, scene, imu);
         };
         if (renderer.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
-            && let Some(drawn) = renderer.draw(models.mesh(), scene, progress)
+            && let Some(drawn) = renderer.draw(models, scene, progress)
         {
             scene.set_drawn(drawn);
         }
@@ -189,6 +226,7 @@ impl MainLoop {
             Job::Sensor(job) => imu::poll(machine, job),
             Job::Replay => replay::poll(machine),
             _ if machine.scene.changed() => Poll::Pending,
+            Job::Draw => Poll::Ready(Ok(())),
             Job::Render => Poll::Ready(statistics::print(machine, false)),
             Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
             Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
@@ -218,19 +256,15 @@ impl MainLoop {
 
     /// Acts on buttons that were pressed since the last poll.
     fn poll_buttons(&mut self) {
-        let Machine { devices, imu, .. } = &mut self.machine;
-        let Some(devices) = devices else {
-            return;
-        };
-        let pressed = devices.buttons.read();
-        let new = pressed & !self.pressed;
-        self.pressed = pressed;
-        if new & CALIBRATE != 0 {
-            imu.calibrate(SAMPLES);
-        }
-        if new & RECENTRE != 0 {
-            imu.recentre();
-        }
+        let Machine {
+            devices,
+            keypad,
+            clock,
+            scene,
+            imu,
+            ..
+        } = &mut self.machine;
+        poll_buttons(devices, keypad, *clock, scene, imu);
     }
 
     /// Blinks the first LED.
@@ -250,5 +284,30 @@ impl MainLoop {
         if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
             let Ok(()) = devices.leds.pin(0).toggle();
         }
+    }
+}
+
+/// Acts on buttons that were pressed since the last poll: they are keys of the wireframe while it is shown, and serve the sensor
+/// otherwise.
+fn poll_buttons(
+    devices: &Option<Devices>,
+    keypad: &mut Keypad,
+    clock: Clock,
+    scene: &Scene,
+    imu: &mut Imu,
+) {
+    let Some(devices) = devices else {
+        return;
+    };
+    let pressed = keypad.sample(devices.buttons.read(), clock);
+    if scene.shows_wireframe() {
+        keypad.press(pressed, devices.switches.read());
+        return;
+    }
+    if pressed & CALIBRATE != 0 {
+        imu.calibrate(SAMPLES);
+    }
+    if pressed & RECENTRE != 0 {
+        imu.recentre();
     }
 }

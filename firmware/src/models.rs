@@ -1,14 +1,15 @@
-//! Meshes and named fields: the built-in mesh, the uploaded one, and the staging memory for the next upload.
+//! Meshes, wireframe programs and named fields: the built-in ones, the uploaded one, and the staging memory for the next upload.
 
 use core::slice;
 
 use glint_core::field::{Cubes, Field, Menger, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Mesh, MeshError};
+use glint_core::wireframe::{Program, ProgramError};
 
 use crate::cube;
 
-/// Memory for one mesh.
+/// Memory for one mesh or wireframe program.
 pub struct Buffer {
     memory: &'static mut [u8],
 }
@@ -57,35 +58,52 @@ pub const FIELDS: [(&str, Field); 2] = [
     ),
 ];
 
-/// The built-in and the uploaded mesh, and two buffers: one for the uploaded mesh, one as staging memory.
+/// The last upload.
+enum Upload {
+    Mesh(Mesh<'static>),
+    Program(Program<'static>),
+}
+
+/// The built-in mesh and program, and two buffers: one for the uploaded mesh or program, one as staging memory.
 pub struct Models {
     buffers: [Buffer; 2],
-    /// The uploaded mesh, in the first buffer.
-    uploaded: Option<Mesh<'static>>,
+    /// The uploaded mesh or program, in the first buffer.
+    uploaded: Option<Upload>,
     shown: Model,
     cube: Mesh<'static>,
+    /// The built-in program, shown until a program is uploaded.
+    cube_program: Program<'static>,
 }
 
 impl Models {
-    /// The models at start: the cube is shown.
+    /// The models at start: the cube is shown. `cube_program` is the built-in wireframe program.
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
-    pub fn new(buffers: [Buffer; 2]) -> Result<Self, MeshError> {
+    pub fn new(buffers: [Buffer; 2], cube_program: Program<'static>) -> Result<Self, MeshError> {
         let cube = Mesh::new_checked(&cube::BYTES)?;
         Ok(Self {
             buffers,
             uploaded: None,
             shown: Model::Cube,
             cube,
+            cube_program,
         })
     }
 
     /// The shown mesh.
     pub fn mesh(&self) -> &Mesh<'_> {
         match (self.shown, &self.uploaded) {
-            (Model::Uploaded, Some(mesh)) => mesh,
+            (Model::Uploaded, Some(Upload::Mesh(mesh))) => mesh,
             _ => &self.cube,
+        }
+    }
+
+    /// The wireframe program.
+    pub const fn program(&self) -> &Program<'_> {
+        match &self.uploaded {
+            Some(Upload::Program(program)) => program,
+            _ => &self.cube_program,
         }
     }
 
@@ -94,9 +112,9 @@ impl Models {
         self.shown
     }
 
-    /// Whether the model exists: always true for the cube, and true for the upload after the first upload.
+    /// Whether the model exists: always true for the cube, and true for the upload while a mesh is the last upload.
     pub const fn has(&self, model: Model) -> bool {
-        matches!(model, Model::Cube) || self.uploaded.is_some()
+        matches!(model, Model::Cube) || matches!(self.uploaded, Some(Upload::Mesh(_)))
     }
 
     /// Shows a model if it exists. Returns whether it exists.
@@ -119,14 +137,36 @@ impl Models {
     /// # Errors
     /// [`MeshError`] for an invalid mesh; then nothing changes.
     pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
-        let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
-        // SAFETY: the memory is 'static. The mesh is stored as `uploaded`, and its buffer becomes the first buffer
-        // below. Only `staging` lends a buffer for writing, and always lends the second buffer. Only this function swaps
-        // the buffers, and it drops the old mesh when it does so.
-        let staged: &'static [u8] = unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) };
-        self.uploaded = Some(Mesh::new_checked(staged)?);
-        self.buffers.swap(0, 1);
+        let mesh = Mesh::new_checked(self.staged(length))?;
+        self.keep(Upload::Mesh(mesh));
         self.shown = Model::Uploaded;
         Ok(())
+    }
+
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program in place of the
+    /// last upload.
+    ///
+    /// # Errors
+    /// [`ProgramError`] for an invalid program; then nothing changes.
+    pub fn accept_program(&mut self, length: usize) -> Result<(), ProgramError<'static>> {
+        let program = Program::new_checked(self.staged(length))?;
+        self.keep(Upload::Program(program));
+        self.shown = Model::Cube;
+        Ok(())
+    }
+
+    /// The first `length` bytes of the staging memory, for [`keep`](Self::keep).
+    fn staged(&self, length: usize) -> &'static [u8] {
+        let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
+        // SAFETY: the memory is 'static. The callers drop the slice, or pass what borrows from it to `keep`, by which its buffer
+        // becomes the first buffer. Only `staging` lends a buffer for writing, and always lends the second buffer. Only `keep`
+        // swaps the buffers, and it drops the last upload when it does so.
+        unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) }
+    }
+
+    /// Keeps an upload that borrows from the staging memory, in place of the last one.
+    fn keep(&mut self, upload: Upload) {
+        self.uploaded = Some(upload);
+        self.buffers.swap(0, 1);
     }
 }

@@ -1,6 +1,5 @@
 //! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
 
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_hal::scanout::Display;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
@@ -8,6 +7,7 @@ use litex_pac::cpu;
 
 use crate::gateware::{self, Fallback, GatewareRenderer, Output};
 use crate::memory::Scratch;
+use crate::models::Models;
 use crate::scene::{Drawn, RenderedBy, Scene};
 
 /// The renderers of gateware and CPU, and their memory.
@@ -23,16 +23,16 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Draws the frame of `scene` with `mesh`, and shows it from the next vertical blanking on. Returns `None` while
-    /// the gateware draws, and while the frame buffer to draw into is still on the screen; `mesh` and `scene` must not
+    /// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns `None` while
+    /// the gateware draws, and while the frame buffer to draw into is still on the screen; `models` and `scene` must not
     /// change meanwhile. Drawing by the CPU takes long and calls `progress` at short intervals.
     pub fn draw(
         &mut self,
-        mesh: &Mesh,
+        models: &Models,
         scene: &Scene,
         progress: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
-        let frame = scene.frame(*mesh);
+        let frame = scene.frame(models);
         let drawn = match self.draw_by_gateware(&frame, scene)? {
             Ok(gateware::Rendered {
                 cycles,
@@ -131,7 +131,7 @@ impl Renderer {
     /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn repeat(
         &mut self,
-        mesh: &Mesh,
+        models: &Models,
         scene: &Scene,
         count: u32,
     ) -> Option<Result<gateware::Rendered, Fallback>> {
@@ -141,7 +141,7 @@ impl Renderer {
             colour,
             depth: None,
         };
-        Some(gateware.repeat(&scene.frame(*mesh), &mut output, count))
+        Some(gateware.repeat(&scene.frame(models), &mut output, count))
     }
 
     /// Colours of the last frame: RGB565, row by row.

@@ -5,13 +5,16 @@ use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
+use glint_core::wireframe::{Motion, Step};
 use glint_hal::triangle::Counters;
-use glint_model::{Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject};
+use glint_model::{
+    Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject, WireframeSubject,
+};
 
 use crate::gateware::Fallback;
+use crate::models::Models;
 
 /// A camera on a sphere about the origin.
 #[derive(Clone, Copy)]
@@ -62,6 +65,8 @@ pub enum RenderedBy {
 
 /// The state that the console sets.
 pub struct Scene {
+    /// The motion of the wireframe, while it is shown.
+    wireframe: Option<Motion>,
     field: Option<Field>,
     with_mesh: bool,
     stereo: Option<Stereo>,
@@ -88,6 +93,7 @@ impl Scene {
     pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
+            wireframe: None,
             field: None,
             with_mesh: false,
             stereo: None,
@@ -107,18 +113,22 @@ impl Scene {
         })
     }
 
-    /// The frame of the scene, with `mesh` as its model.
-    pub const fn frame<'a>(&'a self, mesh: Mesh<'a>) -> Frame<'a> {
+    /// The frame of the scene, with the shown mesh or program of `models`.
+    pub fn frame<'a>(&'a self, models: &'a Models) -> Frame<'a> {
         let mesh = MeshSubject {
-            mesh,
+            mesh: *models.mesh(),
             cull: self.cull,
             shading: self.shading,
             clip: self.clip,
             winding: self.winding,
         };
-        let subject = match &self.field {
-            None => Subject::Mesh(mesh),
-            Some(field) => {
+        let subject = match (&self.wireframe, &self.field) {
+            (Some(motion), _) => Subject::Wireframe(WireframeSubject {
+                program: *models.program(),
+                pose: motion.pose(),
+            }),
+            (None, None) => Subject::Mesh(mesh),
+            (None, Some(field)) => {
                 let field = FieldSubject {
                     field,
                     appearance: &self.appearance,
@@ -135,14 +145,35 @@ impl Scene {
         Frame::new(subject, self.view, self.size)
     }
 
+    /// Whether the wireframe is shown.
+    pub const fn shows_wireframe(&self) -> bool {
+        self.wireframe.is_some()
+    }
+
+    /// Shows the wireframe as its program has it.
+    pub fn show_wireframe(&mut self) {
+        self.wireframe = Some(Motion::default());
+        self.changed = true;
+    }
+
+    /// Moves the wireframe by a step, if it is shown. Returns whether the step was possible.
+    pub fn move_wireframe(&mut self, step: Step) -> bool {
+        let moved = self
+            .wireframe
+            .as_mut()
+            .is_some_and(|motion| motion.apply(step));
+        self.changed |= moved;
+        moved
+    }
+
     /// The distance field, alone or with the mesh in it.
     pub const fn field(&self) -> Option<&Field> {
         self.field.as_ref()
     }
 
-    /// Shows a field, or the mesh alone for `None`.
+    /// Shows a field, or the mesh alone for `None`, in place of the wireframe if it is shown.
     pub fn set_field(&mut self, field: Option<Field>) {
-        self.changed |= self.field != field;
+        self.changed |= self.wireframe.take().is_some() || self.field != field;
         self.field = field;
     }
 

@@ -5,6 +5,7 @@ use core::fmt::{self, Write as _};
 use glint_core::camera::ViewError;
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
+use glint_core::wireframe::{Program, ProgramError};
 use glint_hal::frequency::{Frequency, NotAFrequency};
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
@@ -22,6 +23,7 @@ use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
+use crate::wireframe;
 
 /// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
 #[unsafe(no_mangle)]
@@ -44,6 +46,8 @@ pub enum StartError {
     Clock(Stopped),
     /// The built-in model is not a mesh.
     Cube(MeshError),
+    /// The built-in program is not a wireframe program.
+    Program(ProgramError<'static>),
     /// The camera at start is out of range.
     Camera(ViewError),
 }
@@ -62,6 +66,7 @@ impl fmt::Display for StartError {
             ),
             Self::Clock(stopped) => stopped.fmt(f),
             Self::Cube(error) => write!(f, "the built-in cube: {error}"),
+            Self::Program(error) => write!(f, "the built-in {error}"),
             Self::Camera(error) => write!(f, "the first camera: {error}"),
         }
     }
@@ -145,11 +150,14 @@ pub fn machine() -> Result<Machine, StartError> {
         Backend::Cpu
     };
 
+    let program = Program::new_checked(wireframe::PROGRAM.as_flattened());
+    let program = program.map_err(StartError::Program)?;
+
     Ok(Machine::new(
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
-        Models::new(memory.meshes).map_err(StartError::Cube)?,
+        Models::new(memory.meshes, program).map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

@@ -12,7 +12,6 @@ mod error;
 mod syntax;
 mod table;
 mod values;
-mod words;
 
 pub use command::{
     AppearanceCommands, CameraCommands, Command, Executor, FrameCommands, ImuCommands,
@@ -21,4 +20,3 @@ pub use command::{
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use error::ParseError;
 pub use values::ImuAction;
-pub use words::{Word, Words};

@@ -35,3 +35,4 @@ pub mod trig;
 pub mod vector;
 pub mod wire;
 pub mod wireframe;
+pub mod words;

@@ -67,7 +67,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
     } = machine;
     // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
     let rendered = loop {
-        if let Some(rendered) = renderer.repeat(models.mesh(), scene, FRAMES) {
+        if let Some(rendered) = renderer.repeat(models, scene, FRAMES) {
             break rendered.map_err(CommandError::Engine)?;
         }
     };

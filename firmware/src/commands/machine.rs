@@ -10,6 +10,7 @@ use crate::gateware::GatewareRenderer;
 use crate::job::{Outcome, Reply};
 use crate::machine::{Devices, Machine};
 use crate::selftest;
+use crate::wireframe::WIREFRAME;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
@@ -34,10 +35,16 @@ impl<'l> MachineCommands<'l> for Machine {
         let mesh = models.mesh();
         let (field, model) = (scene.field(), models.shown().name());
         let with_mesh = match field {
-            Some(_) if scene.with_mesh() => format_args!(" with {model}"),
+            Some(_) if scene.with_mesh() && !scene.shows_wireframe() => {
+                format_args!(" with {model}")
+            }
             _ => format_args!(""),
         };
-        let shown: &dyn Display = field.map_or(&model, |field| field);
+        let shown: &dyn Display = if scene.shows_wireframe() {
+            &WIREFRAME
+        } else {
+            field.map_or(&model, |field| field)
+        };
         let [width, height] = scene.size().pixels();
         let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
         let counters = renderer.display.counters();

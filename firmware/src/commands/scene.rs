@@ -1,17 +1,19 @@
-//! Commands that upload meshes and select what the scene shows: a mesh, a field, or both.
+//! Commands that upload meshes and wireframe programs and select what the scene shows: a mesh, a field, both, or a wireframe.
 
 use glint_core::choice::switch_name;
 use glint_core::console::SceneCommands;
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
 use glint_core::wire::Manifest;
+use glint_core::wireframe::Key;
 
 use super::upload;
 use crate::error::CommandError;
 use crate::format::OrOff;
-use crate::job::{Outcome, Reply};
+use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
 use crate::models::{FIELDS, Model};
+use crate::wireframe::WIREFRAME;
 
 impl<'l> SceneCommands<'l> for Machine {
     fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
@@ -29,6 +31,25 @@ impl<'l> SceneCommands<'l> for Machine {
         self.scene.set_field(None);
         self.scene.touch();
         Ok(Reply::Done)
+    }
+
+    fn program(&mut self, upload: Manifest) -> Outcome<'l> {
+        upload::receive(self, "program", upload)?;
+        let length = upload.length as usize;
+        let accepted = self.models.accept_program(length);
+        accepted.map_err(CommandError::Program)?;
+        self.scene.show_wireframe();
+        Ok(Reply::Done)
+    }
+
+    fn press(&mut self, key: Key, rotate: bool) -> Outcome<'l> {
+        if !self.scene.shows_wireframe() {
+            return Err(CommandError::NoWireframe);
+        }
+        if !self.scene.move_wireframe(key.step(rotate)) {
+            return Err(CommandError::Reach);
+        }
+        Ok(Reply::After(Job::Draw))
     }
 
     fn field(&mut self, field: Option<Option<Field>>) -> Outcome<'l> {
@@ -74,9 +95,10 @@ fn list(machine: &mut Machine) {
         scene,
         ..
     } = machine;
+    let wireframe = scene.shows_wireframe();
     let field = scene.field();
     for model in Model::ALL {
-        let shown = (field.is_none() || scene.with_mesh()) && model == models.shown();
+        let shown = !wireframe && (field.is_none() || scene.with_mesh()) && model == models.shown();
         let state = match (shown, models.has(model)) {
             (true, _) => "shown",
             (_, true) => "there",
@@ -85,14 +107,20 @@ fn list(machine: &mut Machine) {
         terminal.print(format_args!("scene {} {state}\n", model.name()));
     }
     for (name, named) in FIELDS {
-        let shown = field == Some(&named);
+        let shown = !wireframe && field == Some(&named);
         let state = if shown { "shown" } else { "there" };
         terminal.print(format_args!("scene {name} {state}\n"));
     }
+    let state = if wireframe { "shown" } else { "there" };
+    terminal.print(format_args!("scene {WIREFRAME} {state}\n"));
 }
 
 fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
     let Machine { models, scene, .. } = machine;
+    if name == WIREFRAME {
+        scene.show_wireframe();
+        return Ok(());
+    }
     if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
         scene.set_field(Some(*field));
         return Ok(());

@@ -79,6 +79,13 @@ fn frame_values(
     if let Some(field) = &stats.field {
         let _ = values.extend_from_slice(&ray_values(field));
     }
+    if let Some(wireframe) = &stats.wireframe {
+        let _ = values.extend_from_slice(&[
+            ("segments", wireframe.segments.into()),
+            ("lines", wireframe.lines.into()),
+            ("line_pixels", wireframe.pixels),
+        ]);
+    }
     let _ = values.push(("clock", frequency.hertz().into()));
     values
 }

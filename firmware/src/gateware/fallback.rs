@@ -21,6 +21,8 @@ pub enum Fallback {
     Winding,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
+    /// The gateware has no line engine for a wireframe.
+    NoLineEngine,
 }
 
 impl From<EngineError> for Fallback {
@@ -53,6 +55,7 @@ impl fmt::Display for Fallback {
             Self::Clip => f.write_str("triangle engine: no clipping to the view volume"),
             Self::Winding => f.write_str("triangle engine: no winding by the screen"),
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
+            Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
         }
     }
 }

@@ -230,6 +230,9 @@ impl GatewareRenderer {
 
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
+        if matches!(frame.subject, Subject::Wireframe(_)) {
+            return Err(Fallback::NoLineEngine);
+        }
         if let Some(mesh) = frame.subject.mesh_part() {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());

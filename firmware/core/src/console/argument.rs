@@ -4,8 +4,8 @@ use core::marker::PhantomData;
 
 use super::error::{ParseError, ParseErrorKind, ValueError};
 use super::syntax::{Kind, Parameter, Shape, Syntax};
-use super::words::{Word, Words};
 use crate::choice::Choice;
+use crate::words::{Word, Words};
 
 /// A type of argument, which takes one word or several words of a line.
 pub trait Argument {

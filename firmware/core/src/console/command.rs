@@ -9,13 +9,14 @@ use super::table::commands;
 use super::values::{
     FieldOfView, HalfTurn, Imu, LookAt, Mounting, Name, Sensitivity, Size, Upload, View, Whole,
 };
-use super::words::Words;
 use crate::colour::{Shading, Winding};
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{Background, Light, Material, Rgb};
 use crate::picture::Backend;
 use crate::stereo::Stereo;
+use crate::wireframe::Key;
+use crate::words::Words;
 
 /// A machine that executes commands. Each trait that the table below defines extends this trait, and has one method per command.
 pub trait Executor<'a> {
@@ -34,10 +35,12 @@ commands! {
         reboot Reboot(): "reset the SoC";
     }
 
-    /// Commands of the scene: mesh and field.
+    /// Commands of the scene: mesh, field and wireframe.
     SceneCommands {
         scene Scene(name: Option<Name>): "list the scenes, or show one";
         load Load(upload: Upload): "upload a mesh (binary) and show it";
+        program Program(upload: Upload): "upload a wireframe program (binary) and show it";
+        press Press(key: Key, rotate: Flag): "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
         field Field(field: Option<Or<Off, Field>>): "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>): "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Option<Or<Off, Stereo>>): "show or set the two eyes of a field; off is one eye";

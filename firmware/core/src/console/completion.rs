@@ -2,7 +2,7 @@
 
 use super::command::{find, syntaxes};
 use super::syntax::{Kind, Parameter, Shape};
-use super::words::{Word, Words};
+use crate::words::{Word, Words};
 
 /// Calls `offer` for each candidate for the last word of `line`. The arguments of `offer` are the whole candidate and the part of
 /// it that is missing in the line.

@@ -3,13 +3,13 @@
 use core::fmt::{self, Display};
 
 use super::syntax::{Parameter, Syntax};
-use super::words::Word;
 use crate::camera::ViewError;
 use crate::field::FieldError;
 use crate::fixed::Q32_32;
 use crate::follow::SENSITIVITY;
 use crate::light::LightError;
 use crate::stereo::StereoError;
+use crate::words::Word;
 
 /// Reason why a line is not a command. `Display` states the error, its place in the line, and the expected input.
 #[derive(Clone, Copy, Debug)]

@@ -3,8 +3,8 @@
 use core::fmt;
 
 use super::format::{MAX_SEGMENTS, Opcode, WORD_BYTES};
-use crate::console::Word;
 use crate::fixed::Q5_11;
+use crate::words::Word;
 
 /// A deviation of a program from its format, with its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

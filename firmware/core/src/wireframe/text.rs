@@ -18,8 +18,8 @@ use super::error::{Expected, Found, Violation};
 use super::format::Opcode;
 use super::instruction::Instruction;
 use crate::choice::Choice;
-use crate::console::Words;
 use crate::fixed::Q5_11;
+use crate::words::Words;
 
 /// Parses a line. The result of a blank line or of a comment is `None`.
 ///

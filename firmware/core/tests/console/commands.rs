@@ -11,6 +11,7 @@ use glint_core::light::{Background, Light, Material};
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
+use glint_core::wireframe::Key;
 use proptest::prelude::*;
 
 proptest! {
@@ -232,6 +233,29 @@ fn every_command_is_understood() {
                 length: 32 << 20,
                 crc32: 0xDEAD_BEEF,
             },
+        },
+    );
+    assert_parses(
+        "program 256 0123abcd",
+        Command::Program {
+            upload: Manifest {
+                length: 256,
+                crc32: 0x0123_ABCD,
+            },
+        },
+    );
+    assert_parses(
+        "press up",
+        Command::Press {
+            key: Key::Up,
+            rotate: false,
+        },
+    );
+    assert_parses(
+        "press left rotate",
+        Command::Press {
+            key: Key::Left,
+            rotate: true,
         },
     );
     assert_parses(

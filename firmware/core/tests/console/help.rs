@@ -37,7 +37,7 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 39);
+    assert_eq!(list.lines().count(), 41);
     for (command, usage) in [
         ("imu", "imu [ACTION [SAMPLES]]\n"),
         ("replay", "replay [BYTES CRC32]\n"),

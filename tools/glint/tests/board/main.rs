@@ -9,3 +9,4 @@ mod meshes;
 mod sensor;
 mod serial_boot;
 mod uploads;
+mod wireframes;

@@ -1,0 +1,186 @@
+//! The wireframe simulator on the virtual board: buttons with bounce, switches, commands and uploads, with every frame checked.
+
+use crate::common::{address, console, renderer, running_board};
+use glint::board::SimulatedBoard;
+use glint::console::{Console, ConsoleError};
+use glint::render::{Frame, Subject, WireframeSubject, on_model};
+use glint::transfer::{self, TransferError};
+use glint::{generate, view, wireframe};
+use glint_core::picture::Size;
+use glint_core::wireframe::{Key, Motion, Program, Requests, Viewing};
+
+/// Clock cycles of a millisecond.
+const MS: u64 = 81_250;
+/// Addresses of the two frame buffers.
+const BUFFERS: [u32; 2] = [0x4100_0000, 0x4120_0000];
+
+/// The built-in program of the firmware: a cube of side 4.
+fn cube() -> Vec<u8> {
+    let viewing = Viewing {
+        eye: wireframe::numbers("0,0,8", "").unwrap(),
+        plane: "4".parse().unwrap(),
+        window: wireframe::window("-4,-2.25,4,2.25").unwrap(),
+    };
+    let cube = generate::named("cube").unwrap();
+    wireframe::make(cube, Some(4.0), &viewing).unwrap().bytes
+}
+
+/// The picture of a program after a motion, by the model.
+fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
+    let subject = Subject::Wireframe(WireframeSubject {
+        program: Program::new_checked(program).unwrap(),
+        pose: motion.pose(),
+    });
+    let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
+    on_model(&frame).unwrap().image.colour
+}
+
+/// The shown picture of a board, and the one of the frame before.
+fn shown(console: &mut Console<SimulatedBoard>) -> [Vec<u16>; 2] {
+    let front = address(console, "frame");
+    let back = BUFFERS.into_iter().find(|&buffer| buffer != front).unwrap();
+    [front, back].map(|buffer| {
+        let mut bytes = vec![0; 2 * Size::W320.pixel_count()];
+        let board = console.board().inner();
+        board.ddr_read(buffer, &mut bytes).unwrap();
+        let pixels = bytes.as_chunks().0.iter();
+        pixels.map(|&pixel| u16::from_le_bytes(pixel)).collect()
+    })
+}
+
+/// Sets the buttons to each value for a number of milliseconds, then waits until the frames are drawn.
+fn buttons(console: &mut Console<SimulatedBoard>, script: &[(u8, u64)]) {
+    let board = console.board().inner();
+    for &(pressed, ms) in script {
+        board.set_buttons(pressed);
+        board.run(ms * MS);
+    }
+    board.set_buttons(0);
+    board.run(90 * MS);
+}
+
+#[test]
+fn a_session_with_buttons() {
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    let program = cube();
+    let mut motion = Motion::default();
+    console.command("scene wireframe").unwrap();
+    let stats = console.command("render").unwrap();
+    for line in [
+        "backend cpu",
+        "fallback wireframe: this gateware has no line engine",
+        "segments 12",
+        "lines 12",
+    ] {
+        assert!(stats.iter().any(|found| found == line), "{line}: {stats:?}");
+    }
+    let start = picture(&program, &motion);
+    assert!(shown(&mut console)[0] == start);
+
+    // One press that bounces at both ends is one step: of one frame.
+    let bounces = [
+        (1, 1),
+        (0, 1),
+        (1, 2),
+        (0, 1),
+        (1, 3),
+        (0, 2),
+        (1, 40),
+        (0, 1),
+        (1, 1),
+        (0, 2),
+        (1, 2),
+    ];
+    buttons(&mut console, &bounces);
+    assert!(motion.apply(Key::Up.step(false)));
+    assert!(shown(&mut console) == [picture(&program, &motion), start]);
+
+    // Two buttons in one frame are two steps, in two frames.
+    let mut requests = Requests::default();
+    [Key::Up, Key::Right]
+        .into_iter()
+        .for_each(|key| requests.press(key));
+    assert_eq!(requests.take(), Some(Key::Up));
+    requests.press(Key::Up);
+    let steps = [(); 2].map(|()| requests.take().unwrap().step(false));
+    buttons(&mut console, &[(0b1001, 25)]);
+    let pictures = steps.map(|step| {
+        assert!(motion.apply(step));
+        picture(&program, &motion)
+    });
+    let [first, second] = pictures;
+    assert!(shown(&mut console) == [second, first]);
+
+    // Switch 0 rotates instead of panning, switch 1 makes zoom keys of up and down.
+    for (switches, button, step) in [
+        (0b01, 1 << 2, Key::Left.step(true)),
+        (0b10, 1 << 1, Key::ZoomOut.step(false)),
+    ] {
+        console.board().inner().set_switches(switches);
+        buttons(&mut console, &[(button, 25)]);
+        assert!(motion.apply(step));
+        assert!(shown(&mut console)[0] == picture(&program, &motion));
+    }
+
+    // Noise shorter than the time for which a button must be pressed does nothing.
+    buttons(&mut console, &[(4, 1), (0, 10), (4, 1), (0, 3), (4, 2)]);
+    assert!(shown(&mut console)[0] == picture(&program, &motion));
+}
+
+#[test]
+fn a_session_with_commands() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
+    let program = wireframe::parse(wireframe::Form::Text, text.into()).unwrap();
+    let console = renderer.console();
+    let refused = |error: ConsoleError| error.to_string();
+    let error = refused(console.command("press up").unwrap_err());
+    assert!(
+        error.contains("expected `scene wireframe` or `program` first"),
+        "{error}"
+    );
+
+    let upload = |console: &mut Console<SimulatedBoard>, bytes: &[u8]| {
+        transfer::upload_for(console, "program", bytes, 3, &mut |_, _| {}, &mut |_| {})
+    };
+    upload(console, &program).unwrap();
+    let mut motion = Motion::default();
+    console.command("render").unwrap();
+    assert!(shown(console)[0] == picture(&program, &motion));
+    assert!(
+        console
+            .command("scene")
+            .unwrap()
+            .contains(&"scene wireframe shown".to_owned())
+    );
+    for (command, step) in [
+        ("press left rotate", Key::Left.step(true)),
+        ("press zoom-out", Key::ZoomOut.step(false)),
+        ("press up", Key::Up.step(false)),
+    ] {
+        console.command(command).unwrap();
+        assert!(motion.apply(step));
+        assert!(shown(console)[0] == picture(&program, &motion), "{command}");
+    }
+
+    // A refused program leaves the shown one.
+    let mut damaged = program.clone();
+    damaged[3 * 16 + 12] = 0b011;
+    let Err(TransferError::Console(error)) = upload(console, &damaged) else {
+        panic!("expected a refusal");
+    };
+    let error = error.to_string();
+    assert!(error.contains("word 4: expected an opcode"), "{error}");
+    console.command("press right").unwrap();
+    assert!(motion.apply(Key::Right.step(false)));
+    assert!(shown(console)[0] == picture(&program, &motion));
+
+    // Another scene ends the session, and the wireframe starts anew after it.
+    console.command("scene cube").unwrap();
+    assert!(console.command("press up").is_err());
+    console.command("scene wireframe").unwrap();
+    console.command("render").unwrap();
+    assert!(shown(console)[0] == picture(&program, &Motion::default()));
+}
