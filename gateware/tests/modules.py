@@ -59,6 +59,8 @@ MODULES = [
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
                      "triangle_engine_fields_alone": _FIELDS_ALONE},
            measured=("triangle_engine_fields",)),
+    Module(top="line_setup"),
+    Module(top="line_raster"),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),
     Module(top="field_sphere", measured=("field_sphere",)),
     Module(top="ray_generator", variants={"ray_generator_all": {"ROUND": 1, **_PREPASS}}, measured=("ray_generator",)),

@@ -179,10 +179,9 @@ impl Line {
         let [[major_first, major_last], [minor_first, minor_last]] = limits;
         self.skip(i64::from(major_first - self.start[0]));
         self.skip(self.steps_to(minor_first));
-        self.count = self.count.min(major_last - self.start[0] + 1);
         LinePixels {
             line: self,
-            minor_last,
+            last: [major_last, minor_last],
         }
     }
 
@@ -249,19 +248,25 @@ fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
 pub struct LinePixels {
     /// The line from the next pixel on.
     line: Line,
-    /// Last place on the minor axis in the rectangle, mirrored like the line.
-    minor_last: i32,
+    /// Last places in the rectangle on the major and the minor axis, mirrored like the line.
+    last: [i32; 2],
+}
+
+impl LinePixels {
+    /// The line from the next pixel on, to its end outside of the rectangle; `None` if there is no further pixel in the rectangle.
+    pub fn rest(&self) -> Option<&Line> {
+        let [major, minor] = self.line.start;
+        let is_inside = major <= self.last[0] && minor <= self.last[1];
+        (self.line.count > 0 && is_inside).then_some(&self.line)
+    }
 }
 
 impl Iterator for LinePixels {
     type Item = LinePixel;
 
     fn next(&mut self) -> Option<LinePixel> {
+        let pixel = self.rest()?.pixel();
         let line = &mut self.line;
-        if line.count <= 0 || line.start[1] > self.minor_last {
-            return None;
-        }
-        let pixel = line.pixel();
         line.count -= 1;
         line.start[0] += 1;
         line.error += line.span[1];

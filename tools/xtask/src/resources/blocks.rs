@@ -7,13 +7,15 @@ use anyhow::{Context, Result};
 use crate::paths;
 
 /// This project's own blocks. The block that takes longest to measure comes first.
-pub const OWN: [&str; 7] = [
+pub const OWN: [&str; 9] = [
     "ring_lane",
     "setup",
     "triangle_raster",
     "band_buffer",
     "scanout",
     "vertex_stage",
+    "line_setup",
+    "line_raster",
     "i2c_engine",
 ];
 
@@ -63,13 +65,15 @@ pub const FLAT: &str = "flat_build";
 pub const SOC: &str = "soc";
 
 /// The blocks in the order of their rows in the tables. Other measured modules come after them.
-pub const ROWS: [&str; 22] = [
+pub const ROWS: [&str; 24] = [
     "scanout",
     "i2c_engine",
     "vertex_stage",
     "setup",
     "triangle_raster",
     FLAT,
+    "line_setup",
+    "line_raster",
     "band_buffer",
     "triangle_engine",
     "triangle_engine_smooth",

@@ -1,0 +1,135 @@
+//! The raster of lines: every pixel of every piece, band by band.
+
+use glint_model::SIZES;
+use glint_model::line::LineDepth;
+use glint_model::triangle::setup::Bounds;
+use glint_testbench::{Bits, Layout, Module, Port, Sink, Source, Stalls, exchange};
+use rand_pcg::Pcg64Mcg;
+
+use crate::segments::{self, Segment};
+
+/// Columns of a group.
+const LANES: u32 = 8;
+
+struct Bench {
+    module: Module,
+    source: Source,
+    sink: Sink,
+    piece: Layout,
+    idle: Port,
+}
+
+impl Bench {
+    fn new(seed: u32, [source_stalls, sink_stalls]: [f64; 2], size: usize) -> Self {
+        let mut module = Module::new("line_raster", seed);
+        module.drive("size", size as u32);
+        let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+        let payload = ["row", "line", "column", "mask", "code", "colour"];
+        Self {
+            source: Source::new(&module, "in", &["piece"], stalls(1, source_stalls)),
+            sink: Sink::new(&module, "group", &payload, stalls(2, sink_stalls)),
+            piece: module.packed_type("line_pkg::piece_t").clone(),
+            idle: module.port("idle"),
+            module,
+        }
+    }
+
+    /// Draws the pieces of segments in a band, and compares the groups with the model's pixels. Returns the clocks and the pixels.
+    fn band(&mut self, size: usize, band: &Bounds, bias: u16, segments: &[Segment]) -> [u64; 2] {
+        let stride = SIZES[size].0 / LANES;
+        self.module.drive("first_row", band.top);
+        let mut expected = vec![];
+        for segment in segments {
+            let Some(piece) = segment.piece(&self.piece, band, bias) else {
+                continue;
+            };
+            self.source.push(vec![piece]);
+            for pixel in segment.pixels(band) {
+                let [column, line] = [pixel.column as u32, (pixel.row - band.top) as u32];
+                let code = pixel.code(LineDepth::Tested { bias });
+                let group = column / LANES;
+                expected.push([
+                    line * stride + group,
+                    line,
+                    group,
+                    1 << (column % LANES),
+                    code,
+                    segment.colour.into(),
+                ]);
+            }
+        }
+        self.module.settle();
+        assert!(self.module.is_high(self.idle));
+        let start = self.module.cycles();
+        while !(self.source.is_empty() && self.module.is_high(self.idle)) {
+            assert!(
+                self.module.cycles() < start + 2_000_000,
+                "nothing after 2,000,000 clocks"
+            );
+            exchange(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
+            self.module.clock();
+            self.module.settle();
+        }
+        let found: Vec<[u32; 6]> = self.sink.take().iter().map(|item| group(item)).collect();
+        for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            assert_eq!(found, expected, "pixel {i} in {band:?}");
+        }
+        assert_eq!(found.len(), expected.len(), "in {band:?}");
+        [self.module.cycles() - start, expected.len() as u64]
+    }
+
+    fn picture(&mut self, size: usize, bias: u16, segments: &[Segment]) -> [u64; 2] {
+        let mut sums = [0; 2];
+        for band in segments::bands(size) {
+            let counts = self.band(size, &band, bias, segments);
+            sums = [sums[0] + counts[0], sums[1] + counts[1]];
+        }
+        sums
+    }
+}
+
+fn group(item: &[Bits]) -> [u32; 6] {
+    [0, 1, 2, 3, 4, 5].map(|i: usize| item[i].number() as u32)
+}
+
+#[test]
+fn random_segments() {
+    for (seed, stalls) in [(1, [0.0, 0.0]), (2, [0.5, 0.2]), (3, [0.1, 0.7])] {
+        let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        for size in 0..3 {
+            let segments: Vec<Segment> = (0..200)
+                .map(|_| segments::random(&mut random, size))
+                .collect();
+            let mut bench = Bench::new(seed, stalls, size);
+            bench.picture(size, [0, 77, u16::MAX][size], &segments);
+        }
+    }
+}
+
+#[test]
+fn difficult_segments() {
+    for size in 0..3 {
+        let mut bench = Bench::new(4, [0.0, 0.3], size);
+        bench.picture(size, 5, &segments::difficult(size));
+    }
+}
+
+/// A pixel a clock, in pieces of any length, besides the latency of each band.
+#[test]
+fn a_pixel_a_clock() {
+    for size in 0..3 {
+        let mut bench = Bench::new(5, [0.0; 2], size);
+        let segments = segments::of_50_pixels(size, 1000);
+        let [clocks, pixels] = bench.picture(size, 0, &segments);
+        let latency = 10 * segments::bands(size).len() as u64;
+        println!("size {size}: {pixels} pixels in {clocks} clocks");
+        assert!(
+            clocks <= pixels + latency,
+            "{clocks} clocks, {pixels} pixels"
+        );
+    }
+}

@@ -1,0 +1,115 @@
+//! The set-up of segments: every field of every piece.
+
+use glint_model::ScreenVertex;
+use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, exchange};
+use rand_pcg::Pcg64Mcg;
+
+use crate::segments::{self, Segment};
+
+/// Sends segments to the set-up, and compares its pieces with those of the model. Returns the clocks.
+fn check(
+    seed: u32,
+    [source_stalls, sink_stalls]: [f64; 2],
+    size: usize,
+    bias: u16,
+    segments: &[Segment],
+) -> u64 {
+    let mut module = Module::new("line_setup", seed);
+    let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+    let mut source = Source::new(&module, "in", &["segment"], stalls(1, source_stalls));
+    let mut sink = Sink::new(&module, "out", &["piece"], stalls(2, sink_stalls));
+    let layouts = ["segment_t", "piece_t"]
+        .map(|name| module.packed_type(&format!("line_pkg::{name}")).clone());
+    module.drive("size", size as u32);
+    module.drive("bias", bias);
+    let start = module.cycles();
+    for segment in segments {
+        let expected = segment.pieces(&layouts[1], size, bias);
+        source.push(vec![pack(&layouts[0], segment)]);
+        let begin = module.cycles();
+        while !source.is_empty() {
+            assert!(module.cycles() < begin + 30_000, "{segment:?} does not end");
+            exchange(&mut module, &mut [&mut source], &mut [&mut sink]);
+            module.clock();
+        }
+        let found: Vec<Bits> = sink.take().into_iter().map(|item| item[0]).collect();
+        let show = |pieces: &[Bits]| -> Vec<String> {
+            let record = |&bits| format!("{:?}", layouts[1].record_of(bits));
+            pieces.iter().map(record).collect()
+        };
+        assert_eq!(show(&found), show(&expected), "{segment:?} at size {size}");
+    }
+    module.cycles() - start
+}
+
+fn pack(layout: &Layout, segment: &Segment) -> Bits {
+    let [a, b] = segment.ends;
+    layout
+        .record()
+        .with("a_x", a.x)
+        .with("a_y", a.y)
+        .with("a_w", a.w)
+        .with("b_x", b.x)
+        .with("b_y", b.y)
+        .with("b_w", b.w)
+        .with("colour", segment.colour)
+        .bits()
+}
+
+#[test]
+fn random_segments() {
+    for (seed, stalls) in [(1, [0.0, 0.0]), (2, [0.5, 0.2]), (3, [0.1, 0.7])] {
+        let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        for size in 0..3 {
+            let segments: Vec<Segment> = (0..400)
+                .map(|_| segments::random(&mut random, size))
+                .collect();
+            check(seed, stalls, size, [0, 77, u16::MAX][size], &segments);
+        }
+    }
+}
+
+#[test]
+fn difficult_segments() {
+    for size in 0..3 {
+        check(4, [0.0, 0.3], size, 5, &segments::difficult(size));
+    }
+}
+
+/// 10,000 segments of 50 pixels have 135 clocks each in a frame, at 60 frames a second and 81.25 MHz.
+#[test]
+fn segments_of_50_pixels_take_less_than_a_frame_allows() {
+    for size in 0..3 {
+        let mut segments = segments::of_50_pixels(size, 300);
+        let each = |segments: &[Segment]| {
+            let clocks = check(5, [0.0; 2], size, 0, segments);
+            clocks as f64 / segments.len() as f64
+        };
+        let deep = each(&segments);
+        for segment in &mut segments {
+            segment.ends[1].w = segment.ends[0].w;
+        }
+        let flat = each(&segments);
+        println!(
+            "size {size}: {deep:.1} clocks a segment of 50 pixels, {flat:.1} with equal depths"
+        );
+        assert!(flat < deep && deep < 135.0);
+    }
+}
+
+/// 31 clocks, or 59 with a depth step, one for each of 10 pixels, two for the piece, and one for each band above.
+#[test]
+fn clocks_of_a_segment() {
+    for (row, depth, clocks) in [(5, 0, 43), (5, 64_000, 71), (100, 0, 47), (100, 64_000, 71)] {
+        let place = |x: i32, w| ScreenVertex {
+            x: 256 * x + 128,
+            y: 256 * row + 128,
+            w,
+        };
+        let segment = Segment {
+            ends: [place(10, 0), place(20, depth)],
+            colour: 1,
+        };
+        assert_eq!(check(6, [0.0; 2], 1, 0, &[segment]), clocks, "{segment:?}");
+    }
+}
