@@ -54,6 +54,14 @@ def _classify(old, new, fails):
     return Mutation("classify.sv", old, new, fails)
 
 
+def _line_setup(old, new, fails):
+    return Mutation("line_setup.sv", old, new, fails)
+
+
+def _line_raster(old, new, fails):
+    return Mutation("line_raster.sv", old, new, fails)
+
+
 def _setup(old, new, fails):
     return Mutation("setup.sv", old, new, fails)
 
@@ -265,6 +273,27 @@ MUTATIONS = {
         _walker("late_advance && late_move == raster_pkg::LOAD) begin", "late_move == raster_pkg::LOAD) begin", "nothing_made_up"),
         _walker("!in_valid || in_triangle.rows == 6'd1;", "1'b1;", "none_left_out"),
         _walker("            active       <= 1'b0;", "            active       <= 1'b1;", "busy_while_it_walks"),
+    ],
+    "line_setup": [
+        _line_setup("sending  <= sending && !out_ready ||", "sending  <=", "shown.valid_stays"),
+        _line_setup("= walking && !reached && !sends;", "= (walking || sending) && !reached;", "shown.payload_stable"),
+        _line_setup("waiting && in_valid};", "waiting};", "of_a_segment"),
+        _line_setup("waiting && in_valid};", "waiting};", "taken_if_given"),
+        _line_setup("else if (sending && out_ready) entered <= 1'b0;", "", "one_in_a_band"),
+        _line_setup("= entered && shown && !reached;", "= entered && !reached;", "within_picture"),
+        _line_setup("at[17]   <= at[16] && remaining > 0;", "at[17]   <= at[16];", "with_a_pixel"),
+        _line_setup("walking  <= at[28] || sending && out_ready ||", "walking  <= at[28] ||", "taken_in_time"),
+        _line_setup("sending  <= sending && !out_ready ||", "sending  <= sending ||", "then_the_next"),
+    ],
+    "line_raster": [
+        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _line_raster("room && active && shown};", "room && shown};", "nothing_made_up"),
+        _line_raster("pixel.colour <= colour;", "pixel.colour <= in_piece.colour;", "in_order"),
+        _queue("DEPTH - FLIGHT - 2;", "DEPTH - FLIGHT + 1;", "nothing_too_many"),
+        _line_raster("assign idle = !active && valid", "assign idle = valid", "idle_when_empty"),
+        _line_raster("valid <= {valid[1],", "if (in_valid) valid <= {valid[1],", "shown_in_time"),
+        _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
     ],
     "lanes": [
         _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
