@@ -33,7 +33,7 @@ pub const CLEAR: u16 = 0x1234;
 /// A frame drawn by the model.
 pub struct Expected {
     pub size: (u32, u32),
-    options: Options,
+    options: Options<'static>,
     colour: Vec<u16>,
     depth: Vec<u32>,
     frame: MeshSetup,
@@ -67,7 +67,12 @@ pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -
     expected_with(options, mesh, view, size)
 }
 
-fn expected_with(options: Options, mesh: &[u8], view: &View, size: (u32, u32)) -> Expected {
+fn expected_with(
+    options: Options<'static>,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+) -> Expected {
     let mesh = &Mesh::new_checked(mesh).unwrap();
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
