@@ -1,12 +1,14 @@
 // Proof that a buffer keeps the contract of streams and the order of its items, with any pattern of valid and ready on its input
-// and output. The buffer is the skid buffer, or a FIFO of DEPTH places.
+// and output. The buffer is the skid buffer, a FIFO of DEPTH places, or a pipeline of FLIGHT clocks that ends in a credit_fifo.
 
 `default_nettype none
 
 module buffer_proof #(
     parameter int unsigned WIDTH = 4,
     // Depth of the FIFO; 0 selects the skid buffer.
-    parameter int unsigned DEPTH = 0
+    parameter int unsigned DEPTH = 0,
+    // Clocks of the pipeline in front of the credit_fifo; 0 selects another buffer.
+    parameter int unsigned FLIGHT = 0
 ) (
     input wire             clk,
     input wire             in_valid,
@@ -23,6 +25,20 @@ module buffer_proof #(
         skid_buffer #(.WIDTH(WIDTH)) dut (
             .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
         );
+    end else if (FLIGHT != 0) begin : pipeline
+        logic [FLIGHT-1:0] valid;
+        logic [WIDTH-1:0]  arriving;
+        logic              idle;
+
+        always_ff @(posedge clk) valid <= rst ? '0 : FLIGHT'({valid, in_valid && in_ready});
+
+        delay #(.WIDTH(WIDTH), .CLOCKS(FLIGHT)) flight (.clk, .enable(1'b1), .in(in_data), .out(arriving));
+
+        credit_fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) dut (
+            .clk, .rst, .idle, .credit(in_ready), .sent(in_valid), .in_valid(valid[FLIGHT-1]), .in_data(arriving),
+            .out_valid, .out_ready, .out_data
+        );
+        wire _unused = idle;
     end else begin : memory
         fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) dut (
             .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
@@ -35,7 +51,7 @@ module buffer_proof #(
     stream_checker #(.WIDTH(WIDTH)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_data)
     );
-    order_checker #(.WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1)) order (
+    order_checker #(.WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1), .WITHIN(FLIGHT == 0 ? 2 : FLIGHT + 5)) order (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 endmodule

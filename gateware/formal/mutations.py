@@ -78,6 +78,18 @@ def _lanes(old, new, fails):
     return Mutation("lanes.sv", old, new, fails)
 
 
+def _credit(old, new, fails):
+    return Mutation("credit_fifo.sv", old, new, fails)
+
+
+def _generator(old, new, fails):
+    return Mutation("ray_generator.sv", old, new, fails)
+
+
+def _paint(old, new, fails):
+    return Mutation("ray_paint.sv", old, new, fails)
+
+
 def _ring(old, new, fails):
     return Mutation("ring_lane.sv", old, new, fails)
 
@@ -106,6 +118,31 @@ MUTATIONS = {
     ],
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
+    "credit_fifo": [
+        *_FIFO[:4],
+        _credit("next > COUNT_BITS'(1)", "next != '0", "order.nothing_too_many"),
+        _credit("gave    <= out_valid && out_ready;", "gave    <= out_valid && out_ready && !sent;", "order.taken_in_time"),
+        _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
+    ],
+    "ray_generator": [
+        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] || valid[LAST-1])", "nothing_made_up"),
+        _credit("next > COUNT_BITS'(1)", "1'b1", "in_order"),
+        _generator("enters    = running && credit;", "enters    = running;", "in_order"),
+        _generator("begins || running || !empty;", "begins || running;", "busy_to_the_end"),
+        _generator("begins || running || !empty;", "begins || running || !empty || !start;", "idle_afterwards"),
+        _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] && out_ready)", "shown_in_time"),
+    ],
+    "ray_paint": [
+        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _paint("in_valid && in_ready};", "in_valid};", "nothing_made_up"),
+        _paint("CLOCKS(26)) place_waits", "CLOCKS(25)) place_waits", "in_order"),
+        _credit("next > COUNT_BITS'(1)", "next != '0", "nothing_too_many"),
+        _paint("valid <= {valid", "if (in_valid) valid <= {valid", "shown_in_time"),
+        _credit("gave    <= out_valid && out_ready;", "gave    <= out_valid && out_ready && !sent;", "taken_in_time"),
+    ],
     "band_flush": [
         _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.valid_stays"),
         _flush(".out_valid, .out_ready,", ".out_valid, .out_ready(1'b1),", "words.payload_stable"),

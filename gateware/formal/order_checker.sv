@@ -21,7 +21,9 @@ module order_checker #(
     input wire [WIDTH-1:0] out_data
 );
     logic [WIDTH-1:0] came, went, inside;
-    logic [1:0]       unseen, refused;
+    localparam int unsigned CLOCK_BITS = $clog2(WITHIN + 1);
+
+    logic [CLOCK_BITS-1:0] unseen, refused;
 
     assign inside = came - went;
 
@@ -44,8 +46,8 @@ module order_checker #(
         nothing_made_up: assert (!out_valid || came != went);
         nothing_too_many: assert (inside <= WIDTH'(PLACES));
         in_order:        assert (!out_valid || out_data == went);
-        shown_in_time:   assert (unseen < 2'(WITHIN));
-        taken_in_time:   assert (refused < 2'(WITHIN));
+        shown_in_time:   assert (unseen < CLOCK_BITS'(WITHIN));
+        taken_in_time:   assert (refused < CLOCK_BITS'(WITHIN));
         full:            cover (inside == WIDTH'(PLACES) && !in_ready);
         wrapped:         cover (went == WIDTH'(2 * PLACES) && came == went);
     end

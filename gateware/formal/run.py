@@ -31,7 +31,7 @@ _AT_A_TIME = 2
 
 
 # Replacements of modules in gateware/rtl, used by the proofs that name them.
-_STAND_INS = ("any_field", "any_product", "any_stepper", "no_product", "plain_setup")
+_STAND_INS = ("any_field", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
 
@@ -62,6 +62,8 @@ PROOFS = [
     Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 23),
     Proof("band_extents", "band_extents_proof", 27),
+    Proof("ray_paint", "ray_paint_proof", 48, ("no_product", "any_tables")),
+    Proof("ray_generator", "ray_generator_proof", 40, ("no_product", "any_tables")),
     Proof("setup", "setup_proof", 22, ("plain_setup",)),
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
     Proof("walker", "walker_proof", 16, ("any_stepper",)),
@@ -71,6 +73,7 @@ PROOFS = [
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
+    Proof("credit_fifo", "buffer_proof", 28, parameters={"DEPTH": 2, "FLIGHT": 3}),
     Proof("band_pipe", "band_pipe_proof", 14),
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),

@@ -1,5 +1,4 @@
-// Delays its input by CLOCKS clocks, counting only clocks in which `enable` is high, as the module delay does, but in block RAM:
-// for words too wide for shift registers.
+// Delays its input by CLOCKS clocks in block RAM, for words too wide for the shift registers of the module delay.
 //
 //   in ─▶ ring of CLOCKS - 1 places in block RAM ─▶ output register ─▶ out
 //
@@ -12,7 +11,6 @@ module block_delay #(
     parameter int unsigned CLOCKS = 4
 ) (
     input  wire              clk,
-    input  wire              enable,
     input  wire  [WIDTH-1:0] in,
     output logic [WIDTH-1:0] out
 );
@@ -24,13 +22,11 @@ module block_delay #(
     logic [PLACE_BITS-1:0] newest, oldest;
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            places[newest] <= in;
-            latched        <= places[oldest];
-            out            <= latched;
-            newest         <= oldest;
-            oldest         <= oldest == PLACE_BITS'(PLACES - 1) ? '0 : oldest + 1'b1;
-        end
+        places[newest] <= in;
+        latched        <= places[oldest];
+        out            <= latched;
+        newest         <= oldest;
+        oldest         <= oldest == PLACE_BITS'(PLACES - 1) ? '0 : oldest + 1'b1;
     end
 endmodule
 

@@ -3,8 +3,7 @@
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //
-// A write takes 6 clocks; throughput one write a clock. A read takes 2 clocks in which `enable` is high; throughput one read a
-// clock. A read does not return a write that is still under way. With ROUND, and while `round` is high, the length of a cone is
+// A write takes 6 clocks; throughput one write a clock. A read takes 2 clocks; throughput one read a clock. A read does not return a write that is still under way. With ROUND, and while `round` is high, the length of a cone is
 // Euclidean, and its inverse comes from a second table.
 
 `default_nettype none
@@ -20,7 +19,6 @@ module cone_table #(
     input  wire  [9:0]  in_length,
     input  wire  [22:0] in_t,
     // Reads.
-    input  wire         enable,
     input  wire  [13:0] number,
     output logic [22:0] cleared
 );
@@ -35,12 +33,12 @@ module cone_table #(
     logic [17:0]        latched, depth;
 
     /* verilator lint_off PINCONNECTEMPTY */
-    inverse_table table_of_inverses (.clk, .enable(1'b1), .index_a(in_length), .inverse_a(largest_inverse_2), .index_b('0), .inverse_b());
+    inverse_table table_of_inverses (.clk, .index_a(in_length), .inverse_a(largest_inverse_2), .index_b('0), .inverse_b());
     /* verilator lint_on PINCONNECTEMPTY */
 
     if (ROUND) begin : by_squares
         logic [16:0] round_inverse_2;
-        round_inverse table_of_roots (.clk, .enable(1'b1), .index(in_length), .inverse(round_inverse_2));
+        round_inverse table_of_roots (.clk, .index(in_length), .inverse(round_inverse_2));
         assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
     end else begin : by_largest
         assign inverse_2 = largest_inverse_2;
@@ -55,10 +53,8 @@ module cone_table #(
     always_ff @(posedge clk) begin
         valid <= {valid[3:0], in_valid};
         if (valid[4]) depths[number_5] <= product_5[31:14] | {18{product_5[41:32] != '0}};
-        if (enable) begin
-            latched <= depths[number];
-            depth   <= latched;
-        end
+        latched <= depths[number];
+        depth   <= latched;
     end
     assign cleared = {depth, 5'd0};
 

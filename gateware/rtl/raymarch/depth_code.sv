@@ -3,14 +3,12 @@
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //
-// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks in which `enable` is high, throughput one
-// depth a clock. The reciprocal is that of the module `reciprocal`, here with a separate multiplier for each product.
+// The depth is a u19.21 other than 0; K = mantissa·2^exponent. Latency 23 clocks, throughput one depth a clock. The reciprocal is that of the module `reciprocal`, here with a separate multiplier for each product.
 
 `default_nettype none
 
 module depth_code (
     input  wire               clk,
-    input  wire               enable,
     input  wire  [16:0]       mantissa,
     input  wire  signed [5:0] exponent,
     input  wire  [39:0]       depth,
@@ -29,19 +27,17 @@ module depth_code (
     logic [5:0]  lead_3;
     logic [9:0]  y0_4, y0_6, y0_7, y0_9;
 
-    normalise leading (.clk, .enable, .in(depth), .m(m_3), .lead(lead_3));
+    normalise leading (.clk, .in(depth), .m(m_3), .lead(lead_3));
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            m_4  <= m_3;
-            y0_4 <= seeds[m_3[22:15]];
-        end
+        m_4  <= m_3;
+        y0_4 <= seeds[m_3[22:15]];
     end
 
-    delay #(.WIDTH(24), .CLOCKS(6)) m_waits (.clk, .enable, .in(m_4), .out(m_10));
-    delay #(.WIDTH(10), .CLOCKS(2)) y0_for_sum (.clk, .enable, .in(y0_4), .out(y0_6));
-    delay #(.WIDTH(10), .CLOCKS(1)) y0_for_step (.clk, .enable, .in(y0_6), .out(y0_7));
-    delay #(.WIDTH(10), .CLOCKS(2)) y0_for_y1 (.clk, .enable, .in(y0_7), .out(y0_9));
+    delay #(.WIDTH(24), .CLOCKS(6)) m_waits (.clk, .enable(1'b1), .in(m_4), .out(m_10));
+    delay #(.WIDTH(10), .CLOCKS(2)) y0_for_sum (.clk, .enable(1'b1), .in(y0_4), .out(y0_6));
+    delay #(.WIDTH(10), .CLOCKS(1)) y0_for_step (.clk, .enable(1'b1), .in(y0_6), .out(y0_7));
+    delay #(.WIDTH(10), .CLOCKS(2)) y0_for_y1 (.clk, .enable(1'b1), .in(y0_7), .out(y0_9));
 
     // By clock (the suffix of a name): 7 e0 = -m·y0, made as ~m·y0 + y0; 10 y1 = y0 + y0·e0; 13 e1 = -m·y1; 16 y1·e1;
     // 17 the reciprocal y.
@@ -50,19 +46,19 @@ module depth_code (
     logic [24:0]        sum;
     logic [23:0]        y_17;
 
-    multiply_add #(.BITS(37)) residue_0 (.clk, .enable, .a({1'b1, ~m_4}), .b({8'b0, y0_4}), .c({27'b0, y0_6}), .p(e0_7));
+    multiply_add #(.BITS(37)) residue_0 (.clk, .enable(1'b1), .a({1'b1, ~m_4}), .b({8'b0, y0_4}), .c({27'b0, y0_6}), .p(e0_7));
     multiply_add #(.BITS(37)) newton_0 (
-        .clk, .enable, .a(25'($signed(e0_7[25:8]))), .b({8'b0, y0_7}), .c({2'b0, y0_9, 25'b0}), .p(sum_10)
+        .clk, .enable(1'b1), .a(25'($signed(e0_7[25:8]))), .b({8'b0, y0_7}), .c({2'b0, y0_9, 25'b0}), .p(sum_10)
     );
     assign y1_10 = sum_10[35] ? '1 : sum_10[34:18];
-    multiply_add #(.BITS(37)) residue_1 (.clk, .enable, .a({1'b1, ~m_10}), .b({1'b0, y1_10}), .c({20'b0, y1_12}), .p(e1_13));
+    multiply_add #(.BITS(37)) residue_1 (.clk, .enable(1'b1), .a({1'b1, ~m_10}), .b({1'b0, y1_10}), .c({20'b0, y1_12}), .p(e1_13));
     multiply_add #(.BITS(37)) newton_1 (
-        .clk, .enable, .a(25'($signed(e1_13[25:8]))), .b({1'b0, y1_13}), .c(37'd1 << 24), .p(step_16)
+        .clk, .enable(1'b1), .a(25'($signed(e1_13[25:8]))), .b({1'b0, y1_13}), .c(37'd1 << 24), .p(step_16)
     );
 
-    delay #(.WIDTH(17), .CLOCKS(2)) y1_for_sum (.clk, .enable, .in(y1_10), .out(y1_12));
-    delay #(.WIDTH(17), .CLOCKS(1)) y1_for_step (.clk, .enable, .in(y1_12), .out(y1_13));
-    delay #(.WIDTH(17), .CLOCKS(3)) y1_for_y (.clk, .enable, .in(y1_13), .out(y1_16));
+    delay #(.WIDTH(17), .CLOCKS(2)) y1_for_sum (.clk, .enable(1'b1), .in(y1_10), .out(y1_12));
+    delay #(.WIDTH(17), .CLOCKS(1)) y1_for_step (.clk, .enable(1'b1), .in(y1_12), .out(y1_13));
+    delay #(.WIDTH(17), .CLOCKS(3)) y1_for_y (.clk, .enable(1'b1), .in(y1_13), .out(y1_16));
 
     assign sum = {1'b0, y1_16, 7'b0} + 25'($signed(step_16[36:25]));
 
@@ -76,31 +72,29 @@ module depth_code (
     logic               saturates_21, saturates_22;
     logic [19:0]        rounded;
 
-    delay #(.WIDTH(6), .CLOCKS(16)) lead_waits (.clk, .enable, .in(lead_3), .out(lead_19));
-    multiply_add #(.BITS(43)) scaled (.clk, .enable, .a({1'b0, y_17}), .b({1'b0, mantissa}), .c('0), .p(product_20));
+    delay #(.WIDTH(6), .CLOCKS(16)) lead_waits (.clk, .enable(1'b1), .in(lead_3), .out(lead_19));
+    multiply_add #(.BITS(43)) scaled (.clk, .enable(1'b1), .a({1'b0, y_17}), .b({1'b0, mantissa}), .c('0), .p(product_20));
 
     assign rounded = 20'(shifted[19:1]) + 20'(shifted[0]);
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            y_17     <= sum[24] ? '1 : sum[23:0];
-            shift_20 <= 8'(lead_19) - 8'sd19 - 8'(exponent);
+        y_17     <= sum[24] ? '1 : sum[23:0];
+        shift_20 <= 8'(lead_19) - 8'sd19 - 8'(exponent);
 
-            unique case (shift_20[4:3])
-                2'd0: by_eights <= product_20[40:21];
-                2'd1: by_eights <= product_20[40:21] >> 8;
-                2'd2: by_eights <= product_20[40:21] >> 16;
-                2'd3: by_eights <= '0;
-            endcase
-            if (shift_20[5]) by_eights <= '0;
-            ones         <= shift_20[2:0];
-            saturates_21 <= shift_20[7];
+        unique case (shift_20[4:3])
+            2'd0: by_eights <= product_20[40:21];
+            2'd1: by_eights <= product_20[40:21] >> 8;
+            2'd2: by_eights <= product_20[40:21] >> 16;
+            2'd3: by_eights <= '0;
+        endcase
+        if (shift_20[5]) by_eights <= '0;
+        ones         <= shift_20[2:0];
+        saturates_21 <= shift_20[7];
 
-            shifted      <= by_eights >> ones;
-            saturates_22 <= saturates_21;
+        shifted      <= by_eights >> ones;
+        saturates_22 <= saturates_21;
 
-            code <= saturates_22 || rounded[19:18] != '0 ? '1 : rounded[17:0] == '0 ? 18'd1 : rounded[17:0];
-        end
+        code <= saturates_22 || rounded[19:18] != '0 ? '1 : rounded[17:0] == '0 ? 18'd1 : rounded[17:0];
     end
 
     wire _unused = &{1'b0, e0_7[36:26], e0_7[7:0], sum_10[36], sum_10[17:0], e1_13[36:26], e1_13[7:0], step_16[24:0],

@@ -1,13 +1,12 @@
 // Table of lower bounds of 1/length, indexed by the first ten bits i of a length: 2^10/(i + 1), u8.9 (docs/formats.md, "Rays").
 // It has two read ports.
 //
-// Latency 2 clocks in which `enable` is high, throughput one result a clock at each port.
+// Latency 2 clocks, throughput one result a clock at each port.
 
 `default_nettype none
 
 module inverse_table (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [9:0]  index_a,
     output logic [16:0] inverse_a,
     input  wire  [9:0]  index_b,
@@ -24,12 +23,10 @@ module inverse_table (
     end
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            latched_a <= inverses[index_a];
-            latched_b <= inverses[index_b];
-            inverse_a <= latched_a;
-            inverse_b <= latched_b;
-        end
+        latched_a <= inverses[index_a];
+        latched_b <= inverses[index_b];
+        inverse_a <= latched_a;
+        inverse_b <= latched_b;
     end
 endmodule
 

@@ -1,14 +1,13 @@
 // Two tables in one block RAM, with 256 entries of 8 bits each: the share of fog in a pixel's colour, by depth, and the share
 // of light, by the number of evaluations (docs/formats.md, "Ends").
 //
-// Latency 2 clocks in which `enable` is high, throughput one pair of entries a clock, one of each table. In the clock of a
-// write no entry of the fog is read.
+// Latency 2 clocks, throughput one pair of entries a clock, one of each table. In the clock of a write no entry of the fog is
+// read.
 
 `default_nettype none
 
 module paint_table (
     input  wire        clk,
-    input  wire        enable,
     input  wire        write,
     // Address of a write: the highest bit selects the table, 1 for light and 0 for fog; the other bits are the entry.
     input  wire  [8:0] write_entry,
@@ -26,13 +25,11 @@ module paint_table (
     assign entry_a = write ? write_entry : {1'b0, fog_entry};
 
     always_ff @(posedge clk) begin
-        if (write)       parts[entry_a] <= write_part;
-        else if (enable) latched_fog <= parts[entry_a];
-        if (enable) begin
-            latched_light <= parts[{1'b1, light_entry}];
-            fog           <= latched_fog;
-            light         <= latched_light;
-        end
+        if (write) parts[entry_a] <= write_part;
+        else       latched_fog <= parts[entry_a];
+        latched_light <= parts[{1'b1, light_entry}];
+        fog           <= latched_fog;
+        light         <= latched_light;
     end
 endmodule
 

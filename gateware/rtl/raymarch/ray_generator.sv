@@ -20,16 +20,21 @@
 // block use the depth that its cone has cleared as their near plane, if it is farther: this depth is requested by `number`, and
 // returned in `cleared` 2 clocks later. `fine` means 160 blocks in a line instead of 80.
 //
-// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 26
-// clocks, 29 with ROUND; throughput one ray a clock. The output is a valid/ready stream; a ray stays until its transfer.
-// `rst` ends the frame.
+// The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end admits rays. A missing credit stops
+// D and the counters of the place, and nothing else.
+//
+// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 28
+// clocks, 31 with ROUND; throughput one ray a clock. `busy` falls two clocks after the last ray has left. The output is a
+// valid/ready stream; a ray stays until its transfer. `rst` ends the frame.
 
 `default_nettype none
 
 module ray_generator #(
     parameter bit ROUND   = 1'b0,
     parameter bit STEREO  = 1'b1,
-    parameter bit PREPASS = 1'b0
+    parameter bit PREPASS = 1'b0,
+    // Places for rays behind the pipeline.
+    parameter int unsigned PLACES = 32
 ) (
     input  wire                       clk,
     input  wire                       rst,
@@ -55,7 +60,6 @@ module ray_generator #(
     input  wire  [2:0]                block,
     input  wire  [2:0][31:0]          offset,
     input  wire  [13:0]               spread,
-    output logic                      enable,
     output logic [13:0]               number,
     input  wire  [22:0]               cleared,
     // Rays.
@@ -66,9 +70,9 @@ module ray_generator #(
     // SUM: number of clocks by which the sum of the squares is later than the largest component of D. LAST: number of clocks
     // until a ray leaves the pipeline.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
-    localparam int unsigned LAST = SUM + 23;
+    localparam int unsigned LAST = SUM + 24;
 
-    logic          starts, begins, loads, fresh, running, ends_line, ends_eye, ends_band, ends;
+    logic          starts, begins, loads, fresh, running, credit, enters, empty, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
     raymarch_pkg::place_t place, place_0;
     logic [5:0]    band;
@@ -90,8 +94,9 @@ module ray_generator #(
     assign ends_eye  = ends_line && (!STEREO || !stereo || place.eye);
     assign ends_band = ends_eye && place.line == last_line;
     assign ends      = ends_band && band == last_band;
-    assign valid[0]  = running;
-    assign busy      = starts || begins || valid != '0 || out_valid;
+    assign enters    = running && credit;
+    assign valid[0]  = enters;
+    assign busy      = starts || begins || running || !empty;
 
     // `inverted_start` is ~D at the first column of the next line, which is that of the right eye if `next_eye` is high. It is
     // `inverted_row`, ~(y·down), minus `first`: for Yosys the LUTs of a subtraction also select what is subtracted, while a sum
@@ -100,7 +105,7 @@ module ray_generator #(
     logic next_eye;
 
     assign next_eye = STEREO && stereo && !place.eye && !starts;
-    assign loads    = begins || running && enable && ends_line;
+    assign loads    = begins || enters && ends_line;
 
     always_ff @(posedge clk) begin
         starts <= start;
@@ -110,15 +115,15 @@ module ray_generator #(
         else if (fresh && !next_eye) for (int i = 0; i < 3; i++) inverted_row[i] <= inverted_row[i] - step_down[i];
         for (int i = 0; i < 3; i++) begin
             inverted_start[i] <= inverted_row[i] - first[next_eye][i];
-            if (loads)                  d[i] <= ~inverted_start[i];
-            else if (running && enable) d[i] <= d[i] + step_across[i];
+            if (loads)       d[i] <= ~inverted_start[i];
+            else if (enters) d[i] <= d[i] + step_across[i];
         end
         if (start) begin
             place <= '0;
             band  <= '0;
         end
         if (begins) running <= 1'b1;
-        if (running && enable) begin
+        if (enters) begin
             place.column <= ends_line ? '0 : place.column + 1'b1;
             if (ends_line) place.eye <= !ends_eye;
             if (ends_eye) place.line <= ends_band ? '0 : place.line + 1'b1;
@@ -128,7 +133,7 @@ module ray_generator #(
             end
             if (ends) running <= 1'b0;
         end
-        if (enable) valid[LAST:1] <= valid[LAST-1:0];
+        valid[LAST:1] <= valid[LAST-1:0];
 
         if (rst) begin
             starts        <= 1'b0;
@@ -141,7 +146,7 @@ module ray_generator #(
     // By clock (the suffix of a name): 0 the high bits of D; 1 the first ten bits of the magnitude of each component; 2 the
     // largest of them, made larger for a cone; 4 its inverse.
     raymarch_pkg::place_t place_now;
-    logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10, length_18;
+    logic [9:0]  part_x, part_y, part_z, largest_2, longest_2, length_10;
     logic [16:0] largest_inverse_4, inverse_4;
     logic [2:0][24:0] d_now, d_0, d_4;
 
@@ -149,22 +154,20 @@ module ray_generator #(
         for (int i = 0; i < 3; i++) d_now[i] = d[i][30:6];
 
     if (ROUND) begin : wait_for_sum
-        delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable, .in(d_now), .out(d_0));
-        delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable, .in(place_now), .out(place_0));
+        delay #(.WIDTH(75), .CLOCKS(SUM)) d_waits (.clk, .enable(1'b1), .in(d_now), .out(d_0));
+        delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(SUM)) place_waits_too (.clk, .enable(1'b1), .in(place_now), .out(place_0));
     end else begin : at_once
         assign d_0     = d_now;
         assign place_0 = place_now;
     end
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            part_x <= d_0[0][23:14] ^ {10{d_0[0][24]}};
-            part_y <= d_0[1][23:14] ^ {10{d_0[1][24]}};
-            part_z <= d_0[2][23:14] ^ {10{d_0[2][24]}};
-            if (part_z > part_x && part_z > part_y) largest_2 <= part_z;
-            else if (part_x > part_y)               largest_2 <= part_x;
-            else                                    largest_2 <= part_y;
-        end
+        part_x <= d_0[0][23:14] ^ {10{d_0[0][24]}};
+        part_y <= d_0[1][23:14] ^ {10{d_0[1][24]}};
+        part_z <= d_0[2][23:14] ^ {10{d_0[2][24]}};
+        if (part_z > part_x && part_z > part_y) largest_2 <= part_z;
+        else if (part_x > part_y)               largest_2 <= part_x;
+        else                                    largest_2 <= part_y;
     end
 
     // The length of a cone is that of its middle ray plus `margin`.
@@ -178,11 +181,11 @@ module ray_generator #(
 
     assign longest_2 = longer(largest_2, margin);
 
-    delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable, .in(d_0), .out(d_4));
+    delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable(1'b1), .in(d_0), .out(d_4));
 
     // `part` is the factor by which the near plane's depth is multiplied: the largest component of D, or with `round` the
     // length of D, computed from the index in the table of inverses and the entry there.
-    logic [10:0] part_10, part_18;
+    logic [10:0] part_10, part_19;
 
     if (ROUND) begin : by_squares
         logic [16:0]        x_now, y_now, z_now, y_late, z_late, round_inverse_4, inverse_7;
@@ -193,34 +196,34 @@ module ray_generator #(
         assign y_now = d_now[1][23:7] ^ {17{d_now[1][24]}};
         assign z_now = d_now[2][23:7] ^ {17{d_now[2][24]}};
 
-        delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable, .in(y_now), .out(y_late));
-        delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable, .in(z_now), .out(z_late));
+        delay #(.WIDTH(17), .CLOCKS(1)) y_waits (.clk, .enable(1'b1), .in(y_now), .out(y_late));
+        delay #(.WIDTH(17), .CLOCKS(2)) z_waits (.clk, .enable(1'b1), .in(z_now), .out(z_late));
 
         // The addend covers the truncated bits, so that the sum is at least |D|^2, with 34 fraction bits.
         multiply_add #(.BITS(37)) x_squared (
-            .clk, .enable, .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
+            .clk, .enable(1'b1), .a({8'b0, x_now}), .b({1'b0, x_now}), .c(37'd1 << 19), .p(x_square)
         );
         multiply_add #(.BITS(37)) y_squared (
-            .clk, .enable, .a({8'b0, y_late}), .b({1'b0, y_late}), .c(x_square), .p(x_y_square)
+            .clk, .enable(1'b1), .a({8'b0, y_late}), .b({1'b0, y_late}), .c(x_square), .p(x_y_square)
         );
         multiply_add #(.BITS(37)) z_squared (
-            .clk, .enable, .a({8'b0, z_late}), .b({1'b0, z_late}), .c(x_y_square), .p(square_2)
+            .clk, .enable(1'b1), .a({8'b0, z_late}), .b({1'b0, z_late}), .c(x_y_square), .p(square_2)
         );
 
-        round_inverse length_by_square (.clk, .enable, .index(squared_2), .inverse(round_inverse_4));
+        round_inverse length_by_square (.clk, .index(squared_2), .inverse(round_inverse_4));
 
         assign squared_2 = longer(square_2[33:24], margin);
-        always_ff @(posedge clk) if (enable) length_3 <= round ? squared_2 : longest_2;
+        always_ff @(posedge clk) length_3 <= round ? squared_2 : longest_2;
 
         assign inverse_4 = round ? round_inverse_4 : largest_inverse_4;
 
         // The product inverse·square is a lower bound of the length |D|.
-        delay #(.WIDTH(10), .CLOCKS(4)) length_waits (.clk, .enable, .in(length_3), .out(length_7));
-        delay #(.WIDTH(10), .CLOCKS(2)) length_goes_on (.clk, .enable, .in(length_7), .out(length_9));
-        delay #(.WIDTH(10), .CLOCKS(1)) length_is_there (.clk, .enable, .in(length_9), .out(length_10));
-        delay #(.WIDTH(17), .CLOCKS(3)) inverse_waits (.clk, .enable, .in(inverse_4), .out(inverse_7));
+        delay #(.WIDTH(10), .CLOCKS(4)) length_waits (.clk, .enable(1'b1), .in(length_3), .out(length_7));
+        delay #(.WIDTH(10), .CLOCKS(2)) length_goes_on (.clk, .enable(1'b1), .in(length_7), .out(length_9));
+        delay #(.WIDTH(10), .CLOCKS(1)) length_is_there (.clk, .enable(1'b1), .in(length_9), .out(length_10));
+        delay #(.WIDTH(17), .CLOCKS(3)) inverse_waits (.clk, .enable(1'b1), .in(inverse_4), .out(inverse_7));
         multiply_add #(.BITS(37)) length_again (
-            .clk, .enable, .a({8'b0, inverse_7}), .b({8'b0, length_7} + 18'd1), .c('0), .p(product_10)
+            .clk, .enable(1'b1), .a({8'b0, inverse_7}), .b({8'b0, length_7} + 18'd1), .c('0), .p(product_10)
         );
 
         assign part_10 = round ? product_10[19:9] : {1'b0, length_10} + 11'd1;
@@ -229,7 +232,7 @@ module ray_generator #(
     end else begin : by_largest
         assign inverse_4 = largest_inverse_4;
         assign part_10   = {1'b0, length_10} + 11'd1;
-        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable, .in(longest_2), .out(length_10));
+        delay #(.WIDTH(10), .CLOCKS(8)) length_waits (.clk, .enable(1'b1), .in(longest_2), .out(length_10));
 
         wire _unused = round;
     end
@@ -240,106 +243,100 @@ module ray_generator #(
     logic [2:0][16:0] inverse_9;
 
     inverse_table length_and_x (
-        .clk, .enable, .index_a(longest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
+        .clk, .index_a(longest_2), .inverse_a(largest_inverse_4), .index_b(index_7[0]), .inverse_b(inverse_9[0])
     );
     inverse_table y_and_z (
-        .clk, .enable, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
+        .clk, .index_a(index_7[1]), .inverse_a(inverse_9[1]), .index_b(index_7[2]), .inverse_b(inverse_9[2])
     );
 
-    raymarch_pkg::place_t place_9;
-    logic [22:0]      near_21;
+    logic             eye_9;
+    logic [22:0]      near_22;
     logic [33:0]      near_product;
-    logic [2:0][22:0] entry_21;
+    logic [2:0][22:0] entry_22;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(9)) place_waits (.clk, .enable, .in(place_0), .out(place_9));
-    delay #(.WIDTH(10), .CLOCKS(8)) length_stays (.clk, .enable, .in(length_10), .out(length_18));
-    delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable, .in(part_10), .out(part_18));
+    delay #(.WIDTH(1), .CLOCKS(9)) eye_waits (.clk, .enable(1'b1), .in(STEREO && place_0.eye), .out(eye_9));
+    delay #(.WIDTH(11), .CLOCKS(9)) part_stays (.clk, .enable(1'b1), .in(part_10), .out(part_19));
 
     // For each axis: the distance outside of the box, and the first t of the entry into it, by clock (the suffix of a name).
     logic [2:0][23:0] outside_9, outside_16;
     logic [2:0][22:0] t_13, t_20;
 
-    block_delay #(.WIDTH(72), .CLOCKS(7)) outside_waits (.clk, .enable, .in(outside_9), .out(outside_16));
-    block_delay #(.WIDTH(69), .CLOCKS(7)) t_waits (.clk, .enable, .in(t_13), .out(t_20));
+    block_delay #(.WIDTH(72), .CLOCKS(7)) outside_waits (.clk, .in(outside_9), .out(outside_16));
+    block_delay #(.WIDTH(69), .CLOCKS(7)) t_waits (.clk, .in(t_13), .out(t_20));
 
-    // Clocks 10 to 21 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
+    // Clocks 10 to 22 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
         logic               backwards_9, negative_9;
 
         multiply_add #(.BITS(43)) scale (
-            .clk, .enable, .a(d_4[i]), .b({1'b0, inverse_4}), .c(43'd1 << 15), .p(scaled)
+            .clk, .enable(1'b1), .a(d_4[i]), .b({1'b0, inverse_4}), .c(43'd1 << 15), .p(scaled)
         );
         assign direction_7[i] = scaled[33:16];
         assign index_7[i]     = direction_7[i][16:7] ^ {10{direction_7[i][17]}};
 
-        delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable, .in(direction_7[i][17]), .out(backwards_9));
-        assign negative_9 = STEREO && place_9.eye ? origins[1][i][24] : origins[0][i][24];
+        delay #(.WIDTH(1), .CLOCKS(2)) sign (.clk, .enable(1'b1), .in(direction_7[i][17]), .out(backwards_9));
+        assign negative_9 = eye_9 ? origins[1][i][24] : origins[0][i][24];
 
         // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated, which is a first t; 16 t·(|d| + 1), the
         // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse; 21 the sum of
-        // both t, the entry into the box.
+        // both t; 22 the same, saturated, which is the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [24:0]        left_17;
         logic signed [41:0] product_12, gone_16, product_20;
         logic [22:0]        t_15;
-        logic [33:0]        sum;
-        logic               comes_20, inside_20;
+        logic [33:0]        sum_21;
+        logic               comes_21, inside_20;
 
-        assign outside_9[i] = STEREO && place_9.eye ? outside[1][i] : outside[0][i];
+        assign outside_9[i] = eye_9 ? outside[1][i] : outside[0][i];
         assign part_7    = direction_7[i][16:0] ^ {17{direction_7[i][17]}};
 
-        delay #(.WIDTH(1), .CLOCKS(11)) coming (.clk, .enable, .in(negative_9 != backwards_9), .out(comes_20));
-        delay #(.WIDTH(1), .CLOCKS(3)) beyond (.clk, .enable, .in(left_17[24]), .out(inside_20));
-        delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable, .in(part_7), .out(part_13));
-        delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable, .in(inverse_9[i]), .out(inverse_17));
-        delay #(.WIDTH(23), .CLOCKS(2)) t_goes (.clk, .enable, .in(t_13[i]), .out(t_15));
+        delay #(.WIDTH(1), .CLOCKS(12)) coming (.clk, .enable(1'b1), .in(negative_9 != backwards_9), .out(comes_21));
+        delay #(.WIDTH(1), .CLOCKS(3)) beyond (.clk, .enable(1'b1), .in(left_17[24]), .out(inside_20));
+        delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable(1'b1), .in(part_7), .out(part_13));
+        delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable(1'b1), .in(inverse_9[i]), .out(inverse_17));
+        delay #(.WIDTH(23), .CLOCKS(2)) t_goes (.clk, .enable(1'b1), .in(t_13[i]), .out(t_15));
 
         multiply_add #(.BITS(42)) entry (
-            .clk, .enable, .a({1'b0, outside_9[i]}), .b({1'b0, inverse_9[i]}), .c('0), .p(product_12)
+            .clk, .enable(1'b1), .a({1'b0, outside_9[i]}), .b({1'b0, inverse_9[i]}), .c('0), .p(product_12)
         );
         multiply_add #(.BITS(42)) covered (
-            .clk, .enable, .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
+            .clk, .enable(1'b1), .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
         multiply_add #(.BITS(42)) rest (
-            .clk, .enable, .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
+            .clk, .enable(1'b1), .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
         );
-        // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
-        assign sum = 34'(t_20[i]) + 34'(product_20[41:9] & {33{!inside_20}});
-
         always_ff @(posedge clk) begin
-            if (enable) begin
-                t_13[i] <= product_12[31:9] | {23{product_12[41:32] != '0}};
-                left_17 <= {1'b0, outside_16[i]} + {1'b1, ~gone_16[40:17]};
-                entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum[22:0] | {23{sum[33:23] != '0}};
-            end
+            t_13[i] <= product_12[31:9] | {23{product_12[41:32] != '0}};
+            left_17 <= {1'b0, outside_16[i]} + {1'b1, ~gone_16[40:17]};
+            // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
+            sum_21 <= 34'(t_20[i]) + 34'(product_20[41:9] & {33{!inside_20}});
+            entry_22[i] <= !comes_21 || PREPASS && cones ? '0 : sum_21[22:0] | {23{sum_21[33:23] != '0}};
         end
 
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], product_20[8:0]};
     end
 
-    // In clock 21 the t of the near plane is there, in the same clock as those of the entries into the box.
+    // In clock 22 the t of the near plane is there, in the same clock as those of the entries into the box.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable, .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
+        .clk, .enable(1'b1), .a({2'b0, near_19}), .b({7'b0, part_19}), .c('0), .p(near_product)
     );
-    assign near_21 = near_product[32:10];
+    assign near_22 = near_product[32:10];
 
-    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21, which are those of the
+    // Clocks 23 and 24 select the start of the ray: the largest of the four values of t of clock 22, which are those of the
     // near plane and of the entry into the box along each axis.
-    logic [22:0] farther_22, later_22, start_23;
+    logic [22:0] farther_23, later_23, start_24;
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            farther_22 <= entry_21[0] > entry_21[1] ? entry_21[0] : entry_21[1];
-            later_22   <= entry_21[2] > near_21 ? entry_21[2] : near_21;
-            start_23   <= farther_22 > later_22 ? farther_22 : later_22;
-        end
+        farther_23 <= entry_22[0] > entry_22[1] ? entry_22[0] : entry_22[1];
+        later_23   <= entry_22[2] > near_22 ? entry_22[2] : near_22;
+        start_24   <= farther_23 > later_23 ? farther_23 : later_23;
     end
 
-    // `near_18` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_23` is the
+    // `near_19` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_24` is the
     // spread of a cone.
-    logic [22:0] near_18;
-    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
+    logic [22:0] near_19;
+    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_24;
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
@@ -351,7 +348,7 @@ module ray_generator #(
 
         always_ff @(posedge clk) begin
             if (start) {line, row_number, counted} <= '0;
-            else if (running && enable) begin
+            else if (enters) begin
                 counted <= counted + 1'b1;
                 if (ends_eye) begin
                     line <= line + 1'b1;
@@ -361,12 +358,10 @@ module ray_generator #(
                     end
                 end
             end
-            if (enable) begin
-                number_1 <= row_number + (STEREO && place.eye ? 14'(CONES_ACROSS / 2) : 14'd0) + 14'(place.column >> block);
-                near_18  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
-            end
+            number_1 <= row_number + (STEREO && place.eye ? 14'(CONES_ACROSS / 2) : 14'd0) + 14'(place.column >> block);
+            near_19  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
         end
-        delay #(.WIDTH(14), .CLOCKS(SUM + 14)) number_waits (.clk, .enable, .in(number_1), .out(number));
+        delay #(.WIDTH(14), .CLOCKS(SUM + 15)) number_waits (.clk, .enable(1'b1), .in(number_1), .out(number));
 
         always_comb begin
             place_now = place;
@@ -381,33 +376,41 @@ module ray_generator #(
         end
 
         multiply_add #(.BITS(43)) widening (
-            .clk, .enable, .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
+            .clk, .enable(1'b1), .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
         );
-        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
-            .clk, .enable, .in(spread_7[26:11] & {16{cones}}), .out(spread_23)
+        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(17)) spread_goes (
+            .clk, .enable(1'b1), .in(spread_7[26:11] & {16{cones}}), .out(spread_24)
         );
         wire _unused = &{1'b0, spread_7[42:27], spread_7[10:0]};
     end else begin : rays_alone
         assign place_now = place;
         assign margin    = '0;
-        assign near_18   = near_limit;
-        assign spread_23 = '0;
+        assign near_19   = near_limit;
+        assign spread_24 = '0;
         assign number    = '0;
         wire _unused = &{1'b0, prepass, cones, fine, block, offset, spread, cleared};
     end
 
-    raymarch_pkg::place_t place_23;
-    logic [9:0]        length_23;
-    logic [2:0][17:0]  direction_23;
+    raymarch_pkg::place_t place_24;
+    logic [9:0]        length_24;
+    logic [2:0][17:0]  direction_24;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(14)) place_goes (.clk, .enable, .in(place_9), .out(place_23));
-    delay #(.WIDTH(10), .CLOCKS(5)) length_goes (.clk, .enable, .in(length_18), .out(length_23));
-    delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .enable, .in(direction_7), .out(direction_23));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(24)) place_goes (.clk, .enable(1'b1), .in(place_0), .out(place_24));
+    delay #(.WIDTH(10), .CLOCKS(14)) length_goes (.clk, .enable(1'b1), .in(length_10), .out(length_24));
+    delay #(.WIDTH(54), .CLOCKS(17)) direction_goes (.clk, .enable(1'b1), .in(direction_7), .out(direction_24));
 
-    skid_buffer #(.WIDTH(raymarch_pkg::SPREAD_BITS + raymarch_pkg::PLACE_BITS + 10 + 23 + 54)) leaving (
-        .clk, .rst, .in_valid(valid[LAST]), .in_ready(enable), .in_data({spread_23, place_23, length_23, start_23, direction_23}),
-        .out_valid, .out_ready, .out_data(out_ray)
+    // Without cones there is no spread to keep.
+    localparam int unsigned KEPT_BITS = raymarch_pkg::PLACE_BITS + 10 + 23 + 54 + (PREPASS ? raymarch_pkg::SPREAD_BITS : 0);
+
+    logic [KEPT_BITS-1:0] kept;
+
+    credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving (
+        .clk, .rst, .idle(empty), .credit, .sent(running),
+        .in_valid(valid[LAST]), .in_data(KEPT_BITS'({spread_24, place_24, length_24, start_24, direction_24})),
+        .out_valid, .out_ready, .out_data(kept)
     );
+
+    assign out_ray = $bits(out_ray)'(kept);
 
     // Only the signs of the origins are used here.
     wire _unused = &{1'b0, origins, d[0][31], d[0][5:0], d[1][31], d[1][5:0], d[2][31], d[2][5:0], near_product[33], near_product[9:0]};

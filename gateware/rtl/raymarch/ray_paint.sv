@@ -14,15 +14,18 @@
 // the valid half.
 //
 // With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays are
-// scaled by their Euclidean length. Streams are valid/ready. Latency 36 clocks, throughput one pixel a clock. The parameters
-// must hold while pixels are in the pipeline.
+// scaled by their Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel a clock. The parameters
+// must hold while pixels are in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its
+// end admits ends.
 
 `default_nettype none
 
 module ray_paint #(
     parameter bit ROUND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
-    parameter bit OCTANTS = 1'b0
+    parameter bit OCTANTS = 1'b0,
+    // Places for pixels behind the pipeline.
+    parameter int unsigned PLACES = 64
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -53,19 +56,14 @@ module ray_paint #(
     output logic [7:0]              out_column,
     output logic [7:0]              out_mask,
     output logic [17:0]             out_code,
-    output logic [15:0]             out_colour,
-    output logic                    idle
+    output logic [15:0]             out_colour
 );
     localparam int unsigned LAST = 29, FIRST = 6;
 
-    logic                enable;
     logic [FIRST+LAST:1] valid;
 
-    assign in_ready = enable;
-    assign idle     = valid == '0 && !out_valid;
-
     always_ff @(posedge clk) begin
-        if (enable) valid <= {valid[FIRST+LAST-1:1], in_valid};
+        valid <= {valid[FIRST+LAST-1:1], in_valid && in_ready};
         if (rst) valid <= '0;
     end
 
@@ -78,13 +76,13 @@ module ray_paint #(
     logic [23:0]        reached;
     logic [22:0]        t_waits_0;
 
-    delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable, .in(in_end.gap), .out(gap_waits));
+    delay #(.WIDTH(12), .CLOCKS(2)) gap_delay (.clk, .enable(1'b1), .in(in_end.gap), .out(gap_waits));
     multiply_add #(.BITS(30)) to_surface (
-        .clk, .enable, .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
+        .clk, .enable(1'b1), .a({13'b0, gap_waits}), .b({1'b0, slope_inverse}), .c('0), .p(way)
     );
-    delay #(.WIDTH(23), .CLOCKS(5)) t_delay (.clk, .enable, .in(in_end.t), .out(t_waits_0));
-    delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable, .in(in_end), .out(waited));
-    always_ff @(posedge clk) if (enable) reached <= {1'b0, t_waits_0} + {4'b0, way[28:9]};
+    delay #(.WIDTH(23), .CLOCKS(5)) t_delay (.clk, .enable(1'b1), .in(in_end.t), .out(t_waits_0));
+    delay #(.WIDTH(raymarch_pkg::END_BITS), .CLOCKS(FIRST)) others (.clk, .enable(1'b1), .in(in_end), .out(waited));
+    always_ff @(posedge clk) reached <= {1'b0, t_waits_0} + {4'b0, way[28:9]};
 
     always_comb begin
         ending_0   = waited;
@@ -99,21 +97,21 @@ module ray_paint #(
     logic [17:0]        code_28;
 
     inverse_table length_inverse (
-        .clk, .enable, .index_a(ending_0.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
+        .clk, .index_a(ending_0.length), .inverse_a(largest_inverse_2), .index_b(in_end.slope), .inverse_b(slope_inverse)
     );
     if (ROUND) begin : by_squares
         logic [16:0] round_inverse_2;
-        round_inverse inverse_of_square (.clk, .enable, .index(ending_0.length), .inverse(round_inverse_2));
+        round_inverse inverse_of_square (.clk, .index(ending_0.length), .inverse(round_inverse_2));
         assign inverse_2 = round ? round_inverse_2 : largest_inverse_2;
     end else begin : by_largest
         assign inverse_2 = largest_inverse_2;
     end
 
-    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable, .in(ending_0.t), .out(t_2));
-    multiply_add #(.BITS(43)) along (.clk, .enable, .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
+    delay #(.WIDTH(23), .CLOCKS(2)) t_waits (.clk, .enable(1'b1), .in(ending_0.t), .out(t_2));
+    multiply_add #(.BITS(43)) along (.clk, .enable(1'b1), .a({2'b0, t_2}), .b({1'b0, inverse_2}), .c('0), .p(product_5));
 
     depth_code coded (
-        .clk, .enable, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
+        .clk, .mantissa(depth_mantissa), .exponent(depth_exponent), .depth(product_5[39:0]), .code(code_28)
     );
 
     // By clock (the suffix of a name): 7 the indices into the tables of fog and light, 9 the entries that were read.
@@ -121,16 +119,14 @@ module ray_paint #(
     logic [7:0]  fog_entry_7, fog_9, light_9, height_9, steps_7;
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            deep_6      <= product_5[39:21] >> fog_shift;
-            fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
-        end
+        deep_6      <= product_5[39:21] >> fog_shift;
+        fog_entry_7 <= deep_6[18:8] != '0 ? '1 : deep_6[7:0];
     end
 
-    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable, .in(ending_0.steps), .out(steps_7));
-    delay #(.WIDTH(8), .CLOCKS(7)) height_waits (.clk, .enable, .in(t_2[7:0]), .out(height_9));
+    delay #(.WIDTH(8), .CLOCKS(7)) steps_wait (.clk, .enable(1'b1), .in(ending_0.steps), .out(steps_7));
+    delay #(.WIDTH(8), .CLOCKS(7)) height_waits (.clk, .enable(1'b1), .in(t_2[7:0]), .out(height_9));
     paint_table fog_and_light (
-        .clk, .enable, .write(table_write), .write_entry(table_entry), .write_part(table_part),
+        .clk, .write(table_write), .write_entry(table_entry), .write_part(table_part),
         .fog_entry(fog_entry_7), .fog(fog_9), .light_entry(steps_7), .light(light_9)
     );
 
@@ -145,7 +141,7 @@ module ray_paint #(
     logic [8:0]        light_10, fog_10, fog_14;
 
     delay #(.WIDTH(5), .CLOCKS(7)) ending (
-        .clk, .enable, .in({ending_0.state, ending_0.surface}), .out({state_7, surface_7})
+        .clk, .enable(1'b1), .in({ending_0.state, ending_0.surface}), .out({state_7, surface_7})
     );
 
     // The end of a ray on a sphere or fillet comes with a colour that includes the light.
@@ -154,7 +150,7 @@ module ray_paint #(
 
     if (ROUND) begin : lit
         delay #(.WIDTH(25), .CLOCKS(FIRST + 8)) light_waits (
-            .clk, .enable, .in({in_end.round && in_end.state == raymarch_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
+            .clk, .enable(1'b1), .in({in_end.round && in_end.state == raymarch_pkg::HIT, in_colour}), .out({lit_8, lit_colour_8})
         );
     end else begin : unlit
         assign lit_8        = 1'b0;
@@ -180,30 +176,26 @@ module ray_paint #(
     assign number_7 = hit_7 ? surface_7 : {2'b11, state_7 == raymarch_pkg::MISS};
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            state_8        <= state_7;
-            upper_8        <= number_7[2];
-            lower_colour_8 <= one_of_four(palette.faces[3:0], number_7[1:0]);
-            if (OCTANTS && hit_7) upper_colour_8 <= one_of_four(palette.faces[7:4], surface_7[1:0]);
-            else                  upper_colour_8 <= one_of_four({palette.zenith, palette.undecided, palette.faces[5:4]}, number_7[1:0]);
-        end
+        state_8        <= state_7;
+        upper_8        <= number_7[2];
+        lower_colour_8 <= one_of_four(palette.faces[3:0], number_7[1:0]);
+        if (OCTANTS && hit_7) upper_colour_8 <= one_of_four(palette.faces[7:4], surface_7[1:0]);
+        else                  upper_colour_8 <= one_of_four({palette.zenith, palette.undecided, palette.faces[5:4]}, number_7[1:0]);
     end
     assign plain_8 = upper_8 ? upper_colour_8 : lower_colour_8;
 
     assign fog_part = state_9 == raymarch_pkg::HIT ? fog_9 : ~height_9;
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            state_9  <= state_8;
-            colour_9 <= lit_8 ? lit_colour_8 : plain_8;
+        state_9  <= state_8;
+        colour_9 <= lit_8 ? lit_colour_8 : plain_8;
 
-            colour_10 <= colour_9;
-            light_10  <= state_9 == raymarch_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
-            fog_10    <= state_9 == raymarch_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
-        end
+        colour_10 <= colour_9;
+        light_10  <= state_9 == raymarch_pkg::HIT ? {1'b0, light_9} + 9'(light_9[7]) : 9'd256;
+        fog_10    <= state_9 == raymarch_pkg::UNDECIDED ? '0 : {1'b0, fog_part} + 9'(fog_part[7]);
     end
 
-    delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable, .in(fog_10), .out(fog_14));
+    delay #(.WIDTH(9), .CLOCKS(4)) fog_waits (.clk, .enable(1'b1), .in(fog_10), .out(fog_14));
 
     // By clock (the suffix of a name): 13 the darkened colour, 14 its difference to the horizon's colour, 17 the faded colour.
     logic [2:0][7:0] faded_17;
@@ -214,12 +206,12 @@ module ray_paint #(
         logic [7:0]         lit_16;
 
         multiply_add #(.BITS(26)) darken (
-            .clk, .enable, .a({17'b0, colour_10[i]}), .b({9'b0, light_10}), .c('0), .p(lit_13)
+            .clk, .enable(1'b1), .a({17'b0, colour_10[i]}), .b({9'b0, light_10}), .c('0), .p(lit_13)
         );
-        always_ff @(posedge clk) if (enable) apart_14 <= $signed({1'b0, horizon[8*i +: 8]}) - $signed({1'b0, lit_13[15:8]});
-        delay #(.WIDTH(8), .CLOCKS(3)) lit_waits (.clk, .enable, .in(lit_13[15:8]), .out(lit_16));
+        always_ff @(posedge clk) apart_14 <= $signed({1'b0, horizon[8*i +: 8]}) - $signed({1'b0, lit_13[15:8]});
+        delay #(.WIDTH(8), .CLOCKS(3)) lit_waits (.clk, .enable(1'b1), .in(lit_13[15:8]), .out(lit_16));
         multiply_add #(.BITS(26)) fade (
-            .clk, .enable, .a(25'(apart_14)), .b({9'b0, fog_14}), .c({10'b0, lit_16, 8'd128}), .p(faded)
+            .clk, .enable(1'b1), .a(25'(apart_14)), .b({9'b0, fog_14}), .c({10'b0, lit_16, 8'd128}), .p(faded)
         );
         assign faded_17[i] = faded[15:8];
 
@@ -238,10 +230,10 @@ module ray_paint #(
     endfunction
 
     always_ff @(posedge clk) begin
-        if (enable) colour_18 <= stereo ? {faded_17[1], faded_17[1]} : {five(faded_17[0][7:2]), six(faded_17[1][7:1]), five(faded_17[2][7:2])};
+        colour_18 <= stereo ? {faded_17[1], faded_17[1]} : {five(faded_17[0][7:2]), six(faded_17[1][7:1]), five(faded_17[2][7:2])};
     end
 
-    delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable, .in(colour_18), .out(colour_29));
+    delay #(.WIDTH(16), .CLOCKS(11)) colour_waits (.clk, .enable(1'b1), .in(colour_18), .out(colour_29));
 
     // In clock 29 the group is complete. The depth code is 0 for a ray without a hit.
     raymarch_pkg::place_t place_26, place_29;
@@ -251,27 +243,31 @@ module ray_paint #(
     logic [10:0]       first_row_28, row_29;
     logic [7:0]        column_28;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable, .in(ending_0.place), .out(place_26));
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable, .in(place_26), .out(place_29));
-    delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable, .in(place_26.column[10:3]), .out(column_28));
-    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable, .in(ending_0.state == raymarch_pkg::HIT), .out(hit_28));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(26)) place_waits (.clk, .enable(1'b1), .in(ending_0.place), .out(place_26));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(3)) place_goes (.clk, .enable(1'b1), .in(place_26), .out(place_29));
+    delay #(.WIDTH(8), .CLOCKS(2)) column_waits (.clk, .enable(1'b1), .in(place_26.column[10:3]), .out(column_28));
+    delay #(.WIDTH(1), .CLOCKS(28)) hit_waits (.clk, .enable(1'b1), .in(ending_0.state == raymarch_pkg::HIT), .out(hit_28));
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);
-            if (stride[7])      first_row_28 <= {line_times_5[5:0], 5'd0};
-            else if (stride[6]) first_row_28 <= {line_times_5[6:0], 4'd0};
-            else                first_row_28 <= {line_times_5[7:0], 3'd0};
-            row_29  <= first_row_28 + 11'(column_28);
-            code_29 <= hit_28 ? code_28 : '0;
-        end
+        line_times_5 <= {1'b0, place_26.line, 2'd0} + 9'(place_26.line);
+        if (stride[7])      first_row_28 <= {line_times_5[5:0], 5'd0};
+        else if (stride[6]) first_row_28 <= {line_times_5[6:0], 4'd0};
+        else                first_row_28 <= {line_times_5[7:0], 3'd0};
+        row_29  <= first_row_28 + 11'(column_28);
+        code_29 <= hit_28 ? code_28 : '0;
     end
 
-    skid_buffer #(.WIDTH(1 + 11 + 6 + 8 + 8 + 18 + 16)) leaving (
-        .clk, .rst, .in_valid(valid[FIRST+LAST]), .in_ready(enable),
-        .in_data({place_29.eye, row_29, place_29.line, place_29.column[10:3], 8'b1 << place_29.column[2:0], code_29, colour_29}),
-        .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, out_mask, out_code, out_colour})
+    logic [2:0] number;
+
+    /* verilator lint_off PINCONNECTEMPTY */
+    credit_fifo #(.WIDTH(1 + 11 + 6 + 8 + 3 + 18 + 16), .DEPTH(PLACES)) leaving (
+        .clk, .rst, .idle(), .credit(in_ready), .sent(in_valid),
+        .in_valid(valid[FIRST+LAST]), .in_data({place_29.eye, row_29, place_29.line, place_29.column, code_29, colour_29}),
+        .out_valid, .out_ready, .out_data({out_eye, out_row, out_line, out_column, number, out_code, out_colour})
     );
+    /* verilator lint_on PINCONNECTEMPTY */
+
+    assign out_mask = 8'b1 << number;
 
     wire _unused = &{1'b0, way[29], way[8:0], waited, ending_0, product_5[42:40], place_29.odd, line_times_5[8], stride[5:0]};
 endmodule

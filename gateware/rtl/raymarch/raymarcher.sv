@@ -120,8 +120,8 @@ module raymarcher #(
 
     // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone stands for a block of 2^`block`
     // by 2^`block` pixels, and `fine` means 160 blocks in a line instead of 80. `cleared` is the depth from which the rays of
-    // block `number` start; its read advances while `looks` is high.
-    logic        cones, fine, generate_rays, looks;
+    // block `number` start.
+    logic        cones, fine, generate_rays;
     logic [2:0]  block;
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
@@ -140,7 +140,7 @@ module raymarcher #(
     ray_generator #(.ROUND(ROUND), .STEREO(STEREO), .PREPASS(PREPASS)) generator (
         .clk, .rst(reset), .start(generate_rays), .busy(generating),
         .last_column(column_ends), .last_line(line_ends), .last_band(band_ends), .stereo, .round(solid.is_round), .first, .across, .down, .near_limit, .origins, .outside,
-        .prepass, .cones, .fine, .block, .offset(cone_offset), .spread(cone_spread), .enable(looks), .number, .cleared,
+        .prepass, .cones, .fine, .block, .offset(cone_offset), .spread(cone_spread), .number, .cleared,
         .out_valid(ray_valid), .out_ready(ray_ready), .out_ray(ray)
     );
 
@@ -252,15 +252,13 @@ module raymarcher #(
         wire _unused = &{1'b0, lights};
     end
 
-    /* verilator lint_off PINCONNECTEMPTY */
     ray_paint #(.ROUND(ROUND), .OCTANTS((FIELDS & fields_pkg::OCTANTS) != 0)) paint (
         .clk, .rst(reset), .stereo, .round(solid.is_round), .stride, .depth_mantissa, .depth_exponent, .fog_shift, .palette, .horizon,
         .table_write, .table_entry, .table_part,
         .in_valid(lit_valid), .in_ready(lit_ready), .in_end(lit_end), .in_colour(lit_colour),
         .out_valid(group_valid), .out_ready(group_ready), .out_eye(group_eye), .out_row(group_row), .out_line(group_line),
-        .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour), .idle()
+        .out_column(group_column), .out_mask(group_mask), .out_code(group_code), .out_colour(group_colour)
     );
-    /* verilator lint_on PINCONNECTEMPTY */
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES = picture_pkg::CONES_ACROSS * picture_pkg::CONES_DOWN;
@@ -286,12 +284,12 @@ module raymarcher #(
 
         cone_table #(.ROUND(ROUND)) table_of_cones (
             .clk, .round(solid.is_round), .in_valid(cone_ends), .in_number({next_end.place.line[2:0], next_end.place.column}),
-            .in_length(next_end.length), .in_t(next_end.t), .enable(looks), .number, .cleared
+            .in_length(next_end.length), .in_t(next_end.t), .number, .cleared
         );
     end else begin : rays_alone
         assign {cones, fine, block, cones_left, cleared} = '0;
         assign generate_rays = start;
-        wire _unused = &{1'b0, prepass, looks, number, cones_left};
+        wire _unused = &{1'b0, prepass, number, cones_left};
     end
 
     logic [LANES-1:0] idles;

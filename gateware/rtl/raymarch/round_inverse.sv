@@ -1,13 +1,12 @@
 // Table of lower bounds of 1/sqrt(q) by the first ten bits i of q: sqrt(2^10/(i + 1)), reduced by a part of 2^-16, u8.9
 // (docs/formats.md, "Rays").
 //
-// Latency 2 clocks in which `enable` is high, throughput one result a clock.
+// Latency 2 clocks, throughput one result a clock.
 
 `default_nettype none
 
 module round_inverse (
     input  wire         clk,
-    input  wire         enable,
     input  wire  [9:0]  index,
     output logic [16:0] inverse
 );
@@ -24,10 +23,8 @@ module round_inverse (
     assign inverse = {2'b0, given};
 
     always_ff @(posedge clk) begin
-        if (enable) begin
-            latched <= inverses[index];
-            given   <= latched;
-        end
+        latched <= inverses[index];
+        given   <= latched;
     end
 endmodule
 

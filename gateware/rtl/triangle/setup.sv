@@ -148,7 +148,7 @@ module setup #(
     );
     // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 7 of stage 2 on, or earlier in stage 2 if
     // the beat of stage 1 is longer than 11 clocks.
-    normalise normalised (.clk, .enable(1'b1), .in(t.area), .m, .lead);
+    normalise normalised (.clk, .in(t.area), .m, .lead);
     reciprocal reciprocal_of_area (
         .clk, .rst, .in_valid(count == 4'd3), .in_ready(reciprocal_ready), .in_m(m),
         .out_valid(reciprocal_done), .out_y(y)

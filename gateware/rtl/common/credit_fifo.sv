@@ -1,0 +1,65 @@
+// A FIFO at the end of a long pipeline that cannot be stopped, with a credit for each place. An item takes a credit when it is
+// sent into the pipeline, and gives it back when it leaves the FIFO, so every item inside the pipeline finds a place. No signal
+// stops the stages between: only valid bits travel with the items.
+//
+//            ┌──────────┐    ┌────────────┐
+//   start ──▶│ pipeline │───▶│ FIFO       │──▶ out
+//     ▲      └──────────┘    └────────────┘
+//     └─── credits ◀────────────────┘
+//
+// An item is sent in a clock in which `sent` and `credit` are high, and arrives here some clocks later, `in_valid`; none may be
+// dropped on the way (pipeline_fifo allows that, but has to keep as many places free as the pipeline is long). `credit` comes
+// from a register. `idle` is high while no item is in the pipeline or in the FIFO.
+//
+// Latency 2 clocks, throughput one item a clock if DEPTH is at least the clocks from `sent` to `in_valid` plus 4. DEPTH is a
+// power of two.
+
+`default_nettype none
+
+module credit_fifo #(
+    parameter int unsigned WIDTH = 8,
+    parameter int unsigned DEPTH = 32
+) (
+    input  wire              clk,
+    input  wire              rst,
+    output logic             idle,
+    output logic             credit,
+    input  wire              sent,
+    input  wire              in_valid,
+    input  wire  [WIDTH-1:0] in_data,
+    output logic             out_valid,
+    input  wire              out_ready,
+    output logic [WIDTH-1:0] out_data
+);
+    localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
+
+    // Credits that no item has. The FIFO has a place in its output register too. Both changes of the count come from registers,
+    // so the last credit stays for an item that is sent while the count does not know of the one before.
+    logic [COUNT_BITS-1:0] credits, next;
+    logic                  took, gave, in_ready;
+
+    assign next = credits - COUNT_BITS'(took) + COUNT_BITS'(gave);
+    assign idle = credits == COUNT_BITS'(DEPTH + 1) && !took;
+
+    always_ff @(posedge clk) begin
+        took    <= sent && credit;
+        gave    <= out_valid && out_ready;
+        credits <= next;
+        credit  <= next > COUNT_BITS'(1);
+
+        if (rst) begin
+            took    <= 1'b0;
+            gave    <= 1'b0;
+            credits <= COUNT_BITS'(DEPTH + 1);
+            credit  <= 1'b0;
+        end
+    end
+
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) fifo (
+        .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
+    );
+
+    wire _unused = &{1'b0, in_ready};
+endmodule
+
+`default_nettype wire
