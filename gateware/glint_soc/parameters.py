@@ -1,7 +1,14 @@
 """Registers that only the gateware reads."""
 
+from functools import reduce
+from itertools import pairwise
+from operator import or_
+
+from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSR, CSRStorage
-from migen import If
+from migen import READ_FIRST, Case, If, Memory, Signal
+
+from .register_map import CSR_PAGING
 
 
 class Parameter(CSRStorage):
@@ -13,10 +20,71 @@ class Parameter(CSRStorage):
 
     def __init__(self, *arguments, description, **options):
         super().__init__(*arguments, description=f"{description} Reads as 0.", reset_less=True, **options)
+        # Whether the register is a word of a `PassParameters`, which sets `storage` then.
+        self.in_memory = False
 
     def do_finalize(self, busword, ordering):
         if self.size > busword:
             raise ValueError(f"{self.name}: {self.size} bits, expected at most {busword}")
         register = CSR(self.size, self.name)
         self.simple_csrs.append(register)
-        self.sync += [If(register.re, self.storage.eq(register.r)), self.re.eq(register.re)]
+        if not self.in_memory:
+            self.sync += [If(register.re, self.storage.eq(register.r)), self.re.eq(register.re)]
+
+
+class PassParameters(LiteXModule):
+    """The parameters of the passes of a block: registers that software may write at any time, and copies that hold during a pass.
+
+    Each of `passes` lists the `Parameter`s of one pass. `load[k]` (one clock) requests the copies of pass k. `loading[k]` is high
+    from the next clock until they are complete: one register is copied in a clock, one pass after another. `storage` of a
+    register is its copy. `copies[k]` maps the registers of pass k to their copies, because a register of several passes has one
+    in each, and `storage` in the first.
+
+    The registers are words of a block RAM as large as the block's window of the bus. The copies of a pass are a chain, so one enable
+    controls all of them. The widest is next to the memory: then each flip-flop of the chain is a bit of a copy.
+
+        bus ─▶ words ─▶ widest copy ─▶ … ─▶ narrowest copy
+    """
+
+    def __init__(self, *passes):
+        chains = [sorted(registers, key=lambda register: register.size) for registers in passes]
+        self.load, self.loading = Signal(len(chains)), Signal(len(chains))
+        self.copies = []
+        for chain in chains:
+            self.copies.append({register: Signal(register.size, name=f"{register.name}_copy", reset_less=True)
+                                if register.in_memory else register.storage for register in chain})
+            for register in chain:
+                register.in_memory = True
+
+        # # #
+
+        words = Memory(32, CSR_PAGING // 4)
+        self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
+        self.specials += words, self._write, self._read
+
+        # `turn` is the place of the word that is read in `order`. The word moves into its chain one clock later.
+        self._order = [register for chain in chains for register in chain]
+        self._turn = turn = Signal(max=len(self._order))
+        waiting, reading, moving = (Signal(len(chains)) for _ in range(3))
+        ends = [sum(map(len, chains[:k + 1])) for k in range(len(chains))]
+        is_last = reduce(or_, [turn == end - 1 for end in ends])
+        step = If(reading != 0, turn.eq(turn + 1), If(is_last, reading.eq(0)))
+        for k, (chain, end) in enumerate(zip(chains, ends, strict=True)):
+            step = step.Elif(waiting[k], turn.eq(end - len(chain)), reading[k].eq(1), waiting[k].eq(self.load[k]))
+        self.comb += self.loading.eq(waiting | reading | moving)
+        self.sync += [waiting.eq(waiting | self.load), step, moving.eq(reading)]
+        for k, copies in enumerate(self.copies):
+            chain = [*copies.values(), self._read.dat_r]
+            self.sync += If(moving[k], *(copy.eq(wider) for copy, wider in pairwise(chain)))
+
+    def connect(self, bank, window):
+        """Returns the statements that connect the memory with the block's register bank, which LiteX puts into the window of this
+        number."""
+        address, bus = self._write.adr, bank.bus
+        numbers = [bank.simple_csrs.index(register.simple_csrs[0]) for register in self._order]
+        return [
+            address.eq(bus.adr),
+            self._write.dat_w.eq(bus.dat_w),
+            self._write.we.eq(bus.we & (bus.adr[len(address):] == window)),
+            Case(self._turn, {turn: self._read.adr.eq(number) for turn, number in enumerate(numbers)}),
+        ]

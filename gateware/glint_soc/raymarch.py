@@ -12,7 +12,7 @@ from migen import Case, Cat, Constant, If, Instance, Mux, ResetSignal, Signal
 from .counters import Counters
 from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
 from .packed import Package, Struct
-from .parameters import Parameter
+from .parameters import Parameter, PassParameters
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"MARC", "big")
@@ -189,13 +189,21 @@ class Raymarcher(LiteXModule):
             "the last one; kind of the flat field, and its constants.", {
             "blend_width": blend_width, "blend_inverse": blend_inverse,
             **{name: getattr(solid, name) for name in ("flat_too", "is_round", "spheres_repeated", "last_sphere", "kind", "levels")},
-            "cube_half": self._cube_half.storage, "half": box_half,
+            "cube_half": self._cube_half.storage, "half": _contents(box_half),
             **{name: getattr(solid, name) for name in ("has", "room", "repeated")}})
         limits = Struct("tuning_t", "Limits of a ray: threshold, footprint, step limit, far limit of t.", {
             **{name: getattr(tuning, name) for name in ("threshold", "footprint", "cap")}, "far_limit": self._far.storage})
         colours = Struct("palette_t", "Colours, {blue, green, red}: zenith, undecided rays, and faces by their surface.", {
-            "zenith": palette[7], "undecided": palette[6], "faces": [*palette[:6], *self._octants(fields)]})
+            "zenith": palette[7].storage, "undecided": palette[6].storage,
+            "faces": [*_contents(palette[:6]), *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
+        # The registers that this build reads, without those whose writes have an effect at once.
+        eyes = 2 if fields.stereo else 1
+        registers = [self._cube_half, *box_half, self._tuning, self._far, self._near, *origins[:3*eyes], *outside[:3*eyes],
+                     *first[:3*eyes], *bounds, *across, *down, self._depth_scale, *palette, self._horizon, self._fog_shift]
+        if fields.prepass:
+            registers += [*offset, self._cone_spread]
+        self.parameters = PassParameters(registers)
         # Control of this block's gated clock. The clock runs while the block is enabled and the triangle engine's clock runs,
         # and after writes to tables and spheres. Then it runs for 31 clocks more, because the last events come some clocks
         # after the end of a pass, and all events must be 0 when it stops.
@@ -203,6 +211,8 @@ class Raymarcher(LiteXModule):
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
                 prepass & int(not fields.prepass), error.eq(3)),
+            self.parameters.load.eq(engine.raster_load),
+            engine.field_loading.eq(self.parameters.loading),
             engine.field.enable.eq(enable & (error == 0)),
             engine.field.compose.eq(stereo),
             working.eq(ResetSignal("sys") | self._table.re | self._sphere.re | (enable & engine.clock_enable)),
@@ -224,13 +234,13 @@ class Raymarcher(LiteXModule):
             o_busy           = busy,
             i_size           = engine.field.size,
             i_stereo         = stereo != 0,
-            i_first          = Cat(*first),
-            i_across         = Cat(*across),
-            i_down           = Cat(*down),
+            i_first          = Cat(*_contents(first)),
+            i_across         = Cat(*_contents(across)),
+            i_down           = Cat(*_contents(down)),
             i_near_limit     = self._near.storage,
-            i_origins        = Cat(*origins),
-            i_outside        = Cat(*outside),
-            i_bounds         = Cat(*bounds),
+            i_origins        = Cat(*_contents(origins)),
+            i_outside        = Cat(*_contents(outside)),
+            i_bounds         = Cat(*_contents(bounds)),
             i_solid          = constants.value,
             i_sphere_write   = write_sphere,
             i_sphere_number  = number,
@@ -238,7 +248,7 @@ class Raymarcher(LiteXModule):
             i_lights         = lights.value,
             i_tuning         = limits.value,
             i_prepass        = prepass,
-            i_cone_offset    = Cat(*offset),
+            i_cone_offset    = Cat(*_contents(offset)),
             i_cone_spread    = self._cone_spread.storage,
             i_depth_mantissa = self._depth_scale.fields.mantissa,
             i_depth_exponent = self._depth_scale.fields.exponent,
@@ -291,7 +301,11 @@ class Raymarcher(LiteXModule):
         return colours
 
     def _register(self, name, size, description):
-        """Adds a register and returns its content."""
+        """Adds a register and returns it."""
         register = Parameter(size, name=name, description=description)
         setattr(self, f"_{name}", register)
-        return register.storage
+        return register
+
+
+def _contents(registers):
+    return [register.storage for register in registers]

@@ -85,6 +85,12 @@ class GlintSoC(SoCCore):
         self.switches = GPIOIn(self._inputs("switches", 16))
         self.leds = GPIOOut(self._outputs("leds", 16))
 
+    def do_finalize(self):
+        # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.
+        for name, _, window, bank in self.csr_bankarray.banks:
+            if parameters := getattr(getattr(self, name, None), "parameters", None):
+                self.comb += parameters.connect(bank, window)
+
     def _inputs(self, name, bits):
         """The input pins `name` with `bits` bits: those that the board lacks are 0."""
         pads = self.platform.request(name)

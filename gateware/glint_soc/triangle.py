@@ -1,6 +1,8 @@
 """Register block of the triangle engine (rtl/triangle): draws a mesh in memory, and the field of a raymarcher, to a frame in
 memory."""
 
+from itertools import chain
+
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
@@ -10,7 +12,7 @@ from . import constants
 from .constants import DESCRIPTOR_BYTES
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
-from .parameters import Parameter
+from .parameters import Parameter, PassParameters
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")
@@ -112,14 +114,14 @@ class TriangleEngine(LiteXModule):
             for i, axis in enumerate("xyz"):
                 register = Parameter(25, name=f"row_{row}{i}", description=f"Row {meaning}, {axis}, two's complement.")
                 setattr(self, f"_row_{row}{i}", register)
-                rows.setdefault(row, []).append(register.storage)
+                rows.setdefault(row, []).append(register)
         translation = {}
         for axis, what in [("x", "14 + f"), ("y", "14 + f"), ("z", "37")]:
             low = Parameter(32, name=f"t{axis}_low", description=f"Translation t{axis}, {what} fraction bits: bits 0 to 31.")
             high = Parameter(12, name=f"t{axis}_high", description=f"Translation t{axis}: bits 32 to 43.")
             setattr(self, f"_t{axis}_low", low)
             setattr(self, f"_t{axis}_high", high)
-            translation[axis] = Cat(low.storage, high.storage)
+            translation[axis] = [low, high]
         self._near_low = Parameter(32, name="near_low", description="Near plane, 37 fraction bits: bits 0 to 31.")
         self._near_high = Parameter(7, name="near_high", description="Near plane: bits 32 to 38.")
         self._depth_scale = Parameter(name="depth_scale", fields=[
@@ -143,13 +145,15 @@ class TriangleEngine(LiteXModule):
         self._frame = Parameter(32, name="frame", description=f"{address} the frame, RGB565, written by the pass.")
         self._depth = Parameter(32, name="depth", description=f"{address} the depth codes, 32 bits each, written by the pass.")
         self._clear = Parameter(16, name="clear", description="Background colour, RGB565.")
+        sets = {}
         for k, which in enumerate(["first", "second"]):
             for name, register in [
-                (f"lists_{k}", Parameter(32, name=f"lists_{k}", description=f"{address} the {which} set's lists.")),
-                (f"descriptors_{k}", Parameter(32, name=f"descriptors_{k}", description=f"{address} the {which} set's descriptors.")),
-                (f"count_{k}", Parameter(_COUNT_BITS, name=f"count_{k}", description=f"Descriptors of the {which} set.")),
+                ("lists", Parameter(32, name=f"lists_{k}", description=f"{address} the {which} set's lists.")),
+                ("descriptors", Parameter(32, name=f"descriptors_{k}", description=f"{address} the {which} set's descriptors.")),
+                ("count", Parameter(_COUNT_BITS, name=f"count_{k}", description=f"Descriptors of the {which} set.")),
             ]:
-                setattr(self, f"_{name}", register)
+                setattr(self, f"_{name}_{k}", register)
+                sets.setdefault(name, []).append(register)
 
         # Registers with the results of the last geometry pass.
         results = {
@@ -198,6 +202,19 @@ class TriangleEngine(LiteXModule):
         # The clock runs on after a pass, because the last events reach the counters some clocks later.
         self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
 
+        self.parameters = PassParameters(
+            [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
+             self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
+             self._near_low, self._near_high, self._depth_scale],
+            [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
+        # A raymarcher copies its parameters at the same time as the raster pass, which waits for both.
+        self.raster_load, self.field_loading = Signal(), Signal()
+        # A request that is refused leaves the parameters of the running pass as they are.
+        self.comb += [
+            self.raster_load.eq(self._raster.fields.start & ~self._status.fields.raster_busy),
+            self.parameters.load.eq(Cat(self._geometry.fields.start & ~self._status.fields.geometry_busy, self.raster_load)),
+        ]
+
         # Signals between the triangle engine and a raymarcher, explained in rtl/triangle/raster_unit.sv.
         self.field = field = Record([
             ("enable", 1), ("compose", 2), ("start", 1), ("restart", 1), ("size", 2), ("open", 1), ("done", 1), ("next", 1),
@@ -217,8 +234,8 @@ class TriangleEngine(LiteXModule):
         })
         view = Struct("view_t", "Camera of the geometry pass: docs/formats.md, the transform of a vertex.", {
             "scale_shift": self._scale_shift.storage,
-            **{f"row_{row}": values for row, values in rows.items()},
-            **{f"t{axis}": value for axis, value in translation.items()},
+            **{f"row_{row}": [register.storage for register in registers] for row, registers in rows.items()},
+            **{f"t{axis}": Cat(*(register.storage for register in registers)) for axis, registers in translation.items()},
             "near_z": Cat(self._near_low.storage, self._near_high.storage),
             "depth_mantissa": self._depth_scale.fields.mantissa,
             "depth_exponent": self._depth_scale.fields.exponent,
@@ -229,8 +246,8 @@ class TriangleEngine(LiteXModule):
             "frame": self._frame.storage,
             "depth": self._depth.storage,
             "clear": self._clear.storage,
-            "list_shift": self._list_shift.storage,
-            **{name: [getattr(self, f"_{name}_{k}").storage for k in (0, 1)] for name in ("lists", "descriptors", "count")},
+            "list_shift": self.parameters.copies[1][self._list_shift],
+            **{name: [register.storage for register in registers] for name, registers in sets.items()},
         })
         counts = ("descriptor_count", "exception_count")
         results = Struct("results_t", "Results of the geometry pass.", {
@@ -261,30 +278,32 @@ class TriangleEngine(LiteXModule):
             *(port.cmd.we.eq(1) for port in writers),
         ]
         self.specials += Instance("triangle_control", name="triangle_control",
-            p_BASE            = main_ram.origin,
-            p_MEMORY_BITS     = memory_bits,
-            p_SIZES           = sizes,
-            p_TRIANGLES       = int(triangles),
-            p_SMOOTH          = int(smooth),
-            i_clk             = ClockSignal("sys"),
-            i_rst             = ResetSignal("sys"),
-            i_cancel          = cancel,
-            i_geometry_ask    = self._geometry.fields.start,
-            i_geometry_flags  = geometry_flags.value,
-            i_geometry        = geometry.value,
-            o_geometry_kept   = geometry_kept.value,
-            o_geometry_active = self._status.fields.geometry_busy,
-            o_geometry_ended  = self.ev.geometry.trigger,
-            o_geometry_error  = self._status.fields.geometry_error,
-            i_raster_ask      = self._raster.fields.start,
-            i_raster_flags    = raster_flags.value,
-            i_raster          = raster.value,
-            o_raster_kept     = raster_kept.value,
-            o_raster_active   = self._status.fields.raster_busy,
-            o_raster_ended    = self.ev.raster.trigger,
-            o_raster_error    = self._status.fields.raster_error,
-            i_engine          = status.value,
-            o_recovering      = recovering,
+            p_BASE             = main_ram.origin,
+            p_MEMORY_BITS      = memory_bits,
+            p_SIZES            = sizes,
+            p_TRIANGLES        = int(triangles),
+            p_SMOOTH           = int(smooth),
+            i_clk              = ClockSignal("sys"),
+            i_rst              = ResetSignal("sys"),
+            i_cancel           = cancel,
+            i_geometry_ask     = self._geometry.fields.start,
+            i_geometry_flags   = geometry_flags.value,
+            i_geometry_loading = self.parameters.loading[0],
+            i_geometry         = geometry.value,
+            o_geometry_kept    = geometry_kept.value,
+            o_geometry_active  = self._status.fields.geometry_busy,
+            o_geometry_ended   = self.ev.geometry.trigger,
+            o_geometry_error   = self._status.fields.geometry_error,
+            i_raster_ask       = self._raster.fields.start,
+            i_raster_flags     = raster_flags.value,
+            i_raster_loading   = self.parameters.loading[1] | self.field_loading,
+            i_raster           = raster.value,
+            o_raster_kept      = raster_kept.value,
+            o_raster_active    = self._status.fields.raster_busy,
+            o_raster_ended     = self.ev.raster.trigger,
+            o_raster_error     = self._status.fields.raster_error,
+            i_engine           = status.value,
+            o_recovering       = recovering,
             **{f"o_{name}": signal for name, signal in start.items()},
         )
         self.specials += Instance("triangle_engine", name="triangle_engine",

@@ -29,6 +29,7 @@ import registers  # noqa: E402
 import memory_bridge  # noqa: E402
 import memory_crossbar  # noqa: E402
 import netlist  # noqa: E402
+import parameters  # noqa: E402
 import route  # noqa: E402
 import size  # noqa: E402
 import tables  # noqa: E402
@@ -86,6 +87,7 @@ def test():
     others = {
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
         **{f"counters: {name}": action for name, action in counters.CHECKS.items()},
+        **{f"parameters: {name}": action for name, action in parameters.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
         **{f"memory crossbar: {name}": action for name, action in memory_crossbar.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},

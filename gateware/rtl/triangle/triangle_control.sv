@@ -14,9 +14,11 @@
 // A pass is `active` from its request until its error is valid. A second request meanwhile does not stop the pass; the error is
 // then ERROR_BUSY, unless the pass ends with another error.
 //
+// A request waits while the parameters of its pass are `loading`, from the next clock on. `kept` holds the flags of a pass from
+// its request on; all other parameters must hold from the end of `loading` until `ended`.
+//
 // `cancel` (one clock, at any time) ends both passes, also those requested in the same clock. Later requests wait until the
-// engine is `ready`. Latency 15 clocks from `ask` to `start`. `kept` holds the flags of a pass from its request on; all other
-// parameters must hold until `ended`.
+// engine is `ready`. Latency 15 clocks from `ask`, or from the end of `loading`, to `start`.
 
 `default_nettype none
 
@@ -34,6 +36,7 @@ module triangle_control #(
     // Geometry.
     input  wire                    geometry_ask,
     input  wire triangle_registers_pkg::geometry_flags_t geometry_flags,
+    input  wire                    geometry_loading,
     input  wire triangle_registers_pkg::geometry_t geometry,
     output triangle_registers_pkg::geometry_flags_t geometry_kept,
     output logic                   geometry_active,
@@ -42,6 +45,7 @@ module triangle_control #(
     // Raster.
     input  wire                    raster_ask,
     input  wire triangle_registers_pkg::raster_flags_t raster_flags,
+    input  wire                    raster_loading,
     input  wire triangle_registers_pkg::raster_t raster,
     output triangle_registers_pkg::raster_flags_t raster_kept,
     output logic                   raster_active,
@@ -70,13 +74,15 @@ module triangle_control #(
 
     localparam logic [3:0] FIRST_GEOMETRY = 4'd0, LAST_GEOMETRY = 4'd3, FIRST_RASTER = 4'd4, LAST_RASTER = 4'd9;
 
-    logic       geometry_pending, raster_pending, rastering;
+    logic       geometry_pending, raster_pending, check_geometry, rastering;
     logic [3:0] region;
     logic [1:0] size;
     logic [5:0] bands;
 
     assign geometry_active = geometry_pending || geometry_start || engine.geometry_busy || engine.geometry_done;
     assign raster_active   = raster_pending || raster_start || engine.raster_busy || engine.raster_done;
+
+    assign check_geometry = geometry_pending && !geometry_loading;
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
 
@@ -190,9 +196,9 @@ module triangle_control #(
 
         case (state)
             IDLE: begin
-                rastering <= !geometry_pending;
-                region    <= geometry_pending ? FIRST_GEOMETRY : FIRST_RASTER;
-                if (geometry_pending || raster_pending) state <= CHECK;
+                rastering <= !check_geometry;
+                region    <= check_geometry ? FIRST_GEOMETRY : FIRST_RASTER;
+                if (check_geometry || raster_pending && !raster_loading) state <= CHECK;
             end
             CHECK: begin
                 region <= region + 1'b1;

@@ -279,6 +279,32 @@ fn passes_end_as_the_engine_says() {
     }
 }
 
+/// A pass whose parameters load waits for them, and ends at once when it is cancelled meanwhile.
+#[test]
+fn passes_wait_for_their_parameters() {
+    let mut bench = Bench::new(9);
+    for loads in [[1, 0], [0, 1], [2, 40], [40, 2], [40, 40]] {
+        bench.loads = loads;
+        for ask in [[true, false], [false, true], [true, true]] {
+            assert_eq!(bench.ask(ask), [NONE; 2], "{loads:?}");
+            for after in 0..60 {
+                bench.configure();
+                bench.clock(Events {
+                    ask,
+                    ..Events::default()
+                });
+                bench.wait(after);
+                bench.clock(Events {
+                    cancel: true,
+                    recovers: 3,
+                    ..Events::default()
+                });
+                assert_eq!(bench.ask([true, true]), [NONE; 2], "{loads:?}, {after}");
+            }
+        }
+    }
+}
+
 /// Asks for a pass again while its parameters are checked, or while it starts, runs or ends: the second ask is refused, and
 /// the pass continues and ends once.
 #[test]

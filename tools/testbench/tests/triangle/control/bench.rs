@@ -43,6 +43,10 @@ pub struct Bench {
     /// Length in clocks of each pass in the engine; `ends` has the result of each pass.
     pub runs: [u64; 2],
     pub ends: [u64; 2],
+    /// Clocks for which the parameters of each pass load after an accepted ask; `loading` has the clocks that are left. The
+    /// addresses of the regions are wrong meanwhile.
+    pub loads: [u64; 2],
+    pub loading: [u64; 2],
     /// Numbers of accepted asks, starts and ends of each pass.
     pub counts: [[u64; 3]; 2],
     pub clocks: u64,
@@ -85,6 +89,8 @@ impl Bench {
             ready_in: 0,
             runs: [20, 30],
             ends: [NONE; 2],
+            loads: [0; 2],
+            loading: [0; 2],
             counts: [[0; 3]; 2],
             clocks: 0,
         };
@@ -149,15 +155,29 @@ impl Bench {
         for path in ["geometry.list_shift", "raster.list_shift"] {
             self.module.drive(path, self.list_shift);
         }
-        for pass in self.passes.clone() {
-            for (name, value) in pass.ports {
-                let port = self.module.port(name);
-                self.module.set(port, value);
-            }
-        }
         for which in [GEOMETRY, RASTER] {
             let flags = self.passes[which].flags.clone();
             self.set_flags(which, &flags);
+            self.drive_regions(which);
+        }
+    }
+
+    /// Drives the addresses and lengths of a pass.
+    fn drive_regions(&mut self, which: usize) {
+        for (name, value) in self.passes[which].ports.clone() {
+            let port = self.module.port(name);
+            self.module.set(port, value);
+        }
+    }
+
+    /// Starts to load the parameters of a pass.
+    fn load(&mut self, which: usize) {
+        self.loading[which] = self.loads[which];
+        if self.loads[which] > 0 {
+            for (name, _) in self.passes[which].ports.clone() {
+                let port = self.module.port(name);
+                self.module.set(port, 1);
+            }
         }
     }
 
@@ -175,9 +195,16 @@ impl Bench {
         self.module.set(port, u64::from(events.cancel));
         for which in [GEOMETRY, RASTER] {
             self.set(which, "ask", events.ask[which].into());
+            self.set(which, "loading", u64::from(self.loading[which] > 0));
         }
         self.module.clock();
         self.clocks += 1;
+        for which in [GEOMETRY, RASTER] {
+            if self.loading[which] == 1 {
+                self.drive_regions(which);
+            }
+            self.loading[which] = self.loading[which].saturating_sub(1);
+        }
         if ready && self.recovery == Recovery::Waits {
             self.recovery = Recovery::Since(now);
         }
@@ -199,7 +226,8 @@ impl Bench {
                         self.descriptor,
                         self.limits,
                     );
-                    self.states[which] = State::Asked(now, refusal);
+                    self.load(which);
+                    self.states[which] = State::Asked(now + self.loads[which], refusal);
                     self.errors[which] = NONE;
                     self.kept[which] = Some(self.passes[which].flags.clone());
                     self.counts[which][0] += 1;
@@ -213,6 +241,9 @@ impl Bench {
                         expects_end = true;
                     }
                     assert!(!started, "{name} starts though cancelled");
+                }
+                State::Asked(since, _) if now < since => {
+                    assert!(!started, "{name} starts without its parameters");
                 }
                 State::Asked(since, refusal) => {
                     // Both passes may be asked for in one clock, so the limit is twice the latency of a pass. It counts from
