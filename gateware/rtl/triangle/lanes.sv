@@ -20,8 +20,7 @@
 // the address of the group in the band buffer, computed from `out_line` and `out_column`.
 //
 // The pipeline cannot be stopped: valid bits travel with the groups, and a group without a covered pixel is dropped. Latency 5
-// clocks, throughput a group a clock; all outputs are registers. `early_depths` has the depth accumulators of a group one clock
-// before the group leaves.
+// clocks, throughput a group a clock; all outputs are registers.
 
 `default_nettype none
 
@@ -39,11 +38,11 @@ module lanes (
     output logic [7:0]                  out_column,
     output logic [7:0]                  out_mask,
     output logic [7:0][17:0]            out_codes,
-    output logic [15:0]                 out_colour,
-    output logic [7:0][31:0]            early_depths
+    output logic [15:0]                 out_colour
 );
-    logic [4:1] valid;
-    logic [7:0] mask;
+    logic [4:1]       valid;
+    logic [7:0]       mask;
+    logic [7:0][31:0] values;
 
     assign idle = valid == '0 && !out_valid;
 
@@ -111,12 +110,12 @@ module lanes (
         out_mask <= mask;
     end
 
-    lane_values depths (.clk, .in(in_late.depth), .step_x(in_late.depth_step_x), .values(early_depths));
+    lane_values depths (.clk, .in(in_late.depth), .step_x(in_late.depth_step_x), .values);
 
     always_ff @(posedge clk) begin
         for (int i = 0; i < 8; i++) begin
-            out_codes[i] <= early_depths[i][31:14];
-            if (early_depths[i][31:15] == '0) out_codes[i][0] <= 1'b1;
+            out_codes[i] <= values[i][31:14];
+            if (values[i][31:15] == '0) out_codes[i][0] <= 1'b1;
         end
     end
 

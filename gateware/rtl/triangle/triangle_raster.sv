@@ -7,8 +7,8 @@
 //                                      ▲                                │
 //                                      └────────────── room ────────────┘
 //
-// With SMOOTH, a triangle comes with the planes of its three colour channels, and lane_shades stands between `lanes` and
-// `pipeline_fifo`; the latency is then 27 clocks.
+// With SMOOTH, a triangle comes with the planes of its three colour channels, and `smooth_shader` stands in the place of
+// `pipeline_fifo`. It takes a clock for each pixel of a group of a smooth triangle.
 //
 // A group is {line = y - y0 with y0 the first row of the band, column = x / 8, row address in the band buffer = line * stride +
 // column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost pixel) in the lowest bits. The mask is never
@@ -53,7 +53,7 @@ module triangle_raster #(
     output logic [8*18-1:0]                group_codes,
     output logic [8*16-1:0]                group_colours
 );
-    logic                   walker_idle, lanes_idle, shades_idle, fifo_idle, waits;
+    logic                   walker_idle, lanes_idle, fifo_idle, waits;
     logic [1:0]             holds;
     logic                   placed_valid, placed_ready, placed_odd;
     raster_pkg::placed_t    placed;
@@ -65,7 +65,7 @@ module triangle_raster #(
     logic [VALUES_BITS-1:0] walked_light;
 
     assign waits = placed_odd != odd;
-    assign idle  = !holds[odd] && walker_idle && lanes_idle && shades_idle && fifo_idle;
+    assign idle  = !holds[odd] && walker_idle && lanes_idle && fifo_idle;
 
     logic counts_walking, counts_empty;
 
@@ -103,50 +103,51 @@ module triangle_raster #(
         logic [7:0][17:0] codes;
     } group_t;
 
-    group_t found, made, group;
+    group_t      found, group;
+    logic [15:0] found_colour;
+    logic        found_valid;
 
-    localparam int unsigned GROUP_BITS   = $bits(found);
-    localparam int unsigned COLOURS_BITS = SMOOTH ? 8 * 16 : 16;
-
-    logic [15:0]             found_colour;
-    logic [COLOURS_BITS-1:0] made_colours, colours;
-    logic [7:0][31:0]        early_depths;
-    logic                    found_valid, made_valid;
+    localparam int unsigned GROUP_BITS = $bits(found);
+    // Clocks from the walker to the FIFO.
+    localparam int unsigned FLIGHT     = 5;
 
     lanes lanes (
         .clk, .rst, .stride, .idle(lanes_idle),
         .in_valid(walked_valid && room), .in_group(walked), .in_late(walked_late),
         .out_valid(found_valid), .out_row(found.row), .out_line(found.line), .out_column(found.column),
-        .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour), .early_depths
+        .out_mask(found.mask), .out_codes(found.codes), .out_colour(found_colour)
     );
 
     if (SMOOTH) begin : light
-        lane_shades #(.GROUP_BITS(GROUP_BITS)) lane_shades (
-            .clk, .rst, .idle(shades_idle),
-            .in_light({walked_light[128 +: 32], walked_light[64 +: 32], walked_light[0 +: 32]}),
-            .in_step_x({walked_light[160 +: 32], walked_light[96 +: 32], walked_light[32 +: 32]}), .in_smooth(walked_light[192]),
-            .in_depths(early_depths), .in_valid(found_valid), .in_group(found), .in_colour(found_colour),
-            .out_valid(made_valid), .out_group(made), .out_colours(made_colours)
+        // Depth and light of a group, which come one clock and two clocks after the group, wait until its mask is known.
+        logic [63:0]  found_depth;
+        logic [192:0] found_light;
+
+        delay #(.WIDTH(64), .CLOCKS(FLIGHT - 1)) depth_delay (
+            .clk, .enable(1'b1), .in({walked_late.depth_step_x, walked_late.depth}), .out(found_depth)
+        );
+        delay #(.WIDTH(193), .CLOCKS(FLIGHT - 2)) light_delay (.clk, .enable(1'b1), .in(walked_light), .out(found_light));
+
+        smooth_shader #(.GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) smooth_shader (
+            .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_group(found), .in_mask(found.mask),
+            .in_colour(found_colour), .in_smooth(found_light[192]),
+            .in_depth(found_depth[31:0]), .in_depth_step_x(found_depth[63:32]),
+            .in_light({found_light[128 +: 32], found_light[64 +: 32], found_light[0 +: 32]}),
+            .in_light_step_x({found_light[160 +: 32], found_light[96 +: 32], found_light[32 +: 32]}),
+            .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_colours(group_colours)
+        );
+    end else begin : flat
+        logic [15:0] colour;
+
+        pipeline_fifo #(.WIDTH(GROUP_BITS + 16), .DEPTH(16), .FLIGHT(FLIGHT)) pipeline_fifo (
+            .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_data({found, found_colour}),
+            .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colour})
         );
 
-        assign group_colours = colours;
-    end else begin : flat
-        assign shades_idle   = 1'b1;
-        assign made_valid    = found_valid;
-        assign made          = found;
-        assign made_colours  = found_colour;
-        assign group_colours = {8{colours}};
+        assign group_colours = {8{colour}};
 
-        wire _unused = &{1'b0, walked_light, early_depths};
+        wire _unused = &{1'b0, walked_light};
     end
-
-    // Clocks from the walker to the FIFO.
-    localparam int unsigned FLIGHT = SMOOTH ? 11 : 5;
-
-    pipeline_fifo #(.WIDTH(GROUP_BITS + COLOURS_BITS), .DEPTH(SMOOTH ? 32 : 16), .FLIGHT(FLIGHT)) pipeline_fifo (
-        .clk, .rst, .idle(fifo_idle), .room, .in_valid(made_valid), .in_data({made, made_colours}),
-        .out_valid(group_valid), .out_ready(group_ready), .out_data({group, colours})
-    );
 
     assign group_row     = group.row;
     assign group_line    = group.line;

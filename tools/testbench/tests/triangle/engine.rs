@@ -351,8 +351,8 @@ fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
         ("icosphere:6", SIZES[0], false, 1.9, 3.0, 1000),
         ("icosphere:12", SIZES[2], false, 3.85, 4.6, 6000),
-        ("icosphere:6", SIZES[0], true, 1.9, 3.0, 2000),
-        ("icosphere:12", SIZES[2], true, 3.75, 4.6, 10_000),
+        ("icosphere:6", SIZES[0], true, 0.6, 0.7, 2000),
+        ("icosphere:12", SIZES[2], true, 0.6, 0.7, 10_000),
     ] {
         let mesh = generated(name);
         let view = ahead(0.4781, 0.5);

@@ -1,0 +1,126 @@
+// Smooth shading: computes the colours of the pixels of a group, one after the other.
+//
+//            ┌─ pipeline_fifo: groups ───────────────────────────────────────────────┐
+//   group ──▶┤                                                                       ├──▶ group with eight colours
+//            └─ fifo: light ─▶ pixel: light, depth ─▶ pixel_colour ─▶ pipeline_fifo ─┘
+//                                  ▲      │ + step_x
+//                                  └──────┘
+//
+// A group of a flat triangle takes one clock. A group of a smooth triangle takes a clock for each pixel from the first one, or
+// the fifth one if the first four are not covered, to the last covered one: an average of some five, at most eight. Three
+// multipliers then do the divisions of a pixel, in place of 24 for a group a clock.
+//
+// Groups come from a pipeline that cannot be stopped. It sends only while `room` is high, FLIGHT clocks before a group is here
+// (see pipeline_fifo). Latency 2 clocks for a flat group, 13 more than its pixels for a smooth one; the order of the groups stays.
+// Output: a valid/ready stream. `idle` is high while no group is inside.
+
+`default_nettype none
+
+module smooth_shader #(
+    parameter int unsigned GROUP_BITS = 8,
+    parameter int unsigned FLIGHT     = 5
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    output logic                  idle,
+    output logic                  room,
+    input  wire                   in_valid,
+    input  wire  [GROUP_BITS-1:0] in_group,
+    input  wire  [7:0]            in_mask,
+    input  wire  [15:0]           in_colour,       // of a flat triangle
+    input  wire                   in_smooth,
+    input  wire  [31:0]           in_depth,        // of the first pixel, with half a depth code added
+    input  wire  [31:0]           in_depth_step_x,
+    input  wire  [2:0][31:0]      in_light,        // of the first pixel, red in the lowest bits
+    input  wire  [2:0][31:0]      in_light_step_x,
+    output logic                  out_valid,
+    input  wire                   out_ready,
+    output logic [GROUP_BITS-1:0] out_group,
+    output logic [7:0][15:0]      out_colours
+);
+    // Groups, until their colours are there.
+    logic             group_valid, group_smooth, group_gone, colours_valid;
+    logic [15:0]      group_colour;
+    logic [7:0][15:0] smooth_colours;
+
+    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(16), .FLIGHT(FLIGHT)) groups (
+        .clk, .rst, .idle, .room, .in_valid, .in_data({in_smooth, in_colour, in_group}),
+        .out_valid(group_valid), .out_ready(group_gone), .out_data({group_smooth, group_colour, out_group})
+    );
+
+    assign out_valid   = group_valid && (!group_smooth || colours_valid);
+    assign group_gone  = out_ready && (!group_smooth || colours_valid);
+    assign out_colours = group_smooth ? smooth_colours : {8{group_colour}};
+
+    // Four accumulators: the depth, then red, green and blue. The FIFO holds some of the groups, so it has room for a group
+    // whenever the other FIFO has.
+    logic             light_valid, light_room, takes, is_first, is_last, upper, may_start;
+    logic [2:0]       lane, last_lane;
+    logic [3:0][31:0] starts, steps, values;
+
+    fifo #(.WIDTH(3 + 1 + 8 * 32), .DEPTH(16)) light (
+        .clk, .rst, .in_valid(in_valid && in_smooth), .in_ready(light_room),
+        .in_data({last_covered(in_mask), in_mask[3:0] == '0, in_light_step_x, in_depth_step_x, in_light, in_depth}),
+        .out_valid(light_valid), .out_ready(takes && is_last), .out_data({last_lane, upper, steps, starts})
+    );
+
+    function automatic logic [2:0] last_covered(input logic [7:0] mask);
+        last_covered = '0;
+        for (int i = 0; i < 8; i++) if (mask[i]) last_covered = 3'(i);
+    endfunction
+
+    // The pixel in lane `next_lane` enters the pipeline.
+    logic [2:0] next_lane;
+
+    assign takes     = light_valid && may_start;
+    assign next_lane = is_first ? {upper, 2'd0} : lane + 1'b1;
+    assign is_last   = next_lane == last_lane;
+
+    always_ff @(posedge clk) begin
+        if (takes) begin
+            is_first <= is_last;
+            lane     <= next_lane;
+            for (int k = 0; k < 4; k++)
+                values[k] <= is_first ? starts[k] + (upper ? steps[k] << 2 : '0) : values[k] + steps[k];
+        end
+        if (rst) is_first <= 1'b1;
+    end
+
+    // The place of a pixel in its group goes with it through pixel_colour.
+    localparam int unsigned LATENCY = 7;
+
+    logic [LATENCY:0] valid;
+    logic             ends_1, ends, finished, none_finished;
+    logic [2:0]       place;
+    logic [15:0]      colour;
+    logic [7:0][15:0] collected;
+
+    pixel_colour pixel_colour (.clk, .depth(values[0]), .light(values[3:1]), .colour);
+
+    delay #(.WIDTH(4), .CLOCKS(LATENCY)) place_delay (.clk, .enable(1'b1), .in({ends_1, lane}), .out({ends, place}));
+
+    always_ff @(posedge clk) begin
+        valid    <= {valid[LATENCY-1:0], takes};
+        ends_1   <= is_last;
+        finished <= valid[LATENCY] && ends;
+        if (rst) begin
+            valid    <= '0;
+            finished <= 1'b0;
+        end
+    end
+
+    always_ff @(posedge clk) begin
+        for (int i = 0; i < 8; i++)
+            if (place == 3'(i)) collected[i] <= colour;
+    end
+
+    // Clocks from `takes` of a group's last pixel to `finished`.
+    pipeline_fifo #(.WIDTH(8 * 16), .DEPTH(32), .FLIGHT(LATENCY + 2)) finished_colours (
+        .clk, .rst, .idle(none_finished), .room(may_start), .in_valid(finished), .in_data(collected),
+        .out_valid(colours_valid), .out_ready(out_ready && group_valid && group_smooth), .out_data(smooth_colours)
+    );
+
+    wire _unused = &{1'b0, light_room, none_finished};
+endmodule
+
+`default_nettype wire
