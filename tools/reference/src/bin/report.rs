@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand};
 use glint_reference::report::cycles::{Cycles, Source};
-use glint_reference::report::experiments::{gouraud, imu, raymarch, sine, triangle};
+use glint_reference::report::experiments::{geometry, gouraud, imu, raymarch, sine, triangle};
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
 use glint_reference::report::workspace;
@@ -58,6 +58,11 @@ enum Page {
         /// Leave out the gateware's cost, which takes most of the time
         #[arg(long)]
         quick: bool,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Drift of the wireframe simulator's rotation, compared with f64
+    Geometry {
         #[command(flatten)]
         output: Output,
     },
@@ -140,6 +145,7 @@ fn main() -> Result<()> {
             ..
         } => measure_studies(Some(&study), &output),
         Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
+        Page::Geometry { output } => measure_geometry(&output),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
@@ -211,6 +217,14 @@ fn measure_gouraud(quick: bool, output: &Output) -> Result<()> {
         write_csv(&gouraud::costs()?, &folder.join("gouraud-cost.csv"))?;
     }
     written("gouraud", &folder, pages::gouraud::rebuild)
+}
+
+fn measure_geometry(output: &Output) -> Result<()> {
+    let rows = geometry::measure();
+    output.print(&rows, pages::geometry::table)?;
+    let folder = output.folder(false)?;
+    write_csv(&rows, &folder.join("geometry-drift.csv"))?;
+    written("geometry", &folder, pages::geometry::rebuild)
 }
 
 fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {

@@ -1,6 +1,7 @@
 //! The pages of docs/report. The prose of a page comes from a Markdown template next to its module, and the figures come from
 //! the CSV files.
 
+pub mod geometry;
 pub mod gouraud;
 pub mod imu;
 pub mod raymarch;
@@ -16,10 +17,11 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 5] = [
+pub const PAGES: [(&str, Rebuild); 6] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
     ("gouraud", gouraud::rebuild),
     ("imu", imu::rebuild),
+    ("geometry", geometry::rebuild),
 ];

@@ -1,0 +1,55 @@
+//! Experiment: errors of the geometry before rasterization. So far the drift of the wireframe simulator's rotation.
+
+use serde::{Deserialize, Serialize};
+
+use crate::report::provenance::Provenance;
+use crate::wireframe::{Drift, Form, Session, drift};
+
+/// Numbers of steps after which the errors are measured.
+const STEPS: [u32; 5] = [1, 10, 100, 1_000, 10_000];
+
+/// Errors of the corners of a cube of side 4 after some rotations: a line of `geometry-drift.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// Sequence of rotations.
+    pub session: String,
+    /// Form of the motion.
+    pub form: String,
+    /// Number of rotations.
+    pub steps: u32,
+    /// Largest distance of a corner from its position by f64.
+    pub max_err: f64,
+    /// Mean distance of the corners from the origin, over that at the start, less 1.
+    pub growth: f64,
+    /// Commit with which the row was measured.
+    pub commit: String,
+    /// Versions of the tools with which the row was measured.
+    pub tools: String,
+}
+
+/// Measures all sessions with all forms of the motion.
+pub fn measure() -> Vec<Row> {
+    let provenance = Provenance::find();
+    let mut rows = Vec::new();
+    for session in Session::ALL {
+        for form in Form::ALL {
+            for Drift {
+                steps,
+                distance,
+                growth,
+            } in drift(form, session, &STEPS)
+            {
+                rows.push(Row {
+                    session: session.name().to_owned(),
+                    form: form.name().to_owned(),
+                    steps,
+                    max_err: distance,
+                    growth,
+                    commit: provenance.commit.clone(),
+                    tools: provenance.tools.clone(),
+                });
+            }
+        }
+    }
+    rows
+}
