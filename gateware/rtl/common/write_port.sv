@@ -12,7 +12,7 @@
 //
 // Latency 2 clocks from a word to its command during a burst, throughput one word a clock. `idle` is high when memory
 // has taken all words; it rises a clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
-// only move the FIFOs.
+// only move the FIFOs. `in_ready` is a register, so that no path goes from the FIFOs through the sources of the words.
 
 `default_nettype none
 
@@ -41,12 +41,11 @@ module write_port #(
 );
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2) + 1;
 
-    logic move, room, address_valid, sent, gone, bursting;
+    logic move, address_valid, sent, gone, bursting;
 
-    assign move     = in_valid && in_ready;
-    assign in_ready = room;
+    assign move = in_valid && in_ready;
 
-    // An address leaves its FIFO before its data, so room for data implies room for the address.
+    // `in_ready` implies room for the data. An address leaves its FIFO before its data, so there is room for the address too.
     /* verilator lint_off PINCONNECTEMPTY */
     fifo #(.WIDTH(ADDRESS_BITS), .DEPTH(DEPTH)) addresses (
         .clk       (clk),
@@ -58,25 +57,26 @@ module write_port #(
         .out_ready (cmd_ready && bursting),
         .out_data  (cmd_addr)
     );
-    /* verilator lint_on PINCONNECTEMPTY */
 
     fifo #(.WIDTH(144), .DEPTH(DEPTH)) words (
         .clk       (clk),
         .rst       (rst),
-        .in_valid  (in_valid),
-        .in_ready  (room),
+        .in_valid  (move),
+        .in_ready  (),
         .in_data   ({in_strobe, in_data}),
         .out_valid (wdata_valid),
         .out_ready (wdata_ready),
         .out_data  ({wdata_strobe, wdata})
     );
+    /* verilator lint_on PINCONNECTEMPTY */
 
     // `gathered` is the number of words whose command has not been taken, `waiting` the number of words whose data memory has not
     // taken. Both follow memory by a clock, so neither is ever too low, and a burst does not end before a command has been taken.
-    logic [COUNT_BITS-1:0] gathered, waiting;
+    logic [COUNT_BITS-1:0] gathered, waiting, waiting_next;
 
-    assign cmd_valid = address_valid && bursting;
-    assign idle      = waiting == '0;
+    assign cmd_valid    = address_valid && bursting;
+    assign idle         = waiting == '0;
+    assign waiting_next = waiting + (move == gone ? '0 : move ? COUNT_BITS'(1) : '1);
 
     always_ff @(posedge clk) begin
         bursting <= gathered >= COUNT_BITS'(BURST) || hurry || bursting && gathered != '0;
@@ -84,9 +84,11 @@ module write_port #(
         sent     <= cmd_valid && cmd_ready;
         gone     <= wdata_valid && wdata_ready;
         gathered <= gathered + (move == sent ? '0 : move ? COUNT_BITS'(1) : '1);
-        waiting  <= waiting  + (move == gone ? '0 : move ? COUNT_BITS'(1) : '1);
+        waiting  <= waiting_next;
+        in_ready <= waiting_next < COUNT_BITS'(DEPTH);
 
         if (rst) begin
+            in_ready <= 1'b1;
             bursting <= 1'b0;
             sent     <= 1'b0;
             gone     <= 1'b0;
