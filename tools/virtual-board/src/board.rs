@@ -39,7 +39,8 @@ pub struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    /// Sets the library to load [default: the one that `cargo xtask gateware` built in this checkout].
+    /// Sets the library to load [default: that in the folder which the environment variable `GLINT_VIRTUAL_BOARD` names, or without
+    /// the variable the one that `cargo xtask gateware` built in this checkout].
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.library = Some(path.into());
@@ -101,9 +102,10 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns the folder where this checkout's libraries are built.
+/// Returns the folder of the libraries that are loaded by default.
 fn built_libraries() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual")
+    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual");
+    std::env::var_os("GLINT_VIRTUAL_BOARD").map_or_else(built, PathBuf::from)
 }
 
 /// A virtual board: the SoC, and the devices on its pins.

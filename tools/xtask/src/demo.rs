@@ -32,7 +32,8 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     if name == "raymarch" {
-        gateware::build_sponge_beside()?;
+        let sponge = gateware::Fields::Sponge.name();
+        gateware::build_beside(sponge, &["--fields", sponge])?;
         run::step(
             "model of the raymarcher",
             Command::new(paths::venv_program("python"))

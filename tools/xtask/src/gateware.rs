@@ -110,19 +110,18 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     }
 }
 
-/// Builds the virtual board with the raymarcher of [`Fields::Sponge`] in `target/gateware/virtual-sponge`, and leaves the
-/// standard build as it is.
+/// Builds the virtual board with command-line options of `glint_soc` in `target/gateware/virtual-NAME`, and leaves the standard build
+/// as it is. Returns the folder.
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_sponge_beside() -> Result<()> {
-    let folder = Board::Virtual.folder().with_file_name("virtual-sponge");
-    generate(
-        Board::Virtual,
-        &folder,
-        &["--fields", Fields::Sponge.name()],
-    )?;
-    verilate(&folder, Waveforms::Without)
+pub fn build_beside(name: &str, options: &[&str]) -> Result<PathBuf> {
+    let folder = Board::Virtual
+        .folder()
+        .with_file_name(format!("virtual-{name}"));
+    generate(Board::Virtual, &folder, options)?;
+    verilate(&folder, Waveforms::Without)?;
+    Ok(folder)
 }
 
 /// Builds a second library of the virtual board, which writes waveforms and is slower.

@@ -71,7 +71,11 @@ enum Task {
         arguments: Vec<String>,
     },
     /// Build everything and run every test
-    Test,
+    Test {
+        /// Run only the tests on the virtual board, with this frequency of its system clock, a multiple of 0.25 above 74.25
+        #[arg(long, value_name = "MHZ")]
+        clock: Option<String>,
+    },
     /// Check the sources: no circular dependencies between modules, no `#[path]`, no file above 500 lines
     Modules,
     /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
@@ -146,7 +150,8 @@ fn main() -> Result<()> {
             firmware::build(board, &features).map(|_| ())
         }
         Task::Demo { arguments } => demo::demo(&arguments),
-        Task::Test => test::test(),
+        Task::Test { clock: None } => test::test(),
+        Task::Test { clock: Some(clock) } => test::test_at_clock(&clock),
         Task::Modules => modules::check(),
         Task::Resources {
             blocks,

@@ -1,5 +1,6 @@
 //! `cargo xtask test`: every check, on a machine that it sets up itself.
 
+use std::ffi::OsStr;
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, mpsc};
@@ -60,13 +61,30 @@ pub fn test() -> Result<()> {
         results.add(documentation());
         results.add(cargo("build of the tests", &["test", "--no-run"]));
         models.recv().expect("the gateware's checks do not panic");
-        results.add(cargo_tests());
+        results.add(cargo_tests(&[], &[]));
         Ok(())
     })?;
 
     let minutes = start.elapsed().as_secs_f64() / 60.0;
     println!("{minutes:.1} minutes");
     results.finish()
+}
+
+/// Sets up and runs the tests on the virtual board, the firmware's and those of `glint`, on a board whose system clock has
+/// `megahertz` MHz. The board is built beside the standard one.
+///
+/// # Errors
+/// A build or a test fails.
+pub fn test_at_clock(megahertz: &str) -> Result<()> {
+    bootstrap::bootstrap()?;
+    let folder = gateware::build_beside(megahertz, &["--clock", megahertz])?;
+    firmware::build(Board::Virtual, &[])?;
+    let passed = cargo_tests(
+        &["-p", "virtual-board", "-p", "glint", "--test", "board"],
+        &[("GLINT_VIRTUAL_BOARD", folder.as_os_str())],
+    )?;
+    println!("{passed} passed at {megahertz} MHz");
+    Ok(())
 }
 
 /// Numbers of passed checks, and the errors of failed ones.
@@ -138,9 +156,9 @@ fn gateware_check(name: &str, program: &str) -> Result<u32> {
     Ok(1)
 }
 
-/// Runs all Rust tests on the host, including those on the virtual board; returns the number of passed tests. Output of failed
-/// tests is printed again at the end.
-fn cargo_tests() -> Result<u32> {
+/// Runs the Rust tests that `selection` selects, or without a selection all of them, including those on the virtual board, with
+/// `environment`. Returns the number of passed tests. Output of failed tests is printed again at the end.
+fn cargo_tests(selection: &[&str], environment: &[(&str, &OsStr)]) -> Result<u32> {
     let mut passed = 0;
     let mut failures = Vec::new();
     let mut in_failures = false;
@@ -148,6 +166,8 @@ fn cargo_tests() -> Result<u32> {
         "cargo test",
         Command::new("cargo")
             .args(["test", "--no-fail-fast"])
+            .args(selection)
+            .envs(environment.iter().copied())
             .current_dir(paths::root()),
         |line| {
             passed += passed_tests(line).unwrap_or(0);

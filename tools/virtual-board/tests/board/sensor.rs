@@ -6,14 +6,13 @@ use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 use virtual_board::{Start, VirtualBoard};
 
-/// Time-out in cycles of a transaction of five bytes.
-const ROUND: u64 = 20_000;
-
 /// Interval between two checks for the end of a fault, in ms.
 const STEP: u64 = 8;
 
-/// Cycles of the system clock in a millisecond.
-const MILLISECOND: u64 = 81_250;
+/// Returns the number of cycles of the system clock in a millisecond.
+fn millisecond(board: &VirtualBoard) -> u64 {
+    u64::from(board.clock_hz()) / 1000
+}
 
 fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
     // The noise of a typical sensor, without the errors that would need a calibration.
@@ -44,13 +43,15 @@ fn a_program_reads_the_sensor_through_the_pins() {
     let mut sensor = sensor(|_| State::default());
     sensor.log = Some(Vec::new());
     board.plug(sensor);
-    board.run(ROUND);
+    // A transaction of five bytes takes less than a quarter of a millisecond.
+    let round = millisecond(&board) / 4;
+    board.run(round);
     assert_eq!(board.leds(), 0x168);
     board
         .sensor()
         .expect("the sensor")
         .set_fault(Some(Fault::Identity(0x70)));
-    board.run(2 * ROUND);
+    board.run(2 * round);
     assert_eq!(board.leds(), 0x170);
     let sensor = board.unplug().expect("the sensor");
     let log = sensor.log.unwrap_or_default().join(" ");
@@ -111,8 +112,9 @@ fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualB
 #[test]
 fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     let mut board = board_with_sensor(turn);
+    let millisecond = millisecond(&board);
     command(&mut board, "imu look");
-    board.run((90 * MILLISECOND).saturating_sub(board.cycles()));
+    board.run((90 * millisecond).saturating_sub(board.cycles()));
     let status = command(&mut board, "imu");
     assert_eq!(line(&status, "sensor"), "MPU-6050");
     assert_eq!(line(&status, "failure"), "none");
@@ -122,7 +124,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     let angles = numbers(line(&status, "angles"));
     assert!((angles[0] - 45.0).abs() < ANGLE, "{status}");
     // The camera takes over the attitude with the next frame.
-    board.run(35 * MILLISECOND);
+    board.run(35 * millisecond);
     let view = command(&mut board, "view");
     let view = numbers(line(&view, "view"));
     let (sine, cosine) = 45_f64.to_radians().sin_cos();
@@ -132,7 +134,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     // While the sensor is unplugged, the attitude is held. The first failure depends on where the transfer was; the search
     // for the sensor, 30 ms later, finds no device.
     let sensor = board.unplug().expect("the sensor");
-    board.run(40 * MILLISECOND);
+    board.run(40 * millisecond);
     let status = command(&mut board, "imu");
     assert_eq!(
         line(&status, "failure"),
@@ -144,7 +146,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
         "{refused}"
     );
     board.plug(sensor);
-    board.run(40 * MILLISECOND);
+    board.run(40 * millisecond);
     let status = command(&mut board, "imu");
     assert_eq!(line(&status, "failure"), "none");
     let angles = numbers(line(&status, "angles"));
@@ -154,7 +156,7 @@ fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     let cycles = |key| line(&status, key).parse::<u32>().expect("a number");
     let [read, tracked] = ["cycles_read", "cycles_tracked"].map(cycles);
     println!("cycles a sample: {read} to read it, {tracked} to make an attitude of it");
-    assert!(read < 4_062, "5 % of 1 ms: {status}");
+    assert!(u64::from(read) < millisecond / 20, "5 % of 1 ms: {status}");
     assert!(tracked < 4_500, "{status}");
     let violations = board.unplug().expect("the sensor").violations;
     assert!(violations.is_empty(), "{violations:#?}");
@@ -287,6 +289,7 @@ fn the_camera_follows_a_script() {
     let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();
     let stretch = if is_slow { 7.0 } else { 1.0 };
     let mut board = board_with_sensor(move |time| script(time, stretch).1);
+    let millisecond = millisecond(&board);
     command(&mut board, "imu look");
     let camera = |board: &mut VirtualBoard| -> [[f64; 3]; 3] {
         let view = command(board, "view");
@@ -297,7 +300,7 @@ fn the_camera_follows_a_script() {
     for part in &SCRIPT {
         end += part.time * stretch + RESTING;
         // Runs until just before the next part. By then the delay of the sensor's filter and a frame have passed.
-        let until = ((end - 0.005) * 1e3 * MILLISECOND as f64) as u64;
+        let until = ((end - 0.005) * 1e3 * millisecond as f64) as u64;
         board.run(until.saturating_sub(board.cycles()));
         let (turned, _) = script(end, stretch);
         // The camera's u, v, n before any rotation: it looks along y.
@@ -323,8 +326,9 @@ fn the_camera_follows_a_script() {
 #[test]
 fn every_fault_is_reported_and_recovered() {
     let mut board = board_with_sensor(|_| State::default());
+    let millisecond = millisecond(&board);
     command(&mut board, "imu orbit");
-    board.run(20 * MILLISECOND);
+    board.run(20 * millisecond);
     let failures = |board: &mut VirtualBoard| {
         let status = command(board, "imu");
         let number = |key| line(&status, key).parse::<u32>().expect("a number");
@@ -382,22 +386,22 @@ fn every_fault_is_reported_and_recovered() {
             sensor.chip.reset();
         }
         sensor.set_fault(fault);
-        board.run(until_told * MILLISECOND);
+        board.run(until_told * millisecond);
         let (failure, told, _) = failures(&mut board);
         assert!(failure.starts_with(text), "{fault:?}: {failure}");
         assert!(told > count, "{fault:?}");
         let sensor = board.sensor().expect("the sensor");
         sensor.set_fault(None);
-        let end = board.cycles() + until_over * MILLISECOND;
+        let end = board.cycles() + until_over * millisecond;
         let samples = loop {
-            board.run(STEP * MILLISECOND);
+            board.run(STEP * millisecond);
             let (failure, _, samples) = failures(&mut board);
             if failure == "none" {
                 break samples;
             }
             assert!(board.cycles() < end, "{fault:?}: still {failure}");
         };
-        board.run(STEP * MILLISECOND);
+        board.run(STEP * millisecond);
         let (_, _, more) = failures(&mut board);
         assert!(
             more >= samples + 4,
