@@ -58,7 +58,7 @@ class Proof:
 # The longest proofs come first: two run at a time, and a long one should not run alone at the end.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 36, ("any_product", "any_field")),
-    Proof("line_raster", "line_raster_proof", 26),
+    Proof("line_raster", "line_raster_proof", 24),
     Proof("line_setup", "line_setup_proof", 47, ("any_product",)),
     Proof("band_flush", "band_flush_proof", 23),
     Proof("band_extents", "band_extents_proof", 27),
