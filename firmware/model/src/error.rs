@@ -68,7 +68,7 @@ pub enum RenderError {
     },
     /// The far plane is at the near plane or nearer.
     Far(U8_28),
-    /// The half width of the camera in a frame with a field is outside [`FIELD_HALF_WIDTH`].
+    /// The half width of the camera in a frame with a field is outside the range that a field allows.
     HalfWidth(U8_28),
     /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
     Stereo,
