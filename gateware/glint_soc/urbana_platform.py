@@ -4,7 +4,7 @@ from litex.build.generic_platform import IOStandard, Misc, Pins, Subsignal
 from litex.build.openfpgaloader import OpenFPGALoader
 from litex.build.xilinx import Xilinx7SeriesPlatform
 
-CONTROL_PIN_LOADS = 8
+CONTROL_PIN_LOADS = 5
 """Least number of flip-flops that an enable or a synchronous reset controls by their pins. For fewer, the synthesis puts it into
 the LUTs of their inputs, because each combination of clock, enable and reset takes slices of its own, of eight flip-flops."""
 

@@ -64,7 +64,7 @@ def check_constraints(xdc, _verilog, script):
     """Checks that input clock, clock groups and configuration are constrained, and that the script names part and sources."""
     problems = [f"not in the XDC: {line}" for line in _CONSTRAINTS if line not in xdc.splitlines()]
     for word in ("-part xc7s50csga324-1", "scanout.sv", "read_xdc glint_urbana.xdc", "write_bitstream",
-                 "synth_design -directive default -control_set_opt_threshold 7 "):
+                 "synth_design -directive default -control_set_opt_threshold 4 "):
         if word not in script:
             problems.append(f"not in the Vivado script: {word}")
     return problems

@@ -16,7 +16,7 @@ const NOTES: [&str; 11] = [
      carry chains, wide multiplexers, reads of LUT memories. A multiplier or block RAM ends a path even without its \
      registers. Clock domains and false paths are ignored. The path is only an indication of timing.",
     "Control sets: the flip-flops of a slice of the 7 series share clock, enable, and set or reset. A control set is one \
-     combination of these nets; a pin at a constant has none. An enable or a synchronous reset of fewer than eight flip-flops \
+     combination of these nets; a pin at a constant has none. An enable or a synchronous reset of fewer than five flip-flops \
      becomes logic instead, and is counted there, as in the Urbana's bitstream (`CONTROL_PIN_LOADS` in \
      `gateware/glint_soc/urbana_platform.py`). Flip-flops in small sets are in sets of fewer than eight, and leave part of a \
      slice empty.",
