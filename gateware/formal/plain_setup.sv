@@ -99,7 +99,7 @@ module flat_shade (
     input  wire              clk,
     input  wire              enable,
     input  wire  [3:0]       count,
-    input  wire  [2:0][24:0] camera_n,
+    input  wire  [2:0][24:0] row_light,
     input  wire              front,
     input  wire  [2:0][15:0] normal,
     input  wire  [15:0]      colour,

@@ -94,8 +94,8 @@ class TriangleEngine(LiteXModule):
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
-        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must "
-            "hold while it runs.")
+        ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
+            "and those from `light_0` on, must hold while it runs.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = Parameter(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = Parameter(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
@@ -186,6 +186,11 @@ class TriangleEngine(LiteXModule):
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
             "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the band before it.",
         })
+        # More parameters of the geometry pass.
+        light = [Parameter(25, name=f"light_{i}", description=f"Row of the light, {axis}, s2.23, two's complement.")
+                 for i, axis in enumerate("xyz")]
+        for i, register in enumerate(light):
+            setattr(self, f"_light_{i}", register)
 
         # # #
 
@@ -205,7 +210,7 @@ class TriangleEngine(LiteXModule):
         self.parameters = PassParameters(
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
-             self._near_low, self._near_high, self._depth_scale],
+             self._near_low, self._near_high, self._depth_scale, *light],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
         # A raymarcher copies its parameters at the same time as the raster pass, which waits for both.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -232,13 +237,14 @@ class TriangleEngine(LiteXModule):
             "exceptions": self._exceptions.storage,
             "exception_limit": self._exception_limit.storage,
         })
-        view = Struct("view_t", "Camera of the geometry pass: docs/formats.md, the transform of a vertex.", {
+        view = Struct("view_t", "Camera and light of the geometry pass: docs/formats.md, \"Frame constants\".", {
             "scale_shift": self._scale_shift.storage,
             **{f"row_{row}": [register.storage for register in registers] for row, registers in rows.items()},
             **{f"t{axis}": Cat(*(register.storage for register in registers)) for axis, registers in translation.items()},
             "near_z": Cat(self._near_low.storage, self._near_high.storage),
             "depth_mantissa": self._depth_scale.fields.mantissa,
             "depth_exponent": self._depth_scale.fields.exponent,
+            "row_light": [register.storage for register in light],
         })
         raster_flags = Struct("raster_flags_t", "Choices of a raster pass.", {
             name: getattr(self._raster.fields, name) for name in ("size", "first", "second", "depth", "slot", "whole")})

@@ -221,7 +221,8 @@ impl TriangleEngine {
 
         registers.scale_shift().write(frame.scale_shift as u8);
         // The registers are written one by one, because a loop would need a table of their addresses.
-        let [u, v, n] = [frame.u, frame.v, frame.n].map(|row| row.map(|value| value as u32));
+        let [u, v, n, light] =
+            [frame.u, frame.v, frame.n, frame.light].map(|row| row.map(|value| value as u32));
         registers.row_u0().write(u[0]);
         registers.row_u1().write(u[1]);
         registers.row_u2().write(u[2]);
@@ -231,6 +232,9 @@ impl TriangleEngine {
         registers.row_n0().write(n[0]);
         registers.row_n1().write(n[1]);
         registers.row_n2().write(n[2]);
+        registers.light_0().write(light[0]);
+        registers.light_1().write(light[1]);
+        registers.light_2().write(light[2]);
         let [x, y, z] = frame.translation;
         registers.tx_low().write(x as u32);
         registers.tx_high().write((x >> 32) as u16);

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xa7da_05be;
+pub const BUILD_ID: u32 = 0x1209_d70e;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale` must hold while it runs. Reads as 0.
+        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3340,6 +3340,30 @@ pub mod triangle {
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_510c) }
+        }
+
+        /// `light_0`, 25 bits: Row of the light, x, s2.23, two's complement. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn light_0(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5110) }
+        }
+
+        /// `light_1`, 25 bits: Row of the light, y, s2.23, two's complement. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn light_1(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5114) }
+        }
+
+        /// `light_2`, 25 bits: Row of the light, z, s2.23, two's complement. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn light_2(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5118) }
         }
     }
 

@@ -1,7 +1,7 @@
-// Flat shading with the light at the camera: intensity = clamp(nearest(∓N·n·2^8), 0, 1), with N the normal of the triangle, n
-// the camera's viewing direction, and − for a front face. The result is colour·intensity, rounded to nearest.
+// Flat shading: intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of the triangle, l the row of the light (the camera's
+// viewing direction n for a light at the camera), and − for a front face. The result is colour·intensity, rounded to nearest.
 //
-// One multiplier makes five products: three for N·n, one for blue and green side by side, and one for red. The module `setup`
+// One multiplier makes five products: three for N·l, one for blue and green side by side, and one for red. The module `setup`
 // drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
 // inputs hold during a beat; the colour is valid in clock 10 of the beat.
 
@@ -11,7 +11,7 @@ module flat_shade (
     input  wire              clk,
     input  wire              enable,
     input  wire  [3:0]       count,
-    input  wire  [2:0][24:0] camera_n,
+    input  wire  [2:0][24:0] row_light,
     input  wire              front,
     input  wire  [2:0][15:0] normal,
     input  wire  [15:0]      colour,
@@ -33,9 +33,9 @@ module flat_shade (
         towards = (component ^ {17{front}}) + 17'(front);
 
         unique case (count)
-            4'd0:    a = camera_n[0];
-            4'd1:    a = camera_n[1];
-            4'd2:    a = camera_n[2];
+            4'd0:    a = row_light[0];
+            4'd1:    a = row_light[1];
+            4'd2:    a = row_light[2];
             4'd6:    a = {6'b0, colour[10:5], 8'b0, colour[4:0]};
             default: a = {20'b0, colour[15:11]};
         endcase

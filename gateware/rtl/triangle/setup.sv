@@ -9,7 +9,7 @@
 // the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if stage 4 has to wait for the output. All
 // stages move together in the last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
 // leaves before stage 1. It waits for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each triangle,
-// `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `camera_n`, `smooth`)
+// `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`, `smooth`)
 // must hold while `busy` and when a triangle comes.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
@@ -35,7 +35,7 @@ module setup #(
     input  wire  [10:0]      width,
     input  wire  [9:0]       height,
     input  wire              cull_back,
-    input  wire  [2:0][24:0] camera_n,    // row n, s2.23
+    input  wire  [2:0][24:0] row_light,   // row of the light, s2.23
     input  wire              smooth,
     output logic             busy,
     output logic             culled,
@@ -144,7 +144,7 @@ module setup #(
         .clk, .enable, .count, .w10(t.w10), .w20(t.w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
     );
     flat_shade shade (
-        .clk, .enable, .count, .camera_n, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
+        .clk, .enable, .count, .row_light, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
     );
     // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 7 of stage 2 on, or earlier in stage 2 if
     // the beat of stage 1 is longer than 11 clocks.

@@ -39,7 +39,7 @@ package triangle_registers_pkg;
         logic [19:0] exception_limit;
     } geometry_t;
 
-    // Camera of the geometry pass: docs/formats.md, the transform of a vertex.
+    // Camera and light of the geometry pass: docs/formats.md, "Frame constants".
     typedef struct packed {
         logic [4:0] scale_shift;
         logic [2:0][24:0] row_u;
@@ -51,6 +51,7 @@ package triangle_registers_pkg;
         logic [38:0] near_z;
         logic [16:0] depth_mantissa;
         logic [3:0] depth_exponent;
+        logic [2:0][24:0] row_light;
     } view_t;
 
     // Choices of a raster pass.

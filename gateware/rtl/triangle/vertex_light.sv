@@ -1,18 +1,18 @@
 // Computes the light of a vertex (docs/formats.md, "Smooth shading"): the shaded colour L of each channel, and the side of a
-// triangle to which this light belongs. N is the vertex normal, n the camera's viewing direction.
+// triangle to which this light belongs. N is the vertex normal, l the row of the light.
 //
-// One multiplier makes five products: three for N·n, one for green and blue side by side, and one for red. A vertex takes 6
+// One multiplier makes five products: three for N·l, one for green and blue side by side, and one for red. A vertex takes 6
 // clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO
 // until the position of its vertex leaves that stage; `give` then takes the light out. Latency 17 clocks.
 //
-//   clocks after `take`   1…3: factors of N·n   6: N·n   7, 8: |N·n| rounded   9: intensity   10, 11: colour in   13, 14: L
+//   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10, 11: colour in   13, 14: L
 
 `default_nettype none
 
 module vertex_light (
     input  wire              clk,
     input  wire              rst,
-    input  wire  [2:0][24:0] row_n,
+    input  wire  [2:0][24:0] row_light,
     input  wire              take,
     input  wire  [2:0][15:0] in_normal,
     input  wire  [15:0]      in_colour,
@@ -36,9 +36,9 @@ module vertex_light (
 
     always_comb begin
         case (1'b1)
-            since[0]: a = row_n[0];
-            since[1]: a = row_n[1];
-            since[2]: a = row_n[2];
+            since[0]: a = row_light[0];
+            since[1]: a = row_light[1];
+            since[2]: a = row_light[2];
             since[9]: a = {6'b0, colour_held[10:5], 8'b0, colour_held[4:0]};
             default:  a = {20'b0, colour_held[15:11]};
         endcase

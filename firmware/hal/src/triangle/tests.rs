@@ -110,6 +110,12 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         frame.u,
         "of 25 bits"
     );
+    let light = [r.light_0().read(), r.light_1().read(), r.light_2().read()];
+    assert_eq!(
+        light.map(|value| value.cast_signed() << 7 >> 7),
+        frame.light,
+        "the light at the camera"
+    );
     assert_eq!(r.mesh_bytes().read(), 80, "chunks alone");
     assert_eq!(
         r.mesh().read(),

@@ -153,7 +153,7 @@ impl Bench {
         self.module.drive("width", frame.size.0);
         self.module.drive("height", frame.size.1);
         self.module.drive("cull_back", frame.cull);
-        self.module.drive_all("camera_n", frame.n);
+        self.module.drive_all("row_light", frame.n);
         self.module
             .drive("smooth", frame.shading == Shading::Smooth);
         let types = Types::of(&self.module);

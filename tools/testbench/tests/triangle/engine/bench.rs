@@ -334,6 +334,7 @@ impl Bench {
         self.module.drive_all("view.row_u", frame.u);
         self.module.drive_all("view.row_v", frame.v);
         self.module.drive_all("view.row_n", frame.n);
+        self.module.drive_all("view.row_light", frame.light);
         let translation = ["view.tx", "view.ty", "view.tz"];
         for (path, value) in translation.into_iter().zip(frame.translation) {
             self.module.drive(path, value);
