@@ -5,9 +5,10 @@
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, a culled one in 3; latency at most 75 clocks. A beat is the time in which each of
-// the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if stage 4 has to wait for the output. All
-// stages move together in the last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
+// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 75 clocks, or 185. A
+// beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the last
+// clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the last
+// clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
 // leaves before stage 1. It waits for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each triangle,
 // `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`, `smooth`)
 // must hold while `busy` and when a triangle comes.
@@ -17,7 +18,14 @@
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
 // With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes its values P
-// at the vertices (docs/formats.md, "Smooth shading"), stage 2 its normal.
+// at the vertices (docs/formats.md, "Smooth shading"). The channels then follow each other through one datapath, in rounds of 11
+// clocks, three to a beat of a frame with smooth shading:
+//
+//   beat           2                       3                       4
+//   round          0       1       2       0       1       2
+//   normal         red     green   blue
+//   gradients              red     green   blue
+//   start                          red     green   blue            ─▶ out_planes
 
 `default_nettype none
 
@@ -65,13 +73,15 @@ module setup #(
     } origin_t;
 
     // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both are registers, decided a
-    // clock ahead: `ending` is high if the next clock can be the last one of the beat. They drive hundreds of flip-flops.
+    // clock ahead: `ending` is high if the next clock has the last count, `light_ends` if the light is ready then as well. They
+    // drive hundreds of flip-flops.
     logic [3:0] count;
-    logic       enable, beat, ending, waits;
+    logic       enable, beat, ending, light_ends, beat_comes, waits;
     logic [4:1] valid;
 
-    assign ending = !beat && (count == LAST || count == LAST - 1'b1);
-    assign waits  = valid[4] && out_valid && !out_ready;
+    assign ending     = !beat && (count == LAST || count == LAST - 1'b1);
+    assign waits      = valid[4] && out_valid && !out_ready;
+    assign beat_comes = ending && light_ends && !waits;
 
     setup_pkg::oriented_t     first;
     logic [2:0][LIT_BITS-1:0] first_lit;
@@ -84,8 +94,8 @@ module setup #(
     );
 
     always_ff @(posedge clk) begin
-        beat   <= ending && !waits;
-        enable <= !(ending && waits);
+        beat   <= beat_comes;
+        enable <= !ending || beat_comes;
         if (beat) begin
             count <= '0;
             valid <= {valid[3:1], first_valid};
@@ -239,44 +249,84 @@ module setup #(
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
-    // Planes of light. Stage 2 computes their normals, while the depth plane waits for 1/a.
+    // Planes of light, one channel after the other. `round_ends` is high in the last clock of a round, and `light_enable` low
+    // while the last clock of the last round is repeated. A frame with flat shading has one round to a beat, without meaning.
     if (SMOOTH) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIT_BITS-1:0] lit_1;
         logic [3*24-1:0]       p0;
         logic [3*25-1:0]       p10, p20;
-        logic [3*96-1:0]       planes;
+        logic [3*96-1:0]       planes, planes_4;
+        logic [3:0]            light_count;
+        logic [1:0]            round;
+        logic                  light_enable, round_ends, last_round;
+
+        assign last_round = round == 2'd2 || !smooth;
+        assign light_ends = last_round && (light_count == LAST || light_count == LAST - 1'b1);
+
+        always_ff @(posedge clk) begin
+            light_enable <= !(ending && light_ends) || beat_comes;
+            round_ends   <= light_count == LAST - 1'b1 && !last_round || beat_comes;
+            if (beat || round_ends) begin
+                light_count <= '0;
+                round       <= beat ? '0 : round + 1'b1;
+            end else if (light_count != LAST) begin
+                light_count <= light_count + 1'b1;
+            end
+            if (rst) begin
+                light_enable <= 1'b1;
+                round_ends   <= 1'b0;
+                light_count  <= '0;
+                round        <= '0;
+            end
+        end
 
         always_ff @(posedge clk) if (beat) lit_1 <= first_lit;
 
         setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(t.w10), .w20(t.w20), .lit(lit_1), .p0, .p10, .p20);
 
-        for (genvar k = 0; k < 3; k++) begin : channels
-            (* keep *) logic [23:0] p0_3, p0_4;
-            logic [45:0] light_nx, light_ny;
-            logic [31:0] light_step_x, light_step_y, light_start;
+        // The channel whose normal this round computes.
+        logic [24:0] w10, w20;
+        logic [23:0] value;
 
-            always_ff @(posedge clk) begin
-                if (beat) begin
-                    p0_3 <= p0[24 * k +: 24];
-                    p0_4 <= p0_3;
-                end
-            end
-
-            setup_normal light_normal (
-                .clk, .enable, .count, .w10(p10[25 * k +: 25]), .w20(p20[25 * k +: 25]),
-                .x10(passed_2.x10), .y01(passed_2.y01), .x02(passed_2.x02), .y20(passed_2.y20), .nx(light_nx), .ny(light_ny)
-            );
-            setup_plane plane (
-                .clk, .beat, .count, .nx(light_nx), .ny(light_ny), .y(y_3), .lead(lead_3),
-                .px(origin_4.px), .py(origin_4.py), .value(p0_4), .step_x(light_step_x), .step_y(light_step_y), .start(light_start)
-            );
-
-            assign planes[96 * k +: 96] = {light_step_y, light_step_x, light_start};
+        always_comb begin
+            unique case (round)
+                2'd0:    {value, w20, w10} = {p0[0 +: 24], p20[0 +: 25], p10[0 +: 25]};
+                2'd1:    {value, w20, w10} = {p0[24 +: 24], p20[25 +: 25], p10[25 +: 25]};
+                default: {value, w20, w10} = {p0[48 +: 24], p20[50 +: 25], p10[50 +: 25]};
+            endcase
         end
 
-        always_ff @(posedge clk) if (beat && valid[4]) out_planes <= {smooth, planes};
+        // The gradients of a triangle are computed from round 1 on, and its starts from round 2 on, for three rounds each.
+        (* keep *) logic [23:0] value_3, value_4;
+        logic [23:0] light_y;
+        logic [5:0]  light_lead;
+        logic [20:0] px, py;
+        logic [45:0] light_nx, light_ny;
+        logic [31:0] light_step_x, light_step_y, light_start;
+
+        always_ff @(posedge clk) begin
+            if (round_ends) begin
+                value_3 <= value;
+                value_4 <= value_3;
+                planes  <= {light_step_y, light_step_x, light_start, planes[96 +: 2*96]};
+            end
+            if (round_ends && round == 2'd0) {light_y, light_lead} <= {y_2, lead_2};
+            if (round_ends && round == 2'd1) {px, py} <= {origin_2.px, origin_2.py};
+            if (beat) planes_4 <= planes;
+            if (beat && valid[4]) out_planes <= {smooth, planes_4};
+        end
+
+        setup_normal light_normal (
+            .clk, .enable(light_enable), .count(light_count), .w10, .w20,
+            .x10(passed_2.x10), .y01(passed_2.y01), .x02(passed_2.x02), .y20(passed_2.y20), .nx(light_nx), .ny(light_ny)
+        );
+        setup_plane plane (
+            .clk, .beat(round_ends), .count(light_count), .nx(light_nx), .ny(light_ny), .y(light_y), .lead(light_lead),
+            .px, .py, .value(value_4), .step_x(light_step_x), .step_y(light_step_y), .start(light_start)
+        );
     end else begin : flat
+        assign light_ends = 1'b1;
         assign out_planes = '0;
 
         wire _unused = &{1'b0, smooth, first_lit};

@@ -1,8 +1,8 @@
 // Stages 3 and 4 of the triangle setup: computes the gradients of a plane, and its accumulator at the start pixel, from the
 // normal (Nx, Ny) of the plane. A plane is a value that is linear on the screen: the depth, or one channel of light.
 //
-// The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks
-// or more), and `beat`, which is high in the last clock of a beat. The normal is valid at the end of a beat. The reciprocal
+// The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, or of a
+// channel of its light, 11 clocks or more), and `beat`, which is high in the last clock of a beat. The normal is valid at the end of a beat. The reciprocal
 // must hold in the next beat, and the inputs for vertex 0 in the beat after that, at the end of which all outputs are valid.
 
 `default_nettype none

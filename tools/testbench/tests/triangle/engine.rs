@@ -351,7 +351,7 @@ fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
         ("icosphere:6", SIZES[0], false, 1.9, 3.0, 1000),
         ("icosphere:12", SIZES[2], false, 3.85, 4.6, 6000),
-        ("icosphere:6", SIZES[0], true, 0.6, 0.7, 2000),
+        ("icosphere:6", SIZES[0], true, 0.59, 0.7, 2000),
         ("icosphere:12", SIZES[2], true, 0.6, 0.7, 10_000),
     ] {
         let mesh = generated(name);
