@@ -206,37 +206,6 @@ fn an_object_with_the_identity_is_the_mesh() {
     }
 }
 
-/// A mirrored object has the picture of a mesh that is mirrored itself, with the windings of its triangles reversed.
-#[test]
-fn a_negative_scale_flips_the_winding() {
-    let mut random = Random(33);
-    let mut covered = 0;
-    for _ in 0..10 {
-        let mut model = Model::sphere(0.5, 5);
-        let plain = model.encoded();
-        for [x, _, _] in &mut model.positions {
-            *x = -*x;
-        }
-        let mirrored = model.flipped().encoded();
-        let azimuth = random.real(-3.0, 3.0);
-        let eye = [
-            2.0 * azimuth.cos(),
-            2.0 * azimuth.sin(),
-            random.real(-1.0, 1.0),
-        ];
-        let view = Camera::looking(eye, [0.0; 3], 0.5, 0.1).rounded();
-        let matrix = Matrix::scale([number(-1.0), Q8_24::ONE, Q8_24::ONE]).unwrap();
-        let object = object(Mesh::new_checked(&plain).unwrap(), matrix);
-        let found = of(&[object], view);
-        let mesh = Mesh::new_checked(&mirrored).unwrap();
-        let expected = Picture::of_frame(&Frame::new(Subject::mesh(mesh), view, Size::W320));
-        assert!(found.coverage() == expected.coverage());
-        assert_eq!(found.stats.drawn, expected.stats.drawn);
-        covered += found.covered();
-    }
-    assert!(covered > 100_000, "{covered}");
-}
-
 /// Two objects in one frame cover what each covers alone, the nearer one hides the other, and of equal depths the later object wins.
 #[test]
 fn objects_share_one_depth() {

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::Size;
 use glint_core::wireframe::text::assemble;
-use glint_core::wireframe::{Key, MAX_SEGMENTS, Motion, Program};
+use glint_core::wireframe::{Key, Motion, Program};
 use glint_model::wireframe::LINE_COLOUR;
 use glint_model::{Frame, FrameStats, Subject, WireframeStats, WireframeSubject};
 use glint_vectors::Picture;
@@ -93,43 +93,6 @@ fn keys_move_the_picture() {
     let (picture, stats) = draw(segment, Size::W640, &[Key::ZoomIn]);
     assert!(pixels(&picture, 640).is_empty());
     assert_eq!((stats.segments, stats.lines, stats.pixels), (1, 0, 0));
-}
-
-#[test]
-fn stiff_segments() {
-    // Without length, along the line of sight, in the view plane, through the eye, across the whole picture and far beyond it.
-    let cases = [
-        ("0 0 1 0 0 1", 1, 0),
-        ("0 0 -8 0 0 2", 1, 0),
-        ("-1 0 4 1 0 4", 0, 0),
-        ("0 0 4 0 0 0", 1, 0),
-        ("2 0 4 0 0 0", 1, 160),
-        ("-2 -1.125 2 2 1.125 2", 1, 640),
-        ("-16 -9 2 15.9995 9 2", 1, 640),
-        ("-15 0.25 2 15 0.25 2", 1, 640),
-        ("-16 8 2 15 8 2", 1, 0),
-    ];
-    for (segment, lines, count) in cases {
-        let (picture, stats) = draw(&format!("segment {segment}\n"), Size::W640, &[]);
-        let found = pixels(&picture, 640).len();
-        assert_eq!((stats.lines, found), (lines, count), "{segment}");
-    }
-}
-
-#[test]
-fn as_many_segments_as_there_can_be() {
-    let lines: String = (0..MAX_SEGMENTS)
-        .map(|i| {
-            let y = f64::from(i % 2304) / 1024.0 - 1.125;
-            format!("segment -2 {y} 2 2 {y} 2\n")
-        })
-        .collect();
-    let (picture, stats) = draw(&lines, Size::W320, &[]);
-    assert_eq!((stats.segments, stats.lines), (MAX_SEGMENTS, MAX_SEGMENTS));
-    // A line from border to border through the centres of its pixels lacks one of them, by the rule of the diamonds.
-    let segments = u64::from(MAX_SEGMENTS);
-    assert!((319 * segments..=320 * segments).contains(&stats.pixels));
-    assert_eq!(pixels(&picture, 320).len(), 320 * 180);
 }
 
 #[test]

@@ -95,7 +95,7 @@ impl fmt::Display for ViewError {
             Self::Up => f.write_str("up (0, 0, 0): expected a non-zero direction"),
             Self::FieldOfView(angle) => write!(
                 f,
-                "field of view {} degrees: expected {} to {}",
+                "field of view {} degrees: expected {:.0} to {:.0}",
                 angle.to_degrees(),
                 FIELD_OF_VIEW[0].to_degrees(),
                 FIELD_OF_VIEW[1].to_degrees()
