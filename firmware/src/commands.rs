@@ -8,6 +8,7 @@ mod camera;
 mod frame;
 pub mod imu;
 mod machine;
+mod object;
 pub mod replay;
 mod scene;
 pub mod statistics;
@@ -36,7 +37,15 @@ pub fn execute<'l>(
     line: &'l str,
 ) -> Result<Option<Reply>, CommandError<'l>> {
     match Command::parse(line).map_err(CommandError::Parse)? {
-        Some(command) => command.execute(machine).map(Some),
+        Some(command) => {
+            let reply = command.execute(machine);
+            // The options of the scene are those of all objects.
+            let Machine { models, scene, .. } = machine;
+            models
+                .objects_mut()
+                .set_options(|mesh| scene.mesh_subject(mesh));
+            reply.map(Some)
+        }
         None => Ok(None),
     }
 }

@@ -14,6 +14,7 @@ use glint_model::RenderError;
 
 use crate::gateware::Fallback;
 use crate::models::{FIELDS, Model};
+use crate::objects::{OBJECTS, ObjectError};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::wireframe::WIREFRAME;
 
@@ -34,6 +35,12 @@ pub enum CommandError<'l> {
     Size(Size),
     /// No mesh was uploaded.
     NoUpload,
+    /// The name is not a mesh, so it cannot be an object.
+    ObjectMesh(&'l str),
+    /// The list of objects cannot be changed.
+    Object(ObjectError),
+    /// No objects were added.
+    NoObjects,
     /// The SoC has no triangle engine.
     NoEngine,
     /// `stereo` was requested while a mesh in a field is shown, which is drawn for one eye only.
@@ -103,7 +110,7 @@ impl Display for CommandError<'_> {
                 write!(f, "scene `{name}`: expected")?;
                 let models = Model::ALL.iter().map(|model| model.name());
                 let fields = FIELDS.iter().map(|(name, _)| *name);
-                let names = models.chain(fields).chain([WIREFRAME]);
+                let names = models.chain(fields).chain([OBJECTS, WIREFRAME]);
                 names.enumerate().try_for_each(|(i, name)| {
                     write!(f, "{} {name}", if i == 0 { "" } else { " or" })
                 })
@@ -113,6 +120,14 @@ impl Display for CommandError<'_> {
                 "size: {size} not available on this board, expected a smaller size"
             ),
             Self::NoUpload => f.write_str("scene model: no mesh uploaded, expected `load` first"),
+            Self::ObjectMesh(name) => {
+                let [cube, uploaded] = Model::ALL.map(Model::name);
+                write!(f, "object add `{name}`: expected {cube} or {uploaded}")
+            }
+            Self::Object(error) => error.fmt(f),
+            Self::NoObjects => {
+                f.write_str("scene objects: no objects, expected `object add MESH` first")
+            }
             Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
             Self::StereoOfMesh => f.write_str(
                 "stereo: not available for a mesh in a field, expected `mesh off` first",

@@ -5,10 +5,10 @@
 //!
 //! ```text
 //! start, main_loop
-//! commands (scene, appearance, camera, imu, replay, frame, statistics, bench, machine)
+//! commands (scene, object, appearance, camera, imu, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
-//! machine (state) ─┬─ renderer, gateware, scene, models, memory
+//! machine (state) ─┬─ renderer, gateware, scene, models, objects, memory
 //!                  ├─ terminal, transfer
 //!                  ├─ sensor, replay
 //!                  └─ interrupts
@@ -35,6 +35,7 @@ mod main_loop;
 mod memory;
 #[allow(unsafe_code)] // Keeps a mesh or a program beyond the borrow of its buffer.
 mod models;
+mod objects;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
 mod renderer;

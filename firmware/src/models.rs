@@ -5,9 +5,11 @@ use core::slice;
 use glint_core::field::{Cubes, Field, Menger, Primitive};
 use glint_core::fixed::Q32_32;
 use glint_core::mesh::{Mesh, MeshError};
+use glint_core::object::Place;
 use glint_core::wireframe::{Program, ProgramError};
 
 use crate::cube;
+use crate::objects::{ObjectError, Objects};
 
 /// Memory for one mesh or wireframe program.
 pub struct Buffer {
@@ -41,6 +43,11 @@ impl Model {
             Self::Uploaded => "model",
         }
     }
+
+    /// The model with this name.
+    pub fn of(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|model| model.name() == name)
+    }
 }
 
 /// Fields that the command `scene` shows, with their names.
@@ -73,6 +80,7 @@ pub struct Models {
     cube: Mesh<'static>,
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
+    objects: Objects,
 }
 
 impl Models {
@@ -88,6 +96,7 @@ impl Models {
             shown: Model::Cube,
             cube,
             cube_program,
+            objects: Objects::default(),
         })
     }
 
@@ -126,6 +135,26 @@ impl Models {
         exists
     }
 
+    /// The objects.
+    pub const fn objects(&self) -> &Objects {
+        &self.objects
+    }
+
+    /// The objects, to change their places or to remove them.
+    pub const fn objects_mut(&mut self) -> &mut Objects {
+        &mut self.objects
+    }
+
+    /// Adds an object with the mesh of `model`, if it exists.
+    pub fn add_object(&mut self, model: Model, place: &Place) -> Option<Result<(), ObjectError>> {
+        let mesh = match (model, &self.uploaded) {
+            (Model::Cube, _) => self.cube,
+            (Model::Uploaded, Some(Upload::Mesh(mesh))) => *mesh,
+            _ => return None,
+        };
+        Some(self.objects.add(model, mesh, place))
+    }
+
     /// The staging memory for the next upload, which is separate from the shown mesh.
     pub fn staging(&mut self) -> &mut [u8] {
         self.buffers[1].memory
@@ -160,12 +189,17 @@ impl Models {
         let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
         // SAFETY: the memory is 'static. The callers drop the slice, or pass what borrows from it to `keep`, by which its buffer
         // becomes the first buffer. Only `staging` lends a buffer for writing, and always lends the second buffer. Only `keep`
-        // swaps the buffers, and it drops the last upload when it does so.
+        // swaps the buffers, and it drops the last upload, also from the objects, when it does so.
         unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) }
     }
 
     /// Keeps an upload that borrows from the staging memory, in place of the last one.
     fn keep(&mut self, upload: Upload) {
+        let mesh = match &upload {
+            Upload::Mesh(mesh) => Some(*mesh),
+            Upload::Program(_) => None,
+        };
+        self.objects.replace(Model::Uploaded, mesh);
         self.uploaded = Some(upload);
         self.buffers.swap(0, 1);
     }

@@ -5,6 +5,7 @@ use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
+use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
@@ -67,6 +68,8 @@ pub enum RenderedBy {
 pub struct Scene {
     /// The motion of the wireframe, while it is shown.
     wireframe: Option<Motion>,
+    /// Whether the objects are shown.
+    objects: bool,
     field: Option<Field>,
     with_mesh: bool,
     stereo: Option<Stereo>,
@@ -94,6 +97,7 @@ impl Scene {
         let sphere = Sphere::START;
         Ok(Self {
             wireframe: None,
+            objects: false,
             field: None,
             with_mesh: false,
             stereo: None,
@@ -113,20 +117,26 @@ impl Scene {
         })
     }
 
-    /// The frame of the scene, with the shown mesh or program of `models`.
-    pub fn frame<'a>(&'a self, models: &'a Models) -> Frame<'a> {
-        let mesh = MeshSubject {
-            mesh: *models.mesh(),
+    /// A mesh with the options of the scene.
+    pub const fn mesh_subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
+        MeshSubject {
+            mesh,
             cull: self.cull,
             shading: self.shading,
             clip: self.clip,
             winding: self.winding,
-        };
+        }
+    }
+
+    /// The frame of the scene, with the shown mesh, objects or program of `models`.
+    pub fn frame<'a>(&'a self, models: &'a Models) -> Frame<'a> {
+        let mesh = self.mesh_subject(*models.mesh());
         let subject = match (&self.wireframe, &self.field) {
             (Some(motion), _) => Subject::Wireframe(WireframeSubject {
                 program: *models.program(),
                 pose: motion.pose(),
             }),
+            (None, _) if self.objects => Subject::Objects(models.objects().all()),
             (None, None) => Subject::Mesh(mesh),
             (None, Some(field)) => {
                 let field = FieldSubject {
@@ -153,6 +163,19 @@ impl Scene {
     /// Shows the wireframe as its program has it.
     pub fn show_wireframe(&mut self) {
         self.wireframe = Some(Motion::default());
+        self.objects = false;
+        self.changed = true;
+    }
+
+    /// Whether the objects are shown.
+    pub const fn shows_objects(&self) -> bool {
+        self.objects
+    }
+
+    /// Shows the objects.
+    pub const fn show_objects(&mut self) {
+        self.wireframe = None;
+        self.objects = true;
         self.changed = true;
     }
 
@@ -171,9 +194,10 @@ impl Scene {
         self.field.as_ref()
     }
 
-    /// Shows a field, or the mesh alone for `None`, in place of the wireframe if it is shown.
+    /// Shows a field, or the mesh alone for `None`, in place of wireframe or objects if they are shown.
     pub fn set_field(&mut self, field: Option<Field>) {
-        self.changed |= self.wireframe.take().is_some() || self.field != field;
+        self.changed |= self.wireframe.take().is_some() || self.objects || self.field != field;
+        self.objects = false;
         self.field = field;
     }
 

@@ -9,14 +9,16 @@ mod command;
 mod completion;
 mod editor;
 mod error;
+mod object;
 mod syntax;
 mod table;
 mod values;
 
 pub use command::{
     AppearanceCommands, CameraCommands, Command, Executor, FrameCommands, ImuCommands,
-    MachineCommands, SceneCommands, write_help,
+    MachineCommands, ObjectCommands, SceneCommands, write_help,
 };
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use error::ParseError;
+pub use object::ObjectAction;
 pub use values::ImuAction;

@@ -27,6 +27,7 @@ pub mod machine;
 pub mod matrix;
 pub mod mesh;
 pub mod mpu6050;
+pub mod object;
 pub mod orientation;
 pub mod picture;
 pub mod polar;

@@ -9,6 +9,7 @@ use crate::error::CommandError;
 use crate::gateware::GatewareRenderer;
 use crate::job::{Outcome, Reply};
 use crate::machine::{Devices, Machine};
+use crate::objects::OBJECTS;
 use crate::selftest;
 use crate::wireframe::WIREFRAME;
 
@@ -32,16 +33,29 @@ impl<'l> MachineCommands<'l> for Machine {
         } = self;
         let staging = models.staging();
         let (address, room) = (staging.as_ptr().addr(), staging.len());
-        let mesh = models.mesh();
+        let objects = scene.shows_objects().then(|| models.objects().all());
+        let objects = objects.map(|objects| objects.iter().map(|object| &object.subject.mesh));
+        let (vertices, triangles) = match objects {
+            Some(meshes) => meshes.fold((0, 0), |(vertices, triangles), mesh| {
+                // At most 16 times 2^21.
+                (
+                    vertices + mesh.vertex_count(),
+                    triangles + mesh.triangle_count(),
+                )
+            }),
+            None => (models.mesh().vertex_count(), models.mesh().triangle_count()),
+        };
         let (field, model) = (scene.field(), models.shown().name());
         let with_mesh = match field {
-            Some(_) if scene.with_mesh() && !scene.shows_wireframe() => {
+            Some(_) if scene.with_mesh() && !scene.shows_wireframe() && !scene.shows_objects() => {
                 format_args!(" with {model}")
             }
             _ => format_args!(""),
         };
         let shown: &dyn Display = if scene.shows_wireframe() {
             &WIREFRAME
+        } else if scene.shows_objects() {
+            &OBJECTS
         } else {
             field.map_or(&model, |field| field)
         };
@@ -58,8 +72,8 @@ impl<'l> MachineCommands<'l> for Machine {
             ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{}", clock.frequency().hertz())),
             ("scene", format_args!("{shown}{with_mesh}")),
-            ("vertices", format_args!("{}", mesh.vertex_count())),
-            ("triangles", format_args!("{}", mesh.triangle_count())),
+            ("vertices", format_args!("{vertices}")),
+            ("triangles", format_args!("{triangles}")),
             ("size", format_args!("{width} {height}")),
             ("shading", format_args!("{}", scene.shading())),
             ("backend", format_args!("{}", scene.backend())),

@@ -13,6 +13,7 @@ use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
 use crate::models::{FIELDS, Model};
+use crate::objects::OBJECTS;
 use crate::wireframe::WIREFRAME;
 
 impl<'l> SceneCommands<'l> for Machine {
@@ -95,10 +96,11 @@ fn list(machine: &mut Machine) {
         scene,
         ..
     } = machine;
-    let wireframe = scene.shows_wireframe();
+    let (wireframe, objects) = (scene.shows_wireframe(), scene.shows_objects());
+    let instead = wireframe || objects;
     let field = scene.field();
     for model in Model::ALL {
-        let shown = !wireframe && (field.is_none() || scene.with_mesh()) && model == models.shown();
+        let shown = !instead && (field.is_none() || scene.with_mesh()) && model == models.shown();
         let state = match (shown, models.has(model)) {
             (true, _) => "shown",
             (_, true) => "there",
@@ -107,10 +109,16 @@ fn list(machine: &mut Machine) {
         terminal.print(format_args!("scene {} {state}\n", model.name()));
     }
     for (name, named) in FIELDS {
-        let shown = !wireframe && field == Some(&named);
+        let shown = !instead && field == Some(&named);
         let state = if shown { "shown" } else { "there" };
         terminal.print(format_args!("scene {name} {state}\n"));
     }
+    let state = match (objects, models.objects().all()) {
+        (true, _) => "shown",
+        (false, []) => "empty",
+        (false, _) => "there",
+    };
+    terminal.print(format_args!("scene {OBJECTS} {state}\n"));
     let state = if wireframe { "shown" } else { "there" };
     terminal.print(format_args!("scene {WIREFRAME} {state}\n"));
 }
@@ -121,14 +129,18 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>
         scene.show_wireframe();
         return Ok(());
     }
+    if name == OBJECTS {
+        if models.objects().all().is_empty() {
+            return Err(CommandError::NoObjects);
+        }
+        scene.show_objects();
+        return Ok(());
+    }
     if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
         scene.set_field(Some(*field));
         return Ok(());
     }
-    let model = Model::ALL
-        .into_iter()
-        .find(|model| model.name() == name)
-        .ok_or(CommandError::Scene(name))?;
+    let model = Model::of(name).ok_or(CommandError::Scene(name))?;
     let before = models.shown();
     if !models.show(model) {
         return Err(CommandError::NoUpload);

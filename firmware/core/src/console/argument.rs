@@ -81,6 +81,11 @@ impl<'a> Reader<'a> {
         None
     }
 
+    /// The words that are left, for a parser of its own.
+    pub const fn words(&mut self) -> &mut Words<'a> {
+        &mut self.words
+    }
+
     /// Rejects the word that was taken last: stores the error that `error_of` gives for it.
     #[cold]
     #[inline(never)]

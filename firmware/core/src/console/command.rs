@@ -4,6 +4,7 @@ use core::fmt;
 
 use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
+use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::commands;
 use super::values::{
@@ -44,6 +45,11 @@ commands! {
         field Field(field: Option<Or<Off, Field>>): "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>): "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Option<Or<Off, Stereo>>): "show or set the two eyes of a field; off is one eye";
+    }
+
+    /// Commands of objects: several meshes in a frame, each with a place of its own.
+    ObjectCommands {
+        object Object(action: Option<Object>): "list the objects, add one, change its place or colour, or remove it";
     }
 
     /// Commands of a field's appearance.

@@ -8,6 +8,7 @@ use crate::field::FieldError;
 use crate::fixed::Q32_32;
 use crate::follow::SENSITIVITY;
 use crate::light::LightError;
+use crate::object::PlaceError;
 use crate::stereo::StereoError;
 use crate::words::Word;
 
@@ -68,6 +69,8 @@ pub enum ValueError<'a> {
     Stereo(StereoError<'a>),
     /// The word is not the text form of a light.
     Light(LightError<'a>),
+    /// The words are not the place of an object.
+    Place(PlaceError<'a>),
 }
 
 impl Display for ParseError<'_> {
@@ -127,6 +130,7 @@ impl Display for ValueError<'_> {
             Self::Field(error) => error.fmt(f),
             Self::Stereo(error) => error.fmt(f),
             Self::Light(error) => error.fmt(f),
+            Self::Place(error) => error.fmt(f),
         }
     }
 }

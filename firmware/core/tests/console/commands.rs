@@ -1,17 +1,20 @@
 //! Tests of every command with its arguments.
 
 use glint_core::camera::View;
-use glint_core::colour::{Shading, Winding};
-use glint_core::console::{Command, ImuAction, LINE_MAX};
+use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::console::{Command, ImuAction, LINE_MAX, ObjectAction};
 use glint_core::field::{Field, Menger};
-use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
+use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
+use glint_core::matrix::Matrix;
+use glint_core::object::Place;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
+use glint_core::words::Words;
 use proptest::prelude::*;
 
 proptest! {
@@ -24,11 +27,33 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orbit", "size", "load", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orbit", "size", "load", "object", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
         let _ = Command::parse(&line).map_err(|error| error.to_string());
+    }
+
+    #[test]
+    fn no_object_upsets_the_parser(
+        action in proptest::sample::select(&["add", "move", "rotate", "scale", "matrix", "colour", "remove"][..]),
+        words in proptest::collection::vec("(scale|rotate|move|matrix|colour|x|[-+]?[0-9a-f.,]{0,24})", 0..12),
+    ) {
+        let line = format!("object {action} {}", words.join(" "));
+        let _ = Command::parse(&line).map_err(|error| error.to_string());
+    }
+
+    /// The printed form of a place makes the same place again.
+    #[test]
+    fn places_come_back_bit_for_bit(entries in any::<[[i32; 3]; 3]>(), by in any::<[i32; 3]>(), colour in any::<Option<u16>>()) {
+        let number = |bits: i32, shift| Q8_24::from_bits(bits >> shift);
+        let matrix = Matrix::new_checked(entries.map(|row| row.map(|x| number(x, 3))), by.map(|x| number(x, 2)));
+        if let Ok(matrix) = matrix {
+            let place = Place { matrix, colour: colour.map(Rgb565) };
+            let text = place.to_string();
+            prop_assert!(text.len() <= LINE_MAX / 2);
+            prop_assert_eq!(Place::parse(&mut Words::new(&text)), Ok(place));
+        }
     }
 
     /// The printed form of a view, given to the command `view`, sets the same view again.
@@ -75,6 +100,38 @@ fn every_command_is_understood() {
             name: Some("menger"),
         },
     );
+    assert_parses("object", Command::Object { action: None });
+    let object = |line, action| {
+        assert_parses(
+            line,
+            Command::Object {
+                action: Some(action),
+            },
+        )
+    };
+    let place = |text| Place::parse(&mut Words::new(text)).expect("a place");
+    object("object list", ObjectAction::List);
+    object(
+        "object add teapot scale 0.5 rotate z 30 move 1,0,-2 colour ff8000",
+        ObjectAction::Add {
+            mesh: "teapot",
+            place: place("scale 0.5 rotate z 30 move 1,0,-2 colour ff8000"),
+        },
+    );
+    for (line, next) in [
+        ("object scale 3 2", "scale 2"),
+        ("object scale 3 1,2,-3", "scale 1,2,-3"),
+        ("object rotate 3 x -90", "rotate x -90"),
+        ("object move 3 1,0.5,0", "move 1,0.5,0"),
+        ("object matrix 3 1,0,0,0,1,0,0,0,2", "scale 1,1,2"),
+        ("object matrix 3 1,0,0,0,1,0,0,0,1,3,2,1", "move 3,2,1"),
+        ("object colour 3 00ff7f", "colour 00ff7f"),
+    ] {
+        let (number, next) = (3, place(next));
+        object(line, ObjectAction::Change { number, next });
+    }
+    object("object remove 16", ObjectAction::Remove(Some(16)));
+    object("object remove all", ObjectAction::Remove(None));
     assert_parses("field", Command::Field { field: None });
     assert_parses("field off", Command::Field { field: Some(None) });
     assert_parses(

@@ -168,7 +168,7 @@ impl RenderArguments {
             .into_iter()
             .chain(descriptions.iter().zip(&models).map(|(object, model)| {
                 self.subject(model, clip)
-                    .map(|subject| (subject, object.matrix, object.colour))
+                    .map(|subject| (subject, object.place.matrix, object.place.colour))
             }))
             .map(|object| {
                 object.map(|(subject, matrix, colour)| Object {

@@ -1,0 +1,51 @@
+//! The command `object`: several meshes in a frame, each with a place of its own.
+
+use glint_core::console::{ObjectAction, ObjectCommands};
+
+use crate::error::CommandError;
+use crate::job::{Outcome, Reply};
+use crate::machine::Machine;
+use crate::models::Model;
+
+impl<'l> ObjectCommands<'l> for Machine {
+    fn object(&mut self, action: Option<ObjectAction<'l>>) -> Outcome<'l> {
+        let Self {
+            terminal,
+            models,
+            scene,
+            ..
+        } = self;
+        match action.unwrap_or(ObjectAction::List) {
+            ObjectAction::List => {
+                for (number, (model, place)) in (1..).zip(models.objects().list()) {
+                    let name = model.name();
+                    terminal.print(format_args!("object {number} {name} {place}\n"));
+                }
+                return Ok(Reply::Done);
+            }
+            ObjectAction::Add { mesh: name, place } => {
+                let model = Model::of(name).ok_or(CommandError::ObjectMesh(name))?;
+                let added = models.add_object(model, &place);
+                added
+                    .ok_or(CommandError::NoUpload)?
+                    .map_err(CommandError::Object)?;
+                scene.show_objects();
+            }
+            ObjectAction::Change { number, next } => models
+                .objects_mut()
+                .change(number, &next)
+                .map_err(CommandError::Object)?,
+            ObjectAction::Remove(number) => {
+                let removed = models.objects_mut().remove(number);
+                removed.map_err(CommandError::Object)?;
+                if models.objects().all().is_empty() && scene.shows_objects() {
+                    scene.set_field(None);
+                }
+            }
+        }
+        if scene.shows_objects() {
+            scene.touch();
+        }
+        Ok(Reply::Done)
+    }
+}
