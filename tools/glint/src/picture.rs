@@ -4,7 +4,6 @@ use glint_core::mesh::Rgb565;
 use glint_core::picture::Size;
 use glint_model::DepthScale;
 use std::io::{self, Write};
-use std::path::Path;
 use virtual_board::Picture;
 
 /// Colours and depth codes of a drawn frame.
@@ -45,35 +44,34 @@ impl Image {
     /// whose depth code is 0, gets +inf.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn save_depth(&self, path: &Path, scale: &DepthScale) -> io::Result<()> {
-        let mut file = io::BufWriter::new(std::fs::File::create(path)?);
+    /// They cannot be written.
+    pub fn write_depth(&self, mut out: impl Write, scale: &DepthScale) -> io::Result<()> {
         for &code in &self.depth {
             let distance = scale
                 .distance(code)
                 .map_or(f32::INFINITY, |z| z.to_num::<f32>());
-            file.write_all(&distance.to_le_bytes())?;
+            out.write_all(&distance.to_le_bytes())?;
         }
-        file.flush()
+        Ok(())
     }
 }
 
 /// Writes images of one size as an animated PNG that repeats forever.
 ///
 /// # Errors
-/// The file cannot be written, or there is no image.
-pub fn save_animation(path: &Path, images: &[Image], frames_per_second: u16) -> io::Result<()> {
+/// It cannot be written, or there is no image.
+pub fn write_animation(
+    out: impl Write,
+    images: &[Image],
+    frames_per_second: u16,
+) -> io::Result<()> {
     let Some(first) = images.first() else {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             "expected at least one frame, found none",
         ));
     };
-    let mut encoder = png::Encoder::new(
-        io::BufWriter::new(std::fs::File::create(path)?),
-        first.width,
-        first.height,
-    );
+    let mut encoder = png::Encoder::new(out, first.width, first.height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_animated(images.len() as u32, 0)?;

@@ -1,8 +1,6 @@
 //! Pictures that the monitor captures.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::path::Path;
+use std::io::Write;
 
 /// Reason why a picture is not an enlarged RGB565 frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -147,16 +145,12 @@ impl Picture {
         Ok(frame)
     }
 
-    /// Writes the picture to a PNG file.
+    /// Writes the picture as a PNG file.
     ///
     /// # Errors
-    /// When the file cannot be written.
-    pub fn save(&self, path: &Path) -> std::io::Result<()> {
-        let mut encoder = png::Encoder::new(
-            BufWriter::new(File::create(path)?),
-            self.width as u32,
-            self.height as u32,
-        );
+    /// When it cannot be written.
+    pub fn write_png(&self, out: impl Write) -> std::io::Result<()> {
+        let mut encoder = png::Encoder::new(out, self.width as u32, self.height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.write_header()?.write_image_data(&self.rgb)?;

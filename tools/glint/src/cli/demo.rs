@@ -1,6 +1,6 @@
 //! `glint demo`: a tour of the whole machine.
 
-use super::common::{advance, bar, say, spinner};
+use super::common::{advance, bar, say, spinner, write_whole};
 use super::convert::load;
 use anyhow::Context;
 use clap::Args;
@@ -8,7 +8,7 @@ use glint::board::{Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
-use glint::picture::{Image, save_animation};
+use glint::picture::{Image, write_animation};
 use glint::render::{
     self, BoardRenderer, FieldSubject, Frame, Route, Stats, Subject, size_command, view_command,
 };
@@ -171,9 +171,7 @@ impl DemoArguments {
         bar.finish_and_clear();
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
-        picture
-            .save(&path)
-            .with_context(|| format!("{}: cannot be written", path.display()))?;
+        write_whole(&path, |out| picture.write_png(out))?;
 
         let scale = virtual_board::WIDTH / SIZE.width() as usize;
         let expected = render::on_model(&frame)?.image.colour;
@@ -221,8 +219,9 @@ impl DemoArguments {
                 ..Image::empty(ORBIT_SIZE)
             });
         }
-        save_animation(path, &images, ORBIT_FRAMES_PER_SECOND)
-            .with_context(|| format!("{}: cannot be written", path.display()))?;
+        write_whole(path, |out| {
+            write_animation(out, &images, ORBIT_FRAMES_PER_SECOND)
+        })?;
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
@@ -267,8 +266,9 @@ impl DemoArguments {
             cycles += stats.cycles.unwrap_or_default();
             images.push(image);
         }
-        save_animation(path, &images, SPONGE_FRAMES_PER_SECOND)
-            .with_context(|| format!("{}: cannot be written", path.display()))?;
+        write_whole(path, |out| {
+            write_animation(out, &images, SPONGE_FRAMES_PER_SECOND)
+        })?;
         Ok(cycles / u64::from(self.sponge.max(1)))
     }
 }

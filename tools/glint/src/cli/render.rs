@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::common::{
-    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file,
+    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file, write_whole,
 };
 use super::convert::load;
 use super::field::FieldArguments;
@@ -187,15 +187,11 @@ impl RenderArguments {
         };
         let frame = Frame::new(subject, view, size);
         let Rendered { image, stats } = self.render(&frame)?;
-        image
-            .picture()
-            .save(&self.out)
-            .with_context(|| format!("{}: cannot be written", self.out.display()))?;
+        write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.depth {
             let scale = frame.constants()?.depth_scale();
-            image
-                .save_depth(path, &scale.context("expected a frame with a subject")?)
-                .with_context(|| format!("{}: cannot be written", path.display()))?;
+            let scale = scale.context("expected a frame with a subject")?;
+            write_whole(path, |out| image.write_depth(out, &scale))?;
         }
         let totals = Totals {
             stats: &stats,

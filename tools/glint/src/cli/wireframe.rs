@@ -1,8 +1,7 @@
 //! `glint wireframe`.
 
-use super::common::{named, print_json, say, size, spinner, write_file};
+use super::common::{named, print_json, say, size, spinner, write_file, write_whole};
 use super::render::print_stats;
-use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::error::FormatError;
 use glint::model;
@@ -266,10 +265,7 @@ impl RenderArguments {
         // The program has its own eye, so the frame's camera has no effect.
         let camera = view::spherical("2,30,60")?;
         let Rendered { image, stats } = on_model(&Frame::new(subject, camera, size))?;
-        image
-            .picture()
-            .save(&self.out)
-            .with_context(|| format!("{}: cannot be written", self.out.display()))?;
+        write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.stats {
             let json = serde_json::to_string_pretty(&stats)? + "\n";
             write_file(path, json.as_bytes())?;

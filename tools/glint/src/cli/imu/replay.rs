@@ -1,8 +1,9 @@
 //! `glint imu replay`.
 
 use super::source::read_log;
-use crate::cli::common::{TransferArguments, advance, bar, count_bar, print_json, say, spinner};
-use anyhow::Context;
+use crate::cli::common::{
+    TransferArguments, advance, bar, count_bar, print_json, say, spinner, write_whole,
+};
 use clap::Args;
 use glint::board::{Board, ModelOrBoard};
 use glint::console::Console;
@@ -15,8 +16,7 @@ use glint_core::fixed::{Q2_30, Q32_32};
 use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
 use indicatif::ProgressBar;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Compute the attitudes of a log with the firmware's integer arithmetic.
@@ -139,8 +139,7 @@ impl ReplayArguments {
             error => anyhow::Error::from(error),
         })?;
         let replayed = self.replay(prepared)?;
-        write(&self.out, &entries, &replayed.attitudes)
-            .with_context(|| format!("{}: cannot be written", self.out.display()))?;
+        write_whole(&self.out, |out| write(out, &entries, &replayed.attitudes))?;
         self.report(&entries, &replayed, options.units)
     }
 
@@ -297,8 +296,7 @@ impl ReplayArguments {
     }
 }
 
-fn write(path: &Path, entries: &[Entry], attitudes: &[Quaternion]) -> std::io::Result<()> {
-    let mut out = BufWriter::new(File::create(path)?);
+fn write(out: &mut dyn Write, entries: &[Entry], attitudes: &[Quaternion]) -> std::io::Result<()> {
     writeln!(out, "t_us,w,x,y,z,yaw,pitch,roll")?;
     for (entry, &attitude) in entries.iter().zip(attitudes) {
         let Attitude {
@@ -316,5 +314,5 @@ fn write(path: &Path, entries: &[Entry], attitudes: &[Quaternion]) -> std::io::R
             entry.t_us
         )?;
     }
-    out.flush()
+    Ok(())
 }
