@@ -9,12 +9,13 @@ mod limits;
 
 use core::fmt;
 
+use crate::choice::choices;
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::trig::sin_cos_q30;
 use crate::vector::{self, unit};
 
 pub use error::{Axis, ViewError};
-pub use limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
+pub use limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS, WIDTH};
 
 /// Half width of the image plane at distance 1, in world units, for cameras that are defined by angles.
 pub const DEFAULT_HALF_WIDTH: U8_28 = U8_28::lit("0.9");
@@ -30,6 +31,21 @@ const MIN_SINE: i64 = 1 << 20;
 /// A vector with components in units of 2^−60.
 type Exact = [i64; 3];
 
+/// Projection of the world to the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// Lines of sight meet in the eye.
+    #[default]
+    Perspective,
+    /// Lines of sight are parallel to n, so sizes on the screen do not depend on the distance.
+    Orthographic,
+}
+
+choices!(Projection {
+    Perspective: "perspective",
+    Orthographic: "orthographic",
+});
+
 /// A checked camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct View {
@@ -39,10 +55,11 @@ pub struct View {
     n: [Q2_23; 3],
     half_width: U8_28,
     near: U4_28,
+    projection: Projection,
 }
 
 impl View {
-    /// Makes a camera from its eye, basis, half width and near plane, after checking them.
+    /// Makes a perspective camera from its eye, basis, half width and near plane, after checking them.
     ///
     /// The basis must be orthonormal within 1e-4 (lengths and scalar products) with u × v = n; it is not normalised. In world
     /// units, the eye must be within 32 of the origin, `half_width` in [0.0087, 115] and `near` in [0.01, 2].
@@ -72,6 +89,7 @@ impl View {
             n,
             half_width,
             near,
+            projection: Projection::Perspective,
         })
     }
 
@@ -101,6 +119,7 @@ impl View {
             n: rounded(outward.map(|x| -x)),
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
+            projection: Projection::Perspective,
         })
     }
 
@@ -137,6 +156,7 @@ impl View {
             n: rounded(swapped(forward)),
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
+            projection: Projection::Perspective,
         })
     }
 
@@ -175,10 +195,11 @@ impl View {
             n: rounded(n.map(|x| i64::from(x) << 30)),
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
+            projection: Projection::Perspective,
         })
     }
 
-    /// Returns this camera with another horizontal field of view: its half width is the tangent of half of `angle`, within a part of
+    /// Returns this camera in perspective, with another horizontal field of view: its half width is the tangent of half of `angle`, within a part of
     /// 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a picture of W×H pixels.
     ///
     /// # Errors
@@ -192,16 +213,40 @@ impl View {
         let tangent = ((sin << 29) / cos + 1) >> 1;
         Ok(Self {
             half_width: U8_28::from_bits(tangent.unsigned_abs()),
+            projection: Projection::Perspective,
             ..self
         })
     }
 
-    /// Returns this camera with the half width and the near plane of `other`.
+    /// Returns this camera in orthographic projection, with `width` world units from the left side of the picture to the right
+    /// one. The half width is half of that, rounded down to 2^−28.
+    ///
+    /// # Errors
+    /// The width is not from 0.0174 to 230.
+    pub fn with_width(self, width: U8_28) -> Result<Self, ViewError> {
+        if !(WIDTH[0]..=WIDTH[1]).contains(&width) {
+            return Err(ViewError::Width(width));
+        }
+        Ok(Self {
+            half_width: U8_28::from_bits(width.to_bits() >> 1),
+            projection: Projection::Orthographic,
+            ..self
+        })
+    }
+
+    /// Returns this camera with another projection, and the same half width.
+    #[must_use]
+    pub const fn with_projection(self, projection: Projection) -> Self {
+        Self { projection, ..self }
+    }
+
+    /// Returns this camera with the projection, the half width and the near plane of `other`.
     #[must_use]
     pub const fn with_lens_of(self, other: &Self) -> Self {
         Self {
             half_width: other.half_width,
             near: other.near,
+            projection: other.projection,
             ..self
         }
     }
@@ -231,7 +276,13 @@ impl View {
         self.n
     }
 
-    /// Half the width of the image plane at distance 1, in world units, from 0.0087 to 115.
+    /// The projection.
+    pub const fn projection(&self) -> Projection {
+        self.projection
+    }
+
+    /// Half the width of the image plane in world units, from 0.0087 to 115: at distance 1 in perspective, at every distance in
+    /// orthographic projection.
     pub const fn half_width(&self) -> U8_28 {
         self.half_width
     }
@@ -242,8 +293,8 @@ impl View {
     }
 }
 
-/// Writes the arguments of the console's command `view`: eye, u, v, n, half width and near plane. Each number is the shortest
-/// decimal that reads back as the same bits.
+/// Writes the arguments of the console's command `view`: eye, u, v, n, half width, near plane and, of an orthographic camera, its
+/// projection. Each number is the shortest decimal that reads back as the same bits.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.eye.iter().try_for_each(|x| write!(f, "{x} "))?;
@@ -251,7 +302,11 @@ impl fmt::Display for View {
             .as_flattened()
             .iter()
             .try_for_each(|x| write!(f, "{x} "))?;
-        write!(f, "{} {}", self.half_width, self.near)
+        write!(f, "{} {}", self.half_width, self.near)?;
+        match self.projection {
+            Projection::Perspective => Ok(()),
+            Projection::Orthographic => write!(f, " {}", self.projection),
+        }
     }
 }
 

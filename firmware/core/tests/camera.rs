@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use glint_core::camera::{DEFAULT_HALF_WIDTH, DEFAULT_NEAR, View, ViewError};
+use glint_core::camera::{
+    DEFAULT_HALF_WIDTH, DEFAULT_NEAR, HALF_WIDTH, Projection, View, ViewError, WIDTH,
+};
 use glint_core::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 type Vector = [f64; 3];
@@ -214,6 +216,38 @@ fn fields_of_view_are_tangents() {
             Err(ViewError::FieldOfView(angle))
         );
     }
+}
+
+#[test]
+fn orthographic_cameras_have_a_width() {
+    let view = View::spherical(Q32_32::from_num(2), Turns(0), Turns(0)).expect("in range");
+    assert_eq!(view.projection(), Projection::Perspective);
+    let with_width = |x: f64| view.with_width(U8_28::from_num(x));
+    let parallel = with_width(3.5).expect("in range");
+    assert_eq!(
+        (parallel.projection(), parallel.half_width()),
+        (Projection::Orthographic, U8_28::from_num(1.75))
+    );
+    assert_eq!((parallel.eye(), parallel.near()), (view.eye(), view.near()));
+    // A field of view selects perspective; the lens of another camera includes its projection.
+    let angle = Turns::from_degrees(Q32_32::from_num(60));
+    let wide = parallel.with_field_of_view(angle).expect("in range");
+    assert_eq!(wide.projection(), Projection::Perspective);
+    assert_eq!(view.with_lens_of(&parallel), parallel);
+    assert_eq!(
+        parallel
+            .with_projection(Projection::Perspective)
+            .with_lens_of(&view),
+        view
+    );
+    for x in WIDTH {
+        let ends = view.with_width(x).expect("in range");
+        assert!((HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&ends.half_width()));
+    }
+    for x in [0.0173, 230.1, 0.0] {
+        assert_eq!(with_width(x), Err(ViewError::Width(U8_28::from_num(x))));
+    }
+    assert!(parallel.to_string().ends_with(" 1.75 0.1 orthographic"));
 }
 
 #[test]

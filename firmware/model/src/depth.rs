@@ -2,15 +2,23 @@
 
 use glint_core::fixed::Q32_32;
 
-/// The scale K of depth codes, as `mantissa`·2^`exponent`: a surface at depth z along the camera's axis n has the code
-/// K/z, and a code stands for the depth K/code (docs/formats.md, "Frame constants").
+/// The scale K of depth codes, as `mantissa`·2^`exponent`: in perspective a surface at depth z along the camera's axis n has the
+/// code K/z, and a code stands for the depth K/code (docs/formats.md, "Frame constants").
+///
+/// In orthographic projection codes are linear: a code is 2^(`exponent` − 19) world units (docs/formats.md, "Orthographic
+/// projection").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DepthScale {
     /// Mantissa km, u17 in [2^16, 2^17).
     pub mantissa: u32,
-    /// Exponent ke, −5 to 5.
+    /// Exponent ke, −5 to 5; in orthographic projection −6 to 10.
     pub exponent: i32,
+    /// In orthographic projection, the depth of the code 2^18, 37 fraction bits.
+    pub origin: Option<i64>,
 }
+
+/// Number of codes that an orthographic frame has for its range of depths: the four highest and the four lowest ones are beyond it.
+const LINEAR_CODES: i64 = (1 << 18) - 8;
 
 impl DepthScale {
     /// Returns the scale for a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's
@@ -20,9 +28,13 @@ impl DepthScale {
     /// mesh's bounding sphere about the origin if the sphere begins beyond the near plane. The axis n may be 10^−4
     /// longer than 1, so the radius is enlarged by a part of 2^−13.
     pub(crate) fn new(origin: i64, near: i64, radius: u32) -> Self {
+        Self::from_nearest(near.max(origin - Self::reach(radius)))
+    }
+
+    /// Returns the largest difference in depth between a mesh with the given `radius` and its origin, 37 fraction bits.
+    pub(crate) fn reach(radius: u32) -> i64 {
         let radius = i64::from(radius);
-        let reach = (radius << 23) + (radius << 10);
-        Self::from_nearest(near.max(origin - reach))
+        (radius << 23) + (radius << 10)
     }
 
     /// Returns the scale (2^18 − 4)·`nearest`, where `nearest` is the smallest depth in a frame: in (0, 64], with 37
@@ -31,6 +43,21 @@ impl DepthScale {
         // `nearest` is at most 2^43, so the product is below 2^61.
         let scale = nearest as u64 * ((1 << 18) - 4);
         Self::cut(scale, -37)
+    }
+
+    /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits: the smallest
+    /// power of two, from 2^(`least` − 19) world units on, with a code for each depth. `nearest` has the code 2^18 − 4.
+    pub(crate) fn linear(nearest: i64, farthest: i64, least: i32) -> Self {
+        // A code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at 10 or before.
+        let mut exponent = least;
+        while LINEAR_CODES << (18 + exponent) < farthest - nearest && exponent < 10 {
+            exponent += 1;
+        }
+        Self {
+            mantissa: 1 << 16,
+            exponent,
+            origin: Some(nearest - (4 << (18 + exponent))),
+        }
     }
 
     /// Returns this scale times `scale`, a number above 0, times 2^`shift`, with the mantissa truncated to 17 bits.
@@ -46,12 +73,18 @@ impl DepthScale {
         Self {
             mantissa: (value >> (lead - 16)) as u32,
             exponent: lead as i32 - 16 + exponent,
+            origin: None,
         }
     }
 
     /// Converts a depth code to the depth along the camera's axis n, to nearest; `None` for code 0, which
     /// marks an empty pixel.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
+        if let (Some(origin), 1..) = (self.origin, code) {
+            let below = (1 << 18) - i64::from(code);
+            let depth = origin + (below << (18 + self.exponent));
+            return Some(Q32_32::from_bits((depth + (1 << 4)) >> 5));
+        }
         let code = u64::from(code);
         // The mantissa is below 2^17 and the shift at most 37, so the dividend is below 2^(17 + 37).
         let scale = u64::from(self.mantissa) << (32 + self.exponent);

@@ -68,6 +68,15 @@ pub enum RenderError {
     },
     /// The far plane is at the near plane or nearer.
     Far(U8_28),
+    /// The picture of an orthographic camera is narrower than its width in pixels and the size of an object allow.
+    Width {
+        /// Width in world units.
+        width: U8_28,
+        /// Its smallest value.
+        least: U8_28,
+    },
+    /// The camera in a frame with a field is orthographic.
+    Orthographic,
     /// The half width of the camera in a frame with a field is outside the range that a field allows.
     HalfWidth(U8_28),
     /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
@@ -117,6 +126,13 @@ impl fmt::Display for RenderError {
                 "near {near}: expected at least {least} for a mesh of this size in a picture of this width and field of view"
             ),
             Self::Far(far) => write!(f, "far {far}: expected a plane beyond the near plane"),
+            Self::Width { width, least } => write!(
+                f,
+                "width {width}: expected at least {least} for an object of this size in a picture of this width"
+            ),
+            Self::Orthographic => {
+                f.write_str("orthographic projection: expected perspective with a field")
+            }
             Self::HalfWidth(half_width) => write!(
                 f,
                 "half_width {half_width}: expected {} to {} with a field",

@@ -200,7 +200,7 @@ impl FrameConstants {
     /// Replaces the constants by those of `frame`.
     ///
     /// # Errors
-    /// [`RenderError::Eye`] or [`RenderError::Stereo`]; the constants must then not be used for drawing.
+    /// A [`RenderError`] for a frame that cannot be drawn; the constants must then not be used for drawing.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.mesh, self.field) = (None, None);
         let (view, [width, height]) = (&frame.view, frame.size.pixels());
@@ -226,9 +226,10 @@ impl FrameConstants {
                 let mut camera = MeshSetup::new(view, width, height, 0)?;
                 let depths = objects.iter().map(|object| {
                     let radius = object.subject.mesh.radius();
-                    object.placement.nearest(&camera, radius)
+                    object.placement.depths(&camera, radius)
                 });
-                camera.set_nearest(depths.min());
+                let range = |[a, b]: [i64; 2], [c, d]: [i64; 2]| [a.min(c), b.max(d)];
+                camera.set_depths(depths.reduce(range));
                 self.mesh = Some(camera);
             }
             Subject::Wireframe(_) => {}

@@ -303,38 +303,3 @@ fn an_object_too_large_for_the_near_plane_is_refused() {
     assert!(near < least && least < 0.1, "{least}");
     assert_eq!(refused(16.0, least.to_num()), None);
 }
-
-/// A small object seen from afar by a camera of 1° is nearly in parallel projection: how far its vertices are off, and its codes of depth.
-#[test]
-fn a_small_object_from_afar_is_nearly_parallel() {
-    let mut random = Random(34);
-    let (width, height) = SIZES[0];
-    let view = Camera::looking([0.0, -8.0, 0.0], [0.0; 3], 0.008_727, 0.1).rounded();
-    let mut camera = MeshSetup::new(&view, width, height, 0).unwrap();
-    let (mut worst, mut codes) = (0.0_f64, [u32::MAX, 0]);
-    for _ in 0..2_000 {
-        let turned = Matrix::rotation(Axis::Z, Turns(random.bits() as u32))
-            .then(&Matrix::rotation(Axis::X, Turns(random.bits() as u32)))
-            .and_then(|matrix| matrix.then(&Matrix::scale([number(0.045); 3])?))
-            .unwrap();
-        let placement = Placement::new(turned);
-        camera.depth = MeshSetup::new(&view, width, height, 738).unwrap().depth;
-        let setup = placement.setup(&view, &camera, RADIUS).unwrap();
-        let position = [0; 3].map(|_| if random.coin() { 8192 } else { -8192 });
-        let Projected::Visible(found) = project(&setup, &transform(&setup, position)) else {
-            panic!("not visible")
-        };
-        let [x, _, z] = applied(&turned, world(position));
-        let scale = f64::from(width) / 2.0 / 8.0 / view.half_width().to_num::<f64>();
-        let parallel = [
-            f64::from(width) / 2.0 + x * scale,
-            f64::from(height) / 2.0 - z * scale,
-        ];
-        worst = worst
-            .max((f64::from(found.x) / 256.0 - parallel[0]).abs())
-            .max((f64::from(found.y) / 256.0 - parallel[1]).abs());
-        codes = [codes[0].min(found.w >> 6), codes[1].max(found.w >> 6)];
-    }
-    println!("{worst:.3} pixels off, depth codes {codes:?}");
-    assert!(worst <= 0.5 && codes[1] - codes[0] > 2_000);
-}

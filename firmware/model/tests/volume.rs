@@ -1,6 +1,6 @@
 //! Clipping to the six planes of the view volume, compared with a clipper in f64.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::fixed::U8_28;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::clip::{Plane, clip};
@@ -12,7 +12,7 @@ use glint_vectors::{Camera, Model, Picture, Random};
 /// Radius of a mesh that may have vertices at all positions of the mesh format, 14 fraction bits.
 const RADIUS: u32 = 56_756;
 
-/// A vertex in pixels from the middle of the picture at distance 1, and depth in world units.
+/// A vertex in pixels from the middle of the picture, in perspective at distance 1, and depth in world units.
 type Point = [f64; 3];
 
 fn view_of(far: f64) -> Clip {
@@ -23,7 +23,8 @@ fn view_of(far: f64) -> Clip {
 
 fn random_frame(random: &mut Random) -> MeshSetup {
     let (width, height) = SIZES[random.integer(0, 2) as usize];
-    let view = Camera::inside(random).rounded();
+    let projection = Projection::ALL[random.integer(0, 1) as usize];
+    let view = Camera::inside(random).rounded().with_projection(projection);
     let far = view.near().to_num::<f64>() + random.logarithmic(0.05, 4.0);
     let frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
     frame.with_clip(view_of(far)).unwrap()
@@ -42,6 +43,14 @@ fn point(frame: &MeshSetup, vertex: &CameraVertex) -> Point {
     ]
 }
 
+/// The homogeneous coordinate w of a vertex.
+fn divisor(frame: &MeshSetup, [_, _, z]: Point) -> f64 {
+    match frame.projection {
+        Projection::Perspective => z,
+        Projection::Orthographic => 1.0,
+    }
+}
+
 /// Clips a polygon to −w ≤ x, y ≤ w and near ≤ z ≤ far in homogeneous coordinates.
 fn reference(frame: &MeshSetup, far: f64, triangle: [Point; 3]) -> Vec<Point> {
     let near = frame.near as f64 * 0.5f64.powi(37);
@@ -49,10 +58,10 @@ fn reference(frame: &MeshSetup, far: f64, triangle: [Point; 3]) -> Vec<Point> {
     let distances: [&dyn Fn(Point) -> f64; 6] = [
         &|[_, _, z]| z - near,
         &|[_, _, z]| far - z,
-        &|[x, _, z]| half_width * z + x,
-        &|[x, _, z]| half_width * z - x,
-        &|[_, y, z]| half_height * z + y,
-        &|[_, y, z]| half_height * z - y,
+        &|p| half_width * divisor(frame, p) + p[0],
+        &|p| half_width * divisor(frame, p) - p[0],
+        &|p| half_height * divisor(frame, p) + p[1],
+        &|p| half_height * divisor(frame, p) - p[1],
     ];
     let mut polygon = triangle.to_vec();
     for distance in distances {
@@ -92,10 +101,11 @@ fn vertices_against_f64() {
             unlike += 1;
             continue;
         }
-        let pixels = |[x, y, z]: Point| {
+        let pixels = |point: Point| {
+            let w = divisor(&frame, point);
             [
-                f64::from(frame.width) / 2.0 + x / z,
-                f64::from(frame.height) / 2.0 + y / z,
+                f64::from(frame.width) / 2.0 + point[0] / w,
+                f64::from(frame.height) / 2.0 + point[1] / w,
             ]
         };
         let expected: Vec<_> = expected.into_iter().map(pixels).collect();

@@ -40,7 +40,7 @@ pub fn object(report: Report) {
             |placement| {
                 // The constants stay where they are made, as in the drawing of a frame.
                 black_box(&placement.setup(&view, &camera, RADIUS));
-                placement.nearest(&camera, RADIUS)
+                placement.depths(&camera, RADIUS)
             },
         );
     }

@@ -1,5 +1,6 @@
 //! The passes of a frame: the geometry pass, clipping by the CPU, and the raster pass.
 
+use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::picture::Size;
 use glint_hal::frequency::Frequency;
@@ -239,6 +240,9 @@ impl GatewareRenderer {
             }
             if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
                 return Err(EngineError::Shading.into());
+            }
+            if frame.view.projection() == Projection::Orthographic {
+                return Err(Fallback::Projection);
             }
             if mesh.clip != Clip::Guard {
                 return Err(Fallback::Clip);

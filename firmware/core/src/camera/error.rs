@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use super::limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS};
+use super::limits::{FIELD_OF_VIEW, HALF_WIDTH, MAX_EYE, NEAR, RADIUS, WIDTH};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 
 /// One of the three vectors of a camera's basis.
@@ -57,6 +57,8 @@ pub enum ViewError {
     Gaze,
     /// The direction that points up on the screen is 0.
     Up,
+    /// The width of the picture of an orthographic camera is out of range.
+    Width(U8_28),
     /// The field of view is out of range.
     FieldOfView(Turns),
     /// The radius of a spherical camera is out of range.
@@ -89,6 +91,7 @@ impl fmt::Display for ViewError {
                 "half_width {x}: expected {} to {}",
                 HALF_WIDTH[0], HALF_WIDTH[1]
             ),
+            Self::Width(x) => write!(f, "width {x}: expected {} to {}", WIDTH[0], WIDTH[1]),
             Self::Near(x) => write!(f, "near {x}: expected {} to {}", NEAR[0], NEAR[1]),
             Self::Radius(r) => write!(f, "radius {r}: expected {} to {}", RADIUS[0], RADIUS[1]),
             Self::Gaze => f.write_str("gaze (0, 0, 0): expected a non-zero direction"),

@@ -4,8 +4,10 @@ use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 
 /// Largest accepted distance of an eye from the origin, in world units.
 pub const MAX_EYE: u32 = 32;
-/// Smallest and largest accepted half width of the image plane at distance 1, in world units.
+/// Smallest and largest accepted half width of the image plane, at distance 1 in perspective, in world units.
 pub const HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.0087"), U8_28::lit("115")];
+/// Smallest and largest accepted width of the picture of an orthographic camera, in world units: twice the [`HALF_WIDTH`].
+pub const WIDTH: [U8_28; 2] = [U8_28::lit("0.0174"), U8_28::lit("230")];
 /// Smallest and largest accepted horizontal field of view, 1° and 179°.
 pub const FIELD_OF_VIEW: [Turns; 2] = [
     Turns::from_degrees(Q32_32::lit("1")),

@@ -1,6 +1,6 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::field::{
     FRACTION, Field, FixedSpheres, Placed, Primitive, Sample, Solid, cropped, units,
 };
@@ -69,7 +69,8 @@ impl FieldSetup {
     /// Computes the constants for a field, a camera and one of the [`SIZES`].
     ///
     /// # Errors
-    /// [`RenderError::Size`] for another size, [`RenderError::HalfWidth`] for a camera that is too narrow or too wide.
+    /// [`RenderError::Size`] for another size, [`RenderError::Orthographic`], and [`RenderError::HalfWidth`] for a camera that is too
+    /// narrow or too wide.
     pub fn new(
         field: &Field,
         view: &View,
@@ -78,6 +79,9 @@ impl FieldSetup {
     ) -> Result<Self, RenderError> {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
+        }
+        if view.projection() == Projection::Orthographic {
+            return Err(RenderError::Orthographic);
         }
         if !(FIELD_HALF_WIDTH[0]..=FIELD_HALF_WIDTH[1]).contains(&view.half_width()) {
             return Err(RenderError::HalfWidth(view.half_width()));

@@ -4,6 +4,7 @@
 //! The intersection of an edge with a plane is the exact point after rounding. It does not depend on the direction of the
 //! edge, so the two triangles at an edge get the same vertex.
 
+use glint_core::camera::Projection;
 use heapless::Vec;
 
 use crate::triangle::mesh_setup::MeshSetup;
@@ -85,10 +86,10 @@ impl Plane {
                 Volume::Guard => i64::MAX,
                 Volume::View { far } => far - vertex.z,
             },
-            Self::Left => left * vertex.z + half_pixels(frame, vertex.x),
-            Self::Right => right * vertex.z - half_pixels(frame, vertex.x),
-            Self::Top => top * vertex.z + half_pixels(frame, vertex.y),
-            Self::Bottom => bottom * vertex.z - half_pixels(frame, vertex.y),
+            Self::Left => left * divisor(frame, vertex) + half_pixels(frame, vertex.x),
+            Self::Right => right * divisor(frame, vertex) - half_pixels(frame, vertex.x),
+            Self::Top => top * divisor(frame, vertex) + half_pixels(frame, vertex.y),
+            Self::Bottom => bottom * divisor(frame, vertex) - half_pixels(frame, vertex.y),
         }
     }
 
@@ -152,21 +153,32 @@ impl Plane {
     }
 }
 
+/// The homogeneous coordinate by which X and Y are divided, 37 fraction bits.
+const fn divisor(frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
+    match frame.projection {
+        Projection::Perspective => vertex.z,
+        Projection::Orthographic => 1 << 37,
+    }
+}
+
 /// Converts the camera coordinate X or Y of a vertex to half pixels at distance 1, with the fraction bits of Z. The result
 /// is below 2^58.7. `Plane::distance` adds multiples of Z to it, at most 5375·|Z|, which is below 2^53.1.
 fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle lies wholly beyond one side of the picture. The plane through this side and the eye separates it
+/// Whether a triangle lies wholly beyond one side of the picture. In perspective the plane through this side and the eye separates it
 /// from the picture, so the test also holds for vertices behind the eye.
 ///
 /// Such a triangle is left out by this fast test instead of clipping, after which it would cover no pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
-        let places = triangle
-            .each_ref()
-            .map(|v| (half_pixels(frame, x(v)), i64::from(size) * v.z));
+        let places = triangle.each_ref().map(|v| {
+            (
+                half_pixels(frame, x(v)),
+                i64::from(size) * divisor(frame, v),
+            )
+        });
         places.iter().all(|(x, border)| *x < -border) || places.iter().all(|(x, border)| x > border)
     };
     off(|v| v.x, frame.width) || off(|v| v.y, frame.height)

@@ -1,6 +1,6 @@
 //! The frame constants of a mesh, computed once from the camera and the size of the picture.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q2_23, Q32_32, U4_28};
 
 use crate::depth::DepthScale;
@@ -18,16 +18,22 @@ pub struct MeshSetup {
     pub height: u32,
     /// Scale shift f: the number of fraction bits of `u` and `v`, 7 to 18.
     pub scale_shift: u32,
+    /// The projection.
+    pub projection: Projection,
     /// The camera's right axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub u: [i32; 3],
     /// The camera's down axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub v: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub n: [i32; 3],
-    /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44.
+    /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44. In orthographic projection
+    /// the depth of the code 2^18 is subtracted from −C·n.
     pub translation: [i64; 3],
-    /// Distance of the near plane from the eye, 37 fraction bits.
+    /// The smallest coordinate Z in front of the near plane, 37 fraction bits: in perspective `near_plane`, in orthographic
+    /// projection that of the code 2^18 − 4.
     pub near: i64,
+    /// Distance of the near plane from the eye, 37 fraction bits.
+    pub near_plane: i64,
     /// The scale K of depth codes.
     pub depth: DepthScale,
     /// The volume to which triangles are clipped.
@@ -54,42 +60,84 @@ impl MeshSetup {
             return Err(RenderError::Eye(view.eye()));
         }
         let scale = Scale::new(width, view);
-        // The vertex stage shifts X and Y right by at least 6 bits.
-        let least = U4_28::from_bits(1 << (31 - scale.shift));
-        if view.near() < least {
-            let near = view.near();
-            return Err(RenderError::Near { near, least });
+        let projection = view.projection();
+        if projection == Projection::Perspective {
+            // The vertex stage shifts X and Y right by at least 6 bits.
+            let least = U4_28::from_bits(1 << (31 - scale.shift));
+            if view.near() < least {
+                let near = view.near();
+                return Err(RenderError::Near { near, least });
+            }
         }
         let [u, v] = [view.u(), view.v()].map(|axis| axis.map(|r| scale.scaled(r)));
         let n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
         // than 2^24.5: |C·row| < 2^60.
         let eye = view.eye().map(Q32_32::to_bits);
-        let translation = [u, v, n].map(|row| nearest(-dot(eye, row), 18));
+        let mut translation = [u, v, n].map(|row| nearest(-dot(eye, row), 18));
+        if projection == Projection::Orthographic {
+            scale.place(view, &mut translation);
+        }
         let near = i64::from(view.near().to_bits()) << 9;
-        let depth = DepthScale::new(translation[2], near, radius);
-        Ok(Self {
+        let mut setup = Self {
             width,
             height,
             scale_shift: scale.shift,
+            projection,
             u,
             v,
             n,
             translation,
             near,
-            depth,
+            near_plane: near,
+            depth: DepthScale::new(translation[2], near, radius),
             volume: Volume::Guard,
             is_placed: false,
             light: n,
             mirrors: false,
-        })
+        };
+        if projection == Projection::Orthographic {
+            let origin = translation[2];
+            let reach = DepthScale::reach(radius);
+            setup.set_linear(origin - reach, origin + reach, LEAST_EXPONENT);
+        }
+        Ok(setup)
     }
 
-    /// Replaces the scale of depth codes by that for a frame whose smallest depth of a mesh is `nearest` (37 fraction bits), or at
-    /// the near plane without a mesh.
-    pub(crate) fn set_nearest(&mut self, nearest: Option<i64>) {
-        let nearest = nearest.unwrap_or(self.near).max(self.near);
-        self.depth = DepthScale::from_nearest(nearest);
+    /// Replaces the scale of depth codes by that for a frame with several meshes, whose smallest and largest `depths` are given with
+    /// 37 fraction bits. Without a mesh both are at the near plane.
+    pub(crate) fn set_depths(&mut self, depths: Option<[i64; 2]>) {
+        let [nearest, farthest] = depths.unwrap_or([self.near_plane; 2]);
+        match self.projection {
+            Projection::Perspective => {
+                self.depth = DepthScale::from_nearest(nearest.max(self.near_plane));
+            }
+            Projection::Orthographic => self.set_linear(nearest, farthest, LEAST_OF_OBJECTS),
+        }
+    }
+
+    /// Sets the linear depth codes of an orthographic frame, and counts depths from that of the code 2^18.
+    #[inline(never)]
+    fn set_linear(&mut self, nearest: i64, farthest: i64, least: i32) {
+        let depth = self.depth_of_world();
+        self.depth = DepthScale::linear(nearest.max(self.near_plane), farthest, least);
+        let origin = self.depth.origin.unwrap_or_default();
+        self.translation[2] = depth - origin;
+        self.near = 4 << (18 + self.depth.exponent);
+    }
+
+    /// The depth of the world's origin along the camera's forward axis, 37 fraction bits.
+    pub(crate) fn depth_of_world(&self) -> i64 {
+        self.translation[2] + self.depth.origin.unwrap_or_default()
+    }
+
+    /// The content of the triangle engine's register `scale_shift`: the scale shift f, or f + 1 − ke in orthographic projection.
+    pub fn engine_shift(&self) -> u32 {
+        match self.projection {
+            Projection::Perspective => self.scale_shift,
+            // ke is in −6…5 for the engine, and f at least 7.
+            Projection::Orthographic => (self.scale_shift as i32 + 1 - self.depth.exponent) as u32,
+        }
     }
 
     /// Returns these constants with another clipping of triangles.
@@ -101,15 +149,22 @@ impl MeshSetup {
             Clip::Guard => Volume::Guard,
             Clip::View { far } => {
                 let distance = (far.to_bits() as i64) << 9;
-                if distance <= self.near {
+                if distance <= self.near_plane {
                     return Err(RenderError::Far(far));
                 }
-                Volume::View { far: distance }
+                let far = distance - self.depth.origin.unwrap_or_default();
+                Volume::View { far }
             }
         };
         Ok(Self { volume, ..self })
     }
 }
+
+/// The smallest exponent ke of the depth codes of an orthographic frame with one mesh: the vertex stage takes the 24 highest bits of
+/// a depth below 2^(35 + ke) units, of which it has bits 6 to 40.
+const LEAST_EXPONENT: i32 = -6;
+/// The smallest exponent ke of an orthographic frame with objects, from which each object subtracts up to 6.
+const LEAST_OF_OBJECTS: i32 = 0;
 
 /// The scale s·2^f (docs/formats.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
 /// picture and h the half width of the view with 28 fraction bits.
@@ -117,6 +172,8 @@ struct Scale {
     shift: u32,
     numerator: i64,
     half_width: i64,
+    /// ceil(s·2^24), below 2^41.
+    whole: i64,
     /// ceil(s·2^(f + 6)), below 2^30.
     ceil: i64,
 }
@@ -132,15 +189,32 @@ impl Scale {
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
         // ceil(s·2^24), of at least 25 bits. Without its last bits, rounded up, it is ceil(s·2^f) for a smaller f. Its leading
         // 24 bits are then at most `LARGEST`, or else its leading 23 bits are.
-        let ceil: i64 = (numerator(24) + half_width - 1) / half_width;
-        let cut = (ceil.ilog2() - 23).max(6);
-        let cut = cut + u32::from(ceil > LARGEST << cut);
+        let whole: i64 = (numerator(24) + half_width - 1) / half_width;
+        let cut = (whole.ilog2() - 23).max(6);
+        let cut = cut + u32::from(whole > LARGEST << cut);
         let spare = cut - 6;
         Self {
             shift: 24 - cut,
             numerator: numerator(24 - cut),
             half_width,
-            ceil: (ceil + (1 << spare) - 1) >> spare,
+            whole,
+            ceil: (whole + (1 << spare) - 1) >> spare,
+        }
+    }
+
+    /// Replaces the translations −C·u·s and −C·v·s by those from the exact axes, within 2^−20 pixel.
+    ///
+    /// In orthographic projection the distance to the eye does not reduce the error of a row. With these translations the error
+    /// acts on the position in the mesh, and not on its distance from the eye.
+    #[inline(never)]
+    fn place(&self, view: &View, translation: &mut [i64; 3]) {
+        let eye = view.eye().map(Q32_32::to_bits);
+        for (axis, translation) in [view.u(), view.v()].into_iter().zip(translation) {
+            // Of |C·axis| < 2^58.1 in units of 2^−55 the 40 highest fraction bits remain, and s·2^24 is below 2^41.
+            let along = nearest(-dot(eye, axis.map(Q2_23::to_bits)), 15);
+            let pixels = i128::from(along) * i128::from(self.whole);
+            let shift = 50 - self.shift;
+            *translation = ((pixels + (1 << (shift - 1))) >> shift) as i64;
         }
     }
 

@@ -1,13 +1,16 @@
 //! Objects: meshes with a place in the world (docs/formats.md, "Objects").
 
-use glint_core::camera::View;
-use glint_core::fixed::{Q2_23, Q8_24, U4_28};
+use glint_core::camera::{Projection, View};
+use glint_core::fixed::{Q2_23, Q8_24, U4_28, U8_28};
 use glint_core::matrix::{Matrix, Normals};
 
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::volume::Volume;
+
+/// The smallest scale shift: with fewer fraction bits the products of the clipper do not fit 64 bits.
+const LEAST_SHIFT: u32 = 7;
 
 /// A model matrix, and what follows from it for every camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,14 +77,15 @@ impl Placement {
         (u64::from(radius) * u64::from(self.stretch)) as i64
     }
 
-    /// Returns the smallest depth of a mesh at this place, with 37 fraction bits, in the camera's frame constants `camera`. As the
-    /// axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
+    /// Returns the smallest and the largest depth of a mesh at this place, with 37 fraction bits, in the camera's frame constants
+    /// `camera`. As the axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
     #[inline(never)]
-    pub fn nearest(&self, camera: &MeshSetup, radius: u32) -> i64 {
+    pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
         let place = self.matrix.place().map(Q8_24::to_bits);
-        let z = camera.translation[2] + ((dot(&camera.n, &place) + (1 << 9)) >> 10);
+        let z = camera.depth_of_world() + ((dot(&camera.n, &place) + (1 << 9)) >> 10);
         let reach = self.reach(radius);
-        z - (reach >> 1) - (reach >> 14) - 2
+        let reach = (reach >> 1) + (reach >> 14) + 2;
+        [z - reach, z + reach]
     }
 
     /// The origin of the mesh in camera coordinates, in the formats of the translation.
@@ -103,10 +107,12 @@ impl Placement {
     /// frame.
     ///
     /// All homogeneous coordinates are multiplied by 2^−k, with the smallest k for which the row n and the farthest vertex fit
-    /// the formats of the vertex stage; positions and depth codes do not change by this.
+    /// the formats of the vertex stage; positions and depth codes do not change by this. In orthographic projection only Z is
+    /// multiplied, because X and Y are not divided.
     ///
     /// # Errors
-    /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object.
+    /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object;
+    /// [`RenderError::Width`] if the picture of an orthographic camera is too narrow for them.
     #[inline(never)]
     pub fn setup(
         &self,
@@ -121,36 +127,53 @@ impl Placement {
         // A part of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
         let k = excess(largest(&n)).max(halvings(((z.abs() + (reach >> 1)) >> 41) as u32));
-        // The rows u and v get as many fraction bits as fit: f + k − cut.
-        let f = camera.scale_shift;
+        let is_perspective = camera.projection == Projection::Perspective;
+        let k = if is_perspective {
+            k
+        } else {
+            // The depth codes of a frame may have more bits than the vertex stage has for a depth.
+            k.max(camera.depth.exponent.max(5).abs_diff(5))
+        };
+        // The rows u and v get as many fraction bits as fit: f − cut, and k more where Z is multiplied by 2^−k too.
+        let f = camera.scale_shift + if is_perspective { k } else { 0 };
         let widest = x.abs().max(y.abs()) + reach;
         let cut = excess(largest(&u).max(largest(&v)))
             .max(halvings((widest >> 42) as u32))
-            .max((f + k).saturating_sub(18));
-        let scale_shift = f + k - cut;
-
-        // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
-        let lead = 40_u32.saturating_sub(scale_shift).max(30);
+            .max(f.saturating_sub(18));
+        // At most 4 + 4 + 1 less than f, which is at least 7.
+        let scale_shift = f.saturating_sub(cut);
         let near = camera.near >> k;
-        if near >> lead == 0 {
-            let least = u32::try_from((1_u64 << (lead + k)) >> 9);
-            return Err(RenderError::Near {
-                near: view.near(),
-                least: U4_28::from_bits(least.unwrap_or(u32::MAX)),
+        if is_perspective {
+            // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
+            let lead = 40_u32.saturating_sub(scale_shift).max(30);
+            if near >> lead == 0 {
+                let least = u32::try_from((1_u64 << (lead + k)) >> 9);
+                return Err(RenderError::Near {
+                    near: view.near(),
+                    least: U4_28::from_bits(least.unwrap_or(u32::MAX)),
+                });
+            }
+        } else if f < cut + LEAST_SHIFT {
+            let width = view.half_width().to_bits() << 1;
+            return Err(RenderError::Width {
+                width: U8_28::from_bits(width),
+                least: U8_28::from_bits(width << (cut + LEAST_SHIFT - f)),
             });
         }
         Ok(MeshSetup {
             width: camera.width,
             height: camera.height,
             scale_shift,
+            projection: camera.projection,
             u: halved(u, cut),
             v: halved(v, cut),
             n: halved(n, k),
             translation: [shifted(x, cut), shifted(y, cut), shifted(z, k)],
             near,
+            near_plane: camera.near_plane,
             depth: DepthScale {
-                mantissa: camera.depth.mantissa,
                 exponent: camera.depth.exponent - k as i32,
+                ..camera.depth
             },
             volume: match camera.volume {
                 Volume::Guard => Volume::Guard,

@@ -1,5 +1,6 @@
 //! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
 
+use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
 use glint_core::matrix::Normals;
 use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
@@ -61,6 +62,8 @@ pub struct Placed {
     pub colour: Rgb565,
     /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
+    /// The projection, which tells whether light is linear on the screen.
+    pub projection: Projection,
 }
 
 impl Placed {
@@ -87,6 +90,7 @@ impl Placed {
             bounds,
             colour: lit(triangle.colour, intensity),
             lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
+            projection: frame.projection,
         })
     }
 
@@ -137,14 +141,18 @@ impl Placed {
             bounds,
             colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
             lit: light.map(|light| order.map(|i| light_of(light[i]))),
+            projection: frame.projection,
         })
     }
 
     /// Computes the edge functions and planes of the triangle.
     pub fn setup(&self) -> Setup {
-        match &self.lit {
-            None => Setup::new(&self.oriented, self.bounds),
-            Some(lit) => Setup::smooth(&self.oriented, self.bounds, lit),
+        match (&self.lit, self.projection) {
+            (None, _) => Setup::new(&self.oriented, self.bounds),
+            (Some(lit), Projection::Perspective) => Setup::smooth(&self.oriented, self.bounds, lit),
+            (Some(lit), Projection::Orthographic) => {
+                Setup::linear(&self.oriented, self.bounds, lit)
+            }
         }
     }
 }

@@ -36,7 +36,11 @@ pub fn draw(setup: &Setup, colour: Rgb565, target: &mut FrameBuffer) -> Coverage
 /// into the instruction cache.
 #[inline(never)]
 fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> Coverage {
-    draw_with(setup, light.map(Accumulation::new), target)
+    let brush = Smooth {
+        light: light.map(Accumulation::new),
+        weight: setup.weight,
+    };
+    draw_with(setup, brush, target)
 }
 
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
@@ -88,26 +92,33 @@ impl Accumulation {
 }
 
 /// Smooth shading: the colour comes from the planes of red, green and blue.
-impl Brush for [Accumulation; 3] {
+struct Smooth {
+    light: [Accumulation; 3],
+    /// The weight of all light; `None` if it is the depth of each pixel.
+    weight: Option<u32>,
+}
+
+impl Brush for Smooth {
     fn go_to(&mut self, offset: u32) {
-        for light in self {
+        for light in &mut self.light {
             light.value = light
                 .row
                 .wrapping_add(light.plane.step_x.wrapping_mul(offset));
         }
     }
     fn go_right(&mut self) {
-        for light in self {
+        for light in &mut self.light {
             light.value = light.value.wrapping_add(light.plane.step_x);
         }
     }
     fn go_down(&mut self) {
-        for light in self {
+        for light in &mut self.light {
             light.row = light.row.wrapping_add(light.plane.step_y);
         }
     }
     fn colour(&self, depth: u32) -> Rgb565 {
-        quotient::colour(self.map(|light| light.value), depth)
+        let depth = self.weight.unwrap_or(depth);
+        quotient::colour(self.light.map(|light| light.value), depth)
     }
 }
 

@@ -3,7 +3,7 @@
 pub use crate::triangle::facing::Facing;
 use crate::triangle::reciprocal::Reciprocal;
 use crate::triangle::rounding::nearest;
-use crate::triangle::shade::Lit;
+use crate::triangle::shade::{HALF_CODE, Lit};
 use crate::triangle::vertex::ScreenVertex;
 
 /// A triangle with a positive area, its vertices clockwise on the screen (y points down).
@@ -201,6 +201,9 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     }
 }
 
+/// The weight of light in orthographic projection, u18.6: half a code less than 2^17 codes, so that light keeps all of its bits.
+const WEIGHT: u32 = (1 << 23) - HALF_CODE;
+
 /// The input of the walker, which finds the pixels of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setup {
@@ -213,8 +216,11 @@ pub struct Setup {
     pub edges: [Edge; 3],
     /// Plane of the depth accumulator.
     pub depth: Plane,
-    /// Planes of red, green and blue times the depth, under smooth shading.
+    /// Planes of red, green and blue under smooth shading: light times depth in perspective, light times a constant in orthographic
+    /// projection.
     pub light: Option<[Plane; 3]>,
+    /// The constant of `light` in orthographic projection, in the format of the depth accumulator.
+    pub weight: Option<u32>,
     /// Whether all edge functions E' fit 32 bits everywhere in the bounds and one pixel around them.
     pub narrow: bool,
 }
@@ -242,6 +248,7 @@ impl Setup {
             ],
             depth: Plane::new(triangle, triangle.vertices.map(|v| v.w), start),
             light: None,
+            weight: None,
             narrow: narrow(&triangle.vertices),
         }
     }
@@ -253,8 +260,25 @@ impl Setup {
     #[inline(never)]
     pub fn smooth(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
         let setup = Self::new(triangle, bounds);
-        let start = [setup.start_column, bounds.top];
-        let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(triangle.vertices[i].w));
+        setup.with_light(triangle, lit, triangle.vertices.map(|v| v.w))
+    }
+
+    /// Computes the steps of [`smooth`](Self::smooth) in orthographic projection, where light is linear on the screen: all vertices
+    /// have the same weight.
+    #[inline(never)]
+    pub fn linear(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
+        let setup = Self::new(triangle, bounds);
+        Self {
+            weight: Some((WEIGHT + HALF_CODE) << 8),
+            ..setup.with_light(triangle, lit, [WEIGHT; 3])
+        }
+    }
+
+    /// Adds the planes of light, which has the weight `w` at each vertex.
+    fn with_light(self, triangle: &Oriented, lit: &[Lit; 3], w: [u32; 3]) -> Self {
+        let setup = self;
+        let start = [setup.start_column, setup.bounds.top];
+        let [a, b, c] = [0, 1, 2].map(|i| lit[i].weighted(w[i]));
         let light = [0, 1, 2]
             .map(|channel| Plane::new(triangle, [a[channel], b[channel], c[channel]], start));
         Self {

@@ -5,6 +5,9 @@ use glint_core::colour::Rgb565;
 use crate::triangle::facing::{Facing, along};
 use crate::triangle::rounding::nearest;
 
+/// Half a depth code, u18.6: the addition to the weight of light (docs/formats.md, "Smooth shading").
+pub const HALF_CODE: u32 = 1 << 5;
+
 /// Intensity clamp(−N·n, 0, 1), u1.8, for the normal N (s2.14) and the camera's forward direction n (s2.23). A back face
 /// negates N.
 pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
@@ -41,7 +44,7 @@ impl Lit {
     pub fn weighted(self, w: u32) -> [u32; 3] {
         // The product has 24 + 14 bits.
         self.0
-            .map(|x| nearest(i64::from(x) * i64::from(w + 32), 14) as u32)
+            .map(|x| nearest(i64::from(x) * i64::from(w + HALF_CODE), 14) as u32)
     }
 }
 

@@ -1,5 +1,7 @@
 //! The vertex stage: from a position in the mesh to a position on the screen.
 
+use glint_core::camera::Projection;
+
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::reciprocal::Reciprocal;
 use crate::triangle::rounding::nearest;
@@ -8,15 +10,21 @@ use crate::triangle::shade::Light;
 /// The guard band: 2047 pixels from the top left corner to every side, s12.8.
 pub const GUARD: i32 = 2047 << 8;
 
+/// A position saturates at 4096 pixels from the centre, 12 fraction bits.
+const LIMIT: i64 = 1 << 24;
+/// The largest depth code, u18.6.
+const LARGEST_DEPTH: u32 = ((1 << 18) - 1) * 64;
+
 /// A vertex in camera coordinates, before the perspective division.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CameraVertex {
-    /// Coordinate X along the right axis, relative to the eye, in pixels at distance 1: s44 with 14 + f fraction bits,
+    /// Coordinate X along the right axis, relative to the eye, in pixels (in perspective at distance 1): s44 with 14 + f fraction bits,
     /// where f is the scale shift of the frame constants.
     pub x: i64,
     /// Coordinate Y along the down axis, in the format of `x`.
     pub y: i64,
-    /// Depth Z along the forward axis, in world units: s44 with 37 fraction bits.
+    /// Depth Z along the forward axis, in world units: s44 with 37 fraction bits. In orthographic projection it is counted from the
+    /// depth of the code 2^18.
     pub z: i64,
     /// Light under smooth shading, otherwise black.
     pub light: Light,
@@ -103,13 +111,16 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
 /// instruction cache.
 #[inline(always)]
 pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
+    if frame.projection == Projection::Orthographic {
+        return snap_orthographic(frame, vertex);
+    }
     let Reciprocal { y, lead } = Reciprocal::of(vertex.z as u64);
     // Z is at least the distance of the near plane, so `lead` is in 30…40, and at least 40 − f. With f in 7…18 the shift is in
     // 6…24.
     let shift = frame.scale_shift + lead - 34;
     let divide = |x: i64, size: u32| {
         // `normalised` is s14.11, and its product with the u24 number y is exact.
-        let normalised = nearest(x, shift).clamp(-1 << 24, (1 << 24) - 1);
+        let normalised = nearest(x, shift).clamp(-LIMIT, LIMIT - 1);
         (128 * size) as i32 + nearest(normalised * i64::from(y), 27) as i32
     };
     ScreenVertex {
@@ -119,11 +130,30 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
+/// Projects a vertex to the screen in orthographic projection: X and Y are its place in pixels, and its depth code is linear.
+///
+/// Not inlined, so that the loop over vertices in perspective does not load this code into the instruction cache.
+#[inline(never)]
+fn snap_orthographic(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
+    const BITS: i64 = (1 << 24) - 1;
+    let place = |x: i64, size: u32| {
+        let normalised = nearest(x, frame.scale_shift + 2).clamp(-LIMIT, LIMIT - 1);
+        (128 * size) as i32 + nearest(normalised, 4) as i32
+    };
+    // Z is below 2^(36 + ke), with ke in −6…5; other depths, of a mesh beyond its radius, wrap.
+    let m = (vertex.z >> (12 + frame.depth.exponent)) & BITS;
+    ScreenVertex {
+        x: place(vertex.x, frame.width),
+        y: place(vertex.y, frame.height),
+        w: (-m & BITS).min(LARGEST_DEPTH.into()) as u32,
+    }
+}
+
 /// Step 8 of the vertex stage: the depth code before rounding, w = K/Z. The codes of a mesh within its radius never
 /// saturate.
 fn depth(frame: &MeshSetup, y: u32, lead: u32) -> u32 {
     // The product has 17 + 24 bits; the exponent is in −5…5, so the shift is in 6…26.
     let product = u64::from(frame.depth.mantissa) * u64::from(y);
     let shift = (lead as i32 - 19 - frame.depth.exponent) as u32;
-    nearest(product as i64, shift).min(((1 << 18) - 1) * 64) as u32
+    nearest(product as i64, shift).min(LARGEST_DEPTH.into()) as u32
 }
