@@ -95,10 +95,10 @@ def _ring(old, new, fails):
 
 
 _FIFO = [
-    _fifo("out_valid <= stored ||", "out_valid <= stored && in_valid ||", "order.shown_in_time"),
-    _fifo("load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "shown.payload_stable"),
-    _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-    _fifo("out_valid <= stored ||", "out_valid <= stored || in_valid ||", "order.nothing_made_up"),
+    _fifo("read_valid <= stored ||", "read_valid <= stored && in_valid ||", "order.shown_in_time"),
+    _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "shown.payload_stable"),
+    _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+    _fifo("read_valid <= stored ||", "read_valid <= stored || in_valid ||", "order.nothing_made_up"),
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "1'b1", "order.nothing_too_many"),
     _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
     _fifo("'(in_valid && in_ready)", "'(in_valid)", "order.in_order"),
@@ -118,6 +118,13 @@ MUTATIONS = {
     ],
     "fifo of 2": _FIFO,
     "fifo of 4": _FIFO,
+    "fifo in block RAM": [
+        _FIFO[0],
+        *_FIFO[3:],
+        _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "order.in_order"),
+        _fifo("read_ready = !out_valid || out_ready", "read_ready = !out_valid || out_ready || read_valid", "shown.payload_stable"),
+        _fifo("(read_valid || out_valid && !out_ready)", "read_valid", "shown.valid_stays"),
+    ],
     "credit_fifo": [
         *_FIFO[:4],
         _credit("next > COUNT_BITS'(1)", "next != '0", "order.nothing_too_many"),
@@ -125,8 +132,8 @@ MUTATIONS = {
         _fifo("'(load && stored)", "'(load && stored && !in_valid)", "order.in_order"),
     ],
     "ray_generator": [
-        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] || valid[LAST-1])", "nothing_made_up"),
         _credit("next > COUNT_BITS'(1)", "1'b1", "in_order"),
         _generator("enters    = running && credit;", "enters    = running;", "in_order"),
@@ -135,8 +142,8 @@ MUTATIONS = {
         _generator("in_valid(valid[LAST])", "in_valid(valid[LAST] && out_ready)", "shown_in_time"),
     ],
     "ray_paint": [
-        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _paint("in_valid && in_ready};", "in_valid};", "nothing_made_up"),
         _paint("CLOCKS(26)) place_waits", "CLOCKS(25)) place_waits", "in_order"),
         _credit("next > COUNT_BITS'(1)", "next != '0", "nothing_too_many"),
@@ -186,8 +193,8 @@ MUTATIONS = {
         _ring("places   <= COUNT_BITS'(PLACES);", "places   <= '0;", "takes_again"),
         _ring("{in_ray.place, in_ray.length,", "{in_ray.place, ~in_ray.length,", "as_it_came"),
         _ring("steps_1 + 8'd1 >= tuning.cap", "steps_1 >= tuning.cap", "counts_steps"),
-        Mutation("fifo.sv", "stored || out_valid && !out_ready;", "stored;", "ends.valid_stays"),
-        Mutation("fifo.sv", "load     = !out_valid || out_ready", "load     = !out_valid || out_ready || stored", "ends.payload_stable"),
+        Mutation("fifo.sv", "stored || read_valid && !read_ready;", "stored;", "ends.valid_stays"),
+        Mutation("fifo.sv", "load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "ends.payload_stable"),
     ],
     "read_port": [
         _skid("!in_ready || !out_ready && out_valid;", "!in_ready;", "commands.valid_stays"),
@@ -200,7 +207,7 @@ MUTATIONS = {
         _read("'(rdata_valid);", "'(rdata_valid && !drop);", "idle_is_answered"),
         _read(".rst       (rst || drop)", ".rst       (rst)", "first.none_after_drop"),
         _read("room[0] && !has_turn", "room[0]", "second.places_suffice"),
-        _fifo("out_valid <= stored ||", "out_valid <= stored && in_valid ||", "first.shown_in_time"),
+        _fifo("read_valid <= stored ||", "read_valid <= stored && in_valid ||", "first.shown_in_time"),
         _read("given <= any;", "given <= any && cmd_valid;", "first.taken_in_time"),
     ],
     "write_port": [
@@ -260,8 +267,8 @@ MUTATIONS = {
         _cull("verdict && !drop)", "verdict)", "nothing_made_up"),
         _cull("room && !again;", "room;", "leaves_in_time"),
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
-        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!out_valid || out_ready;", "1'b1;", "shown.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "1'b1;", "shown.payload_stable"),
     ],
     "classify": [
         _classify("known        <= held && !leaves;", "known        <= held && !known;", "exception.valid_stays"),
@@ -325,8 +332,8 @@ MUTATIONS = {
         _line_setup("sending  <= sending && !out_ready ||", "sending  <= sending ||", "then_the_next"),
     ],
     "line_raster": [
-        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _line_raster("room && active && shown};", "room && shown};", "nothing_made_up"),
         _line_raster("pixel.colour <= colour;", "pixel.colour <= in_piece.colour;", "in_order"),
         _queue("DEPTH - FLIGHT - 2;", "DEPTH - FLIGHT + 1;", "nothing_too_many"),
@@ -335,8 +342,8 @@ MUTATIONS = {
         _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
     ],
     "lanes": [
-        _fifo("stored || out_valid && !out_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!out_valid || out_ready;", "!out_valid || out_ready || stored;", "shown.payload_stable"),
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
         _lanes("valid[4] && mask != '0;", "valid[4];", "nothing_made_up"),
         _lanes("{line_4, column_4, colour_4}", "{line_4, column_3, colour_4}", "in_order"),
         _queue("DEPTH - FLIGHT - 2;", "DEPTH - FLIGHT;", "nothing_too_many"),

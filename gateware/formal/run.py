@@ -73,6 +73,7 @@ PROOFS = [
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
+    Proof("fifo in block RAM", "buffer_proof", 24, parameters={"DEPTH": 2, "BLOCK": 1}),
     Proof("credit_fifo", "buffer_proof", 28, parameters={"DEPTH": 2, "FLIGHT": 3}),
     Proof("band_pipe", "band_pipe_proof", 14),
     Proof("cull", "cull_proof", 30, ("any_product",)),

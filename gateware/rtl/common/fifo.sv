@@ -1,12 +1,13 @@
-// A FIFO with DEPTH + 1 places: DEPTH in LUTRAM, or in block RAM with BLOCK, and one in the output register.
+// A FIFO with DEPTH + 1 places: DEPTH in LUTRAM and one in the output register. With BLOCK it has DEPTH + 2 places: DEPTH in block
+// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register.
 //
-// Latency 2 clocks, throughput one item a clock. Stream contract on both sides: an item moves in a clock in which valid
-// and ready are high; valid does not wait for ready, and a payload holds until it has moved. `in_ready` and
+// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock. Stream contract on both sides: an item moves in a clock in
+// which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved. `in_ready` and
 // `out_valid` come from registers alone. DEPTH is a power of two.
 //
-//            ┌──────────────┐    ┌──────────┐
-//   in ─────▶│ DEPTH places │───▶│  output  │──▶ out
-//            └──────────────┘    └──────────┘
+//            ┌──────────────┐    ┌───────────────────┐    ┌──────────┐
+//   in ─────▶│ DEPTH places │───▶│ read (BLOCK only) │───▶│  output  │──▶ out
+//            └──────────────┘    └───────────────────┘    └──────────┘
 
 `default_nettype none
 
@@ -28,34 +29,42 @@ module fifo #(
 
     // The pointers have one bit more than the number of a place: equal pointers mean empty, pointers DEPTH apart mean full.
     logic [PLACE_BITS:0] head, tail;
-    logic                stored, load;
+    logic                stored, load, read_valid, read_ready;
 
     assign stored   = head != tail;
     assign in_ready = head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]};
-    assign load     = !out_valid || out_ready;
+    assign load     = !read_valid || read_ready;
 
     always_ff @(posedge clk) begin
         // Written without clock enables: flip-flops with an enable of their own take a slice of the FPGA.
-        head      <= head + (PLACE_BITS + 1)'(in_valid && in_ready);
-        tail      <= tail + (PLACE_BITS + 1)'(load && stored);
-        out_valid <= stored || out_valid && !out_ready;
+        head       <= head + (PLACE_BITS + 1)'(in_valid && in_ready);
+        tail       <= tail + (PLACE_BITS + 1)'(load && stored);
+        read_valid <= stored || read_valid && !read_ready;
 
         if (rst) begin
-            head      <= '0;
-            tail      <= '0;
-            out_valid <= 1'b0;
+            head       <= '0;
+            tail       <= '0;
+            read_valid <= 1'b0;
         end
     end
 
     if (BLOCK) begin : in_block
         (* ram_style = "block", no_rw_check *) logic [WIDTH-1:0] places [0:DEPTH-1];
+        logic [WIDTH-1:0] read;
+
+        assign read_ready = !out_valid || out_ready;
 
         always_ff @(posedge clk) begin
             if (in_valid && in_ready) places[head[PLACE_BITS-1:0]] <= in_data;
-            if (load) out_data <= places[tail[PLACE_BITS-1:0]];
+            if (load) read <= places[tail[PLACE_BITS-1:0]];
+            if (read_ready) out_data <= read;
+            out_valid <= !rst && (read_valid || out_valid && !out_ready);
         end
     end else begin : in_luts
         (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:DEPTH-1];
+
+        assign out_valid  = read_valid;
+        assign read_ready = out_ready;
 
         always_ff @(posedge clk) begin
             if (in_valid && in_ready) places[head[PLACE_BITS-1:0]] <= in_data;

@@ -9,8 +9,8 @@
 // client is served in bursts: a burst ends when the client has no request or its FIFO is full, and a new one begins when half
 // of the FIFO is empty. Other clients are served between the bursts.
 //
-// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client. `ask_ready` comes from registers alone,
-// because the ready of the memory's command is the end of a long path in LiteDRAM.
+// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client, or 4 with BLOCK. `ask_ready` comes from
+// registers alone, because the ready of the memory's command is the end of a long path in LiteDRAM.
 // `drop`, held until `idle`, cancels everything: no further commands are made, and words still to come from memory are discarded.
 //
 //   ask ──┐           ┌──▶ skid_buffer ──▶ command
@@ -26,7 +26,7 @@ module read_port #(
     parameter int unsigned CLIENTS      = 4,
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned DEPTH        = 32,
-    // Clients whose FIFO is in block RAM: two RAMB36 in place of 88 LUTs and 128 flip-flops.
+    // Clients whose FIFO is in block RAM: two RAMB36 in place of 88 LUTs.
     parameter bit [CLIENTS-1:0] BLOCK   = '0
 ) (
     input  wire                             clk,

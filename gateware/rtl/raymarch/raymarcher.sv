@@ -199,7 +199,7 @@ module raymarcher #(
     // receive at most one ray a clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
-    logic                 next_valid, next_now, next_taken, waiting_valid, kept_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
+    logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
     raymarch_pkg::end_t      next_end, waiting_end, paint_end;
     logic [KEPT_BITS-1:0] kept;
 
@@ -211,6 +211,7 @@ module raymarcher #(
     // Ends that have waited in the FIFO are painted first. An end of the next band goes to the FIFO, which always has room,
     // because at most EARLY rays of the next band enter.
     assign next_now      = next_valid && next_end.place.odd == odd && !cones;
+    assign waiting_end   = raymarch_pkg::END_BITS'(kept);
     assign waiting_now   = waiting_valid && waiting_end.place.odd == odd;
     assign waiting_ready = waiting_now && band_open && paint_ready;
     assign next_taken    = next_now ? band_open && paint_ready && !waiting_now : room || cones;
@@ -224,14 +225,8 @@ module raymarcher #(
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(EARLY), .BLOCK(1'b1)) waiting (
         .clk, .rst(reset), .in_valid(next_valid && !next_now && !cones), .in_ready(room), .in_data(next_end[KEPT_BITS-1:0]),
-        .out_valid(kept_valid), .out_ready(!waiting_valid || waiting_ready), .out_data(kept)
+        .out_valid(waiting_valid), .out_ready(waiting_ready), .out_data(kept)
     );
-
-    // A register behind the block RAM: the output of a block RAM comes late in the clock, and `waiting_now` depends on it.
-    always_ff @(posedge clk) begin
-        waiting_valid <= !reset && (kept_valid || waiting_valid && !waiting_ready);
-        if (!waiting_valid || waiting_ready) waiting_end <= raymarch_pkg::END_BITS'(kept);
-    end
 
     // Computes the light of the ends on spheres and fillets before they are painted.
     logic            lit_valid, lit_ready;
