@@ -99,9 +99,9 @@ module ray_generator #(
     assign busy      = starts || begins || running || !empty;
 
     // `inverted_start` is ~D at the first column of the next line, which is that of the right eye if `next_eye` is high. It is
-    // `inverted_row`, ~(y·down), minus `first`: for Yosys the LUTs of a subtraction also select what is subtracted, while a sum
-    // takes LUTs of its own for that. Both are computed in the first two clocks of a line (`fresh` is high in the first one),
-    // so a line must have three columns.
+    // `inverted_row`, ~(y·down), minus `first`. The complements turn the sum D into a subtraction: Yosys puts the selection of the
+    // subtracted value into the LUTs of the subtraction, but gives the selection of a summand LUTs of its own. Both are computed
+    // in the first two clocks of a line (`fresh` is high in the first one), so a line must have three columns.
     logic next_eye;
 
     assign next_eye = STEREO && stereo && !place.eye && !starts;
