@@ -10,7 +10,7 @@ from litedram.core.controller import ControllerSettings
 from litex.soc.cores.gpio import GPIOIn, GPIOOut
 from litex.soc.integration.soc import SoCRegion
 from litex.soc.integration.soc_core import SoCCore
-from litex.soc.interconnect import wishbone
+from litex.soc.interconnect import csr_bus, wishbone
 from migen import Cat, Constant, Signal, log2_int
 
 from .i2c import I2CMaster
@@ -18,6 +18,7 @@ from .identity import Identity
 from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
 from .memory_crossbar import MemoryCrossbar
+from .register_bus import RegisterBank, RegisterBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
 from .triangle import TriangleEngine
@@ -63,6 +64,8 @@ class GlintSoC(SoCCore):
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
         }
         self.crg = crg
+        # LiteX has no parameters for these classes.
+        csr_bus.CSRBank, wishbone.Wishbone2CSR = RegisterBank, RegisterBridge
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
             cpu_type="vexriscv", cpu_variant="full",

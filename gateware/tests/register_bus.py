@@ -1,0 +1,77 @@
+"""Test of the register banks and their bridge: accesses of the CPU's bus to two banks, one after the other."""
+
+import random
+
+from litex.gen import LiteXModule
+from litex.soc.interconnect import wishbone
+from litex.soc.interconnect.csr import CSRStatus, CSRStorage
+from litex.soc.interconnect.csr_bus import Interface, InterconnectShared
+from migen import run_simulation
+
+from glint_soc.register_bus import RegisterBank, RegisterBridge
+from glint_soc.register_map import CSR_PAGING
+
+# Windows of the two banks. LiteX's bridge leaves the address 0, in the first window, between accesses.
+_WINDOWS = (0, 9)
+_REGISTERS = 5
+
+
+class _Soc(LiteXModule):
+    """A bridge and two banks, each with registers that the CPU writes and one that counts the writes to the first of these."""
+
+    def __init__(self):
+        self.bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
+        self.bridge = RegisterBridge(self.bus, Interface(data_width=32))
+        self.registers, banks = [], []
+        for window in _WINDOWS:
+            storages = [CSRStorage(32, name=f"storage{number}") for number in range(_REGISTERS)]
+            writes = CSRStatus(32, name="writes", description="")
+            self.sync += writes.status.eq(writes.status + storages[0].re)
+            self.registers.append(storages)
+            banks.append(RegisterBank([*storages, writes], window, Interface(data_width=32), CSR_PAGING))
+        self.submodules += banks
+        self.interconnect = InterconnectShared([self.bridge.csr], [bank.bus for bank in banks])
+
+
+def check_accesses():
+    """Checks that each write reaches its register alone and once, and that a read returns what was written last."""
+    rng = random.Random(1)
+    soc = _Soc()
+    written = [[0] * _REGISTERS for _ in _WINDOWS]
+    writes, problems = [0, 0], []
+
+    def access(bank, number, value=None):
+        bus = soc.bus
+        yield bus.adr.eq(_WINDOWS[bank] * CSR_PAGING // 4 + number)
+        yield bus.dat_w.eq(value or 0)
+        yield bus.we.eq(value is not None)
+        yield bus.sel.eq(0b1111)
+        yield bus.cyc.eq(1)
+        yield bus.stb.eq(1)
+        yield
+        while not (yield bus.ack):
+            yield
+        found = yield bus.dat_r
+        yield bus.cyc.eq(0)
+        yield bus.stb.eq(0)
+        for _ in range(rng.randrange(3)):
+            yield
+        return found
+
+    def accesses():
+        for _ in range(300):
+            bank, number = rng.randrange(2), rng.randrange(_REGISTERS + 1)
+            if number < _REGISTERS and rng.randrange(2):
+                written[bank][number] = rng.getrandbits(32)
+                writes[bank] += number == 0
+                yield from access(bank, number, written[bank][number])
+                continue
+            expected = written[bank][number] if number < _REGISTERS else writes[bank]
+            if (found := (yield from access(bank, number))) != expected:
+                problems.append(f"register {number} of bank {bank}: expected {expected:#x}, got {found:#x}")
+
+    run_simulation(soc, accesses())
+    return problems
+
+
+CHECKS = {"accesses to two banks": check_accesses}
