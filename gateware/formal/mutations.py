@@ -296,7 +296,7 @@ MUTATIONS = {
         _setup("end else if (count != LAST) begin", "end else if (count != LAST && out_ready) begin", "taken_in_time"),
     ],
     "band_entry": [
-        _entry("if (next_free) begin", "if (1'b1) begin", "shown.valid_stays"),
+        _entry("out_valid <= !out_ready;", "out_valid <= 1'b0;", "shown.valid_stays"),
         _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
         _entry("pass == ROWS_KNOWN && count == '0;", "1'b0;", "nothing_made_up"),
         # Fault: the next triangle overwrites the held one.

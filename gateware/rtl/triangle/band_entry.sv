@@ -20,10 +20,10 @@
 //
 // `offset` is the number of rows from the triangle's top to `first`. Streams are valid/ready, and ready comes from registers.
 // Latency 13 clocks, throughput a triangle in 8 clocks: while one triangle is in its passes, the previous one finishes, or is
-// held until there is room, and another one waits at the input. A triangle without a row in the band is taken and dropped. The
-// band's first row `in_y0` and the parity `in_odd` of its number come with the triangle; bit b of `holds` is high while a
-// triangle of a band with parity b is inside. `rows`, the rows of a band, must hold while triangles are inside. With SMOOTH,
-// the planes of light pass through plane_entry, each with its own multiplier.
+// held until there is room, and another one waits at the input. Two triangles leave at least two clocks apart. A triangle without
+// a row in the band is taken and dropped. The band's first row `in_y0` and the parity `in_odd` of its number come with the
+// triangle; bit b of `holds` is high while a triangle of a band with parity b is inside. `rows`, the rows of a band, must hold
+// while triangles are inside. With SMOOTH, the planes of light pass through plane_entry, each with its own multiplier.
 
 `default_nettype none
 
@@ -57,14 +57,13 @@ module band_entry #(
     // held stage, in which it waits for the output register.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
-    logic        busy, dropped, odd, held_valid, held_odd, advance, next_free, moved;
+    logic        busy, dropped, odd, held_valid, held_odd, advance, moved;
     logic [2:0]  pass;
     logic [3:1]  ending;
 
     // The first result of a triangle overwrites the first result of the previous one, so the passes stall until that
     // triangle has left the held stage.
     assign advance   = pass != STALLS || !held_valid || !out_valid;
-    assign next_free = !out_valid || out_ready;
 
     for (genvar b = 0; b < 2; b++) begin : bands
         assign holds[b] = busy && odd == 1'(b) || (ending != '0 || held_valid) && held_odd == 1'(b)
@@ -242,13 +241,16 @@ module band_entry #(
             if (dropped) busy <= 1'b0;
         end
 
-        if (next_free) begin
+        // The output register loads only while it is empty: its enable is a register, at the price of a clock between two triangles.
+        if (out_valid) begin
+            out_valid <= !out_ready;
+        end else begin
             held_valid   <= 1'b0;
             out_valid    <= held_valid;
             out_odd      <= held_odd;
             out_triangle <= placed;
         end
-        moved <= next_free;
+        moved <= !out_valid;
         if (moved) out_late <= late;
         if (ending[3]) held_valid <= 1'b1;
 
