@@ -32,6 +32,17 @@ class Parameter(CSRStorage):
             self.sync += [If(register.re, self.storage.eq(register.r)), self.re.eq(register.re)]
 
 
+def without_reading(storage):
+    """Returns a register in place of the `CSRStorage` of a LiteX core, with the same content at the same address, that reads as 0."""
+    register = Parameter(storage.size, name=storage.name, description=f"{storage.description}.")
+    register.storage, register.re = storage.storage, storage.re
+    if hasattr(storage, "fields"):
+        register.fields = storage.fields
+    # LiteX puts the registers of a core into the order of these numbers.
+    register.duid = storage.duid
+    return register
+
+
 class PassParameters(LiteXModule):
     """The parameters of the passes of a block: registers that software may write at any time, and copies that hold during a pass.
 

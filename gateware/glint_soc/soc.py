@@ -18,6 +18,7 @@ from .identity import Identity
 from .raymarch import Fields, Raymarcher
 from .memory_bridge import MemoryBridge
 from .memory_crossbar import MemoryCrossbar
+from .parameters import without_reading
 from .register_bus import RegisterBank, RegisterBridge
 from .register_map import CSR_MAP, CSR_PAGING, OPTIONAL_BLOCKS, PINNED
 from .scanout import Scanout
@@ -116,6 +117,10 @@ class GlintSoC(SoCCore):
         litedram.core.LiteDRAMCrossbar = MemoryCrossbar
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
                        controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
+        # The BIOS does not read back what it writes to these registers of each phase.
+        for injector in (getattr(self.sdram.dfii, f"pi{phase}") for phase in range(phy.settings.nphases)):
+            for name in ("_command", "_address", "_baddress", "_wrdata"):
+                setattr(injector, name, without_reading(getattr(injector, name)))
         size = module.nbanks * module.nrows * module.ncols * phy.settings.databits // 8
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=size, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")

@@ -687,7 +687,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2000) }
         }
 
-        /// `dfii_pi0_command`, 8 bits: Control DFI signals on a single phase
+        /// `dfii_pi0_command`, 8 bits: Control DFI signals on a single phase. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi0_command(&self) -> Register<DfiiPi0Command, ReadWrite> {
@@ -703,7 +703,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2008) }
         }
 
-        /// `dfii_pi0_address`, 13 bits: DFI address bus
+        /// `dfii_pi0_address`, 13 bits: DFI address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi0_address(&self) -> Register<u16, ReadWrite> {
@@ -711,7 +711,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_200c) }
         }
 
-        /// `dfii_pi0_baddress`, 3 bits: DFI bank address bus
+        /// `dfii_pi0_baddress`, 3 bits: DFI bank address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi0_baddress(&self) -> Register<u8, ReadWrite> {
@@ -719,7 +719,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2010) }
         }
 
-        /// `dfii_pi0_wrdata`, 32 bits: DFI write data bus
+        /// `dfii_pi0_wrdata`, 32 bits: DFI write data bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi0_wrdata(&self) -> Register<u32, ReadWrite> {
@@ -735,7 +735,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2018) }
         }
 
-        /// `dfii_pi1_command`, 8 bits: Control DFI signals on a single phase
+        /// `dfii_pi1_command`, 8 bits: Control DFI signals on a single phase. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi1_command(&self) -> Register<DfiiPi1Command, ReadWrite> {
@@ -751,7 +751,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2020) }
         }
 
-        /// `dfii_pi1_address`, 13 bits: DFI address bus
+        /// `dfii_pi1_address`, 13 bits: DFI address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi1_address(&self) -> Register<u16, ReadWrite> {
@@ -759,7 +759,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2024) }
         }
 
-        /// `dfii_pi1_baddress`, 3 bits: DFI bank address bus
+        /// `dfii_pi1_baddress`, 3 bits: DFI bank address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi1_baddress(&self) -> Register<u8, ReadWrite> {
@@ -767,7 +767,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2028) }
         }
 
-        /// `dfii_pi1_wrdata`, 32 bits: DFI write data bus
+        /// `dfii_pi1_wrdata`, 32 bits: DFI write data bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi1_wrdata(&self) -> Register<u32, ReadWrite> {
@@ -783,7 +783,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2030) }
         }
 
-        /// `dfii_pi2_command`, 8 bits: Control DFI signals on a single phase
+        /// `dfii_pi2_command`, 8 bits: Control DFI signals on a single phase. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi2_command(&self) -> Register<DfiiPi2Command, ReadWrite> {
@@ -799,7 +799,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2038) }
         }
 
-        /// `dfii_pi2_address`, 13 bits: DFI address bus
+        /// `dfii_pi2_address`, 13 bits: DFI address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi2_address(&self) -> Register<u16, ReadWrite> {
@@ -807,7 +807,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_203c) }
         }
 
-        /// `dfii_pi2_baddress`, 3 bits: DFI bank address bus
+        /// `dfii_pi2_baddress`, 3 bits: DFI bank address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi2_baddress(&self) -> Register<u8, ReadWrite> {
@@ -815,7 +815,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2040) }
         }
 
-        /// `dfii_pi2_wrdata`, 32 bits: DFI write data bus
+        /// `dfii_pi2_wrdata`, 32 bits: DFI write data bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi2_wrdata(&self) -> Register<u32, ReadWrite> {
@@ -831,7 +831,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2048) }
         }
 
-        /// `dfii_pi3_command`, 8 bits: Control DFI signals on a single phase
+        /// `dfii_pi3_command`, 8 bits: Control DFI signals on a single phase. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi3_command(&self) -> Register<DfiiPi3Command, ReadWrite> {
@@ -847,7 +847,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2050) }
         }
 
-        /// `dfii_pi3_address`, 13 bits: DFI address bus
+        /// `dfii_pi3_address`, 13 bits: DFI address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi3_address(&self) -> Register<u16, ReadWrite> {
@@ -855,7 +855,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2054) }
         }
 
-        /// `dfii_pi3_baddress`, 3 bits: DFI bank address bus
+        /// `dfii_pi3_baddress`, 3 bits: DFI bank address bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi3_baddress(&self) -> Register<u8, ReadWrite> {
@@ -863,7 +863,7 @@ pub mod sdram {
             unsafe { Register::at(0xf000_2058) }
         }
 
-        /// `dfii_pi3_wrdata`, 32 bits: DFI write data bus
+        /// `dfii_pi3_wrdata`, 32 bits: DFI write data bus. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn dfii_pi3_wrdata(&self) -> Register<u32, ReadWrite> {
