@@ -18,12 +18,14 @@
 //   24 to 28                                depth step * ahead + bias
 //
 // A coordinate is mirrored (`~(x - 1)`) on an axis along which the segment runs backward, so both walk upward. `edge_row`, mirrored
-// too, is the first row behind the band that the line is in; `entered` is high until the piece of this band is sent.
+// too, is the first row behind the band that the line is in; `entered` is high until the piece of this band is made. A piece is
+// copied, so that the walk goes on while it waits at the output.
 //
 // Streams are valid/ready. A segment moves after its last piece, so its fields need no copy. It takes 31 clocks, or 59 with a depth
 // step (not with equal depths, nor if it is less than a pixel long); one for each pixel up to the one where it leaves the picture,
-// those before the picture too; two for each piece, and one for each band that it passes, counted from the border of the picture,
-// of which the clocks of the division hide 28. `size` and `bias` must hold while a segment is inside.
+// those before the picture too; one for each piece, and one for each band that it passes, counted from the border of the picture,
+// of which the clocks of the division hide 28. A piece waits for the one before it to move. `size` and `bias` must hold while a
+// segment is inside.
 
 `default_nettype none
 
@@ -40,9 +42,9 @@ module line_setup (
     input  wire                    out_ready,
     output line_pkg::piece_t       out_piece
 );
-    // At most one of these bits is 1: a step of the program, the walk along the line, a piece at the output, or the end.
+    // At most one of these bits is 1: a step of the program, the walk along the line, or the end.
     logic [28:0] at;
-    logic        walking, sending, finished, waiting;
+    logic        walking, finished, waiting;
 
     // The coordinate fetched for the subtractor, and the one fetched before.
     logic               fetch_y, fetch_b, locates;
@@ -201,7 +203,7 @@ module line_setup (
     // The band, and whether the pixel is in the picture.
     logic signed [12:0] row, edge_row, edge_change;
     logic [12:0]        column;
-    logic               reached, at_border, entered, shown, tracks, leaves, sends;
+    logic               reached, at_border, entered, shown, tracks, leaves, sends, copies;
     logic [9:0]         height;
     logic [4:0]         blocks;
     band_pkg::cut_t     cut;
@@ -223,6 +225,7 @@ module line_setup (
     assign leaves    = reached ? at_border : !shown && column[12] == left;
     assign sends     = entered && shown && !reached;
     assign walks     = walking && !reached && !sends;
+    assign copies    = walking && sends && !out_valid;
 
     always_comb begin
         edge_change = {7'd0, cut.lines};
@@ -231,39 +234,53 @@ module line_setup (
 
     always_ff @(posedge clk) begin
         if (at[5] || tracks) edge_row <= edge_row + edge_change;
-        if (tracks)                    entered <= 1'b1;
-        else if (sending && out_ready) entered <= 1'b0;
+        if (tracks)      entered <= 1'b1;
+        else if (copies) entered <= 1'b0;
         if (clear) begin
             edge_row <= '0;
             entered  <= 1'b0;
         end
     end
 
-    assign waiting   = at == '0 && !walking && !sending && !finished;
-    assign clear     = waiting;
-    assign in_ready  = finished;
-    assign out_valid = sending;
+    assign waiting  = at == '0 && !walking && !finished;
+    assign clear    = waiting;
+    assign in_ready = finished && !out_valid;
 
     always_ff @(posedge clk) begin
-        at       <= {at[27:0], waiting && in_valid};
-        at[17]   <= at[16] && remaining > 0;
-        at[24]   <= at[23] || at[24] && dividing;
-        at[25]   <= at[24] && !dividing;
-        walking  <= at[28] || sending && out_ready || walking && !leaves && !sends && !(walks && remaining == 14'sd1);
-        sending  <= sending && !out_ready || walking && sends;
-        finished <= at[16] && remaining <= 0 || walking && (leaves || walks && remaining == 14'sd1);
+        at        <= {at[27:0], waiting && in_valid};
+        at[17]    <= at[16] && remaining > 0;
+        at[24]    <= at[23] || at[24] && dividing;
+        at[25]    <= at[24] && !dividing;
+        walking   <= at[28] || walking && !leaves && !(walks && remaining == 14'sd1);
+        finished  <= at[16] && remaining <= 0 || walking && (leaves || walks && remaining == 14'sd1) || finished && out_valid;
+        out_valid <= copies || out_valid && !out_ready;
 
         if (rst) begin
-            at       <= '0;
-            walking  <= 1'b0;
-            sending  <= 1'b0;
-            finished <= 1'b0;
+            at        <= '0;
+            walking   <= 1'b0;
+            finished  <= 1'b0;
+            out_valid <= 1'b0;
         end
     end
 
+    // The first pixel of the piece at the output.
+    logic [33:0] first_depth;
+    logic [20:0] first_error;
+    logic [11:0] count;
+    logic [9:0]  first_row;
+    logic [10:0] first_column;
+
+    always_ff @(posedge clk) if (copies) begin
+        first_depth  <= depth;
+        first_error  <= error;
+        count        <= remaining[11:0];
+        first_row    <= row[9:0] ^ {10{up}};
+        first_column <= column[10:0];
+    end
+
     assign out_piece = {
-        {2{falls}}, quotient, depth, fall, minor, error, remaining[11:0], row[9:0] ^ {10{up}}, column[10:0], up, left, x_major,
-        in_segment.colour
+        in_segment.colour, {2{falls}}, quotient, first_depth, fall, minor, first_error, count, first_row, first_column, up, left,
+        x_major
     };
 
     wire _unused = &{1'b0, distance[6:0], cut.last_band, cut.stride[2:0], cut.rows};
