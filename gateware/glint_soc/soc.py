@@ -40,7 +40,7 @@ class GlintSoC(SoCCore):
 
     `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. With the raymarcher but without the
     triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
-    registers. `build_id` is the checksum of the register map of the full build (see `register_map.build_id`). `smooth` builds
+    registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the full build (see `register_map.build_id`). `smooth` builds
     smooth shading into the triangle engine. `fields` are the build options of the raymarcher. `mode` is the video mode, which
     also limits the picture sizes.
     """
@@ -52,6 +52,8 @@ class GlintSoC(SoCCore):
         unknown = set(blocks) - set(OPTIONAL_BLOCKS)
         if unknown:
             raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
+        if "line" in blocks and "triangle" not in blocks:
+            raise ValueError("the block 'line' is a part of the triangle engine: expected 'triangle' too")
         if sys_clk_freq % CLOCK_UNIT:
             raise ValueError(f"system clock of {sys_clk_freq / 1e6} MHz: expected a multiple of {CLOCK_UNIT / 1e6} MHz")
         self.draws_triangles = "triangle" in blocks
@@ -137,7 +139,7 @@ class GlintSoC(SoCCore):
             lists = [self._port("write", main_ram, self.draws_triangles) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
-                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks)
+                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, "line" in self.blocks)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 

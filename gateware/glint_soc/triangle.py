@@ -34,6 +34,7 @@ ERRORS = Enumeration("error", "Results of a pass.", {
     "list": "a band list was too long, or named a number that is no descriptor; the frame is wrong",
     "cancelled": "ended by `cancel`",
     "triangles": "this build draws no triangles; memory is unchanged",
+    "lines": "this build draws no lines; memory is unchanged",
 })
 
 SIZES = Enumeration("size", "Sizes of a picture.", {size.name: size.text for size in constants.SIZES})
@@ -46,11 +47,11 @@ class TriangleEngine(LiteXModule):
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
     `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
     sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
-    raymarcher. Without `triangles` the engine draws fields only, and of the ports it uses the last two writers; the registers
+    raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two writers; the registers
     are the same.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False):
+    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False):
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != memory_bits:
@@ -67,6 +68,7 @@ class TriangleEngine(LiteXModule):
                      f"{DESCRIPTOR_BYTES['flat']} without."),
             CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes, and raster passes with "
                      "lists. Without them a raster pass draws the raymarcher's field alone."),
+            CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -94,6 +96,7 @@ class TriangleEngine(LiteXModule):
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
+            CSRField("lines", offset=8, description="Draw lines: `mesh` has segments in place of triangles."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
             "and those from `light_0` on, must hold while it runs.")
         address = "Byte address, a multiple of 16, of"
@@ -226,7 +229,7 @@ class TriangleEngine(LiteXModule):
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
 
         geometry_flags = Struct("geometry_flags_t", "Choices of a geometry pass.", {
-            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth")})
+            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth", "lines")})
         geometry = Struct("geometry_t", "Parameters of the geometry pass. Places in memory are byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,
@@ -289,6 +292,7 @@ class TriangleEngine(LiteXModule):
             p_SIZES            = sizes,
             p_TRIANGLES        = int(triangles),
             p_SMOOTH           = int(smooth),
+            p_LINES            = int(lines),
             i_clk              = ClockSignal("sys"),
             i_rst              = ResetSignal("sys"),
             i_cancel           = cancel,
@@ -316,6 +320,7 @@ class TriangleEngine(LiteXModule):
             p_TRIANGLES       = int(triangles),
             p_SMOOTH          = int(smooth),
             p_FIELDS          = int(fields),
+            p_LINES           = int(lines),
             i_clk             = self.clk,
             i_rst             = ResetSignal("sys"),
             i_cancel          = cancel,

@@ -31,6 +31,7 @@ class Module:
 _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
                  "V_ACTIVE": 24, "V_FRONT": 2, "V_SYNC": 2, "V_BACK": 4}
 _SMOOTH = {"SMOOTH": 1}
+_LINES = {"LINES": 1}
 _FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
 # Parameters of the builds with every field: of a lane (ring_lane), and of the module that colours the ends of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
@@ -57,7 +58,8 @@ MODULES = [
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
-                     "triangle_engine_fields_alone": _FIELDS_ALONE},
+                     "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_lines": _LINES,
+                     "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
     Module(top="line_setup"),
     Module(top="line_raster"),
@@ -73,6 +75,6 @@ MODULES = [
     Module(
         top="triangle_control",
         variants={"triangle_control_smooth": _SMOOTH, "triangle_control_32_mb": {"MEMORY_BITS": 21, "SIZES": 3},
-                  "triangle_control_fields_alone": {"TRIANGLES": 0}},
+                  "triangle_control_fields_alone": {"TRIANGLES": 0}, "triangle_control_lines": _LINES},
     ),
 ]

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x1209_d70e;
+pub const BUILD_ID: u32 = 0x7207_fab1;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -238,7 +238,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`.
+        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 5 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
+        /// `geometry`, 9 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3403,6 +3403,13 @@ pub mod triangle {
             (self.0 >> 4) & 1 != 0
         }
 
+        /// `lines`, bit 5: Lines: geometry passes with `lines`.
+        #[inline]
+        #[must_use]
+        pub const fn lines(self) -> bool {
+            (self.0 >> 5) & 1 != 0
+        }
+
         /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.
         #[inline]
         #[must_use]
@@ -3673,6 +3680,20 @@ pub mod triangle {
         pub const fn with_smooth(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
+
+        /// `lines`, bit 8: Draw lines: `mesh` has segments in place of triangles.
+        #[inline]
+        #[must_use]
+        pub const fn lines(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+
+        /// This value with another `lines`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lines(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
+        }
     }
 
     /// A value of `depth_scale`.
@@ -3855,11 +3876,13 @@ pub mod triangle {
         Cancelled = 7,
         /// This build draws no triangles; memory is unchanged.
         Triangles = 8,
+        /// This build draws no lines; memory is unchanged.
+        Lines = 9,
     }
 
     impl Error {
         /// Every value, in the order of the gateware's description.
-        pub const ALL: [Self; 9] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled, Self::Triangles];
+        pub const ALL: [Self; 10] = [Self::None, Self::Size, Self::Address, Self::Busy, Self::Mesh, Self::Full, Self::List, Self::Cancelled, Self::Triangles, Self::Lines];
 
         /// The value of a field's `bits`; `None` where the gateware has no name for them.
         #[inline]
@@ -3875,6 +3898,7 @@ pub mod triangle {
                 6 => Self::List,
                 7 => Self::Cancelled,
                 8 => Self::Triangles,
+                9 => Self::Lines,
                 _ => return None,
             })
         }
@@ -3892,6 +3916,7 @@ pub mod triangle {
                 Self::List => "list",
                 Self::Cancelled => "cancelled",
                 Self::Triangles => "triangles",
+                Self::Lines => "lines",
             }
         }
 
@@ -3908,6 +3933,7 @@ pub mod triangle {
                 Self::List => "a band list was too long, or named a number that is no descriptor; the frame is wrong",
                 Self::Cancelled => "ended by `cancel`",
                 Self::Triangles => "this build draws no triangles; memory is unchanged",
+                Self::Lines => "this build draws no lines; memory is unchanged",
             }
         }
     }

@@ -30,6 +30,50 @@ pub enum LineDepth {
     },
 }
 
+/// A segment of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// The end points, in the order of the walk.
+    pub ends: [ScreenVertex; 2],
+    /// The colour of its pixels.
+    pub colour: Rgb565,
+    /// How it meets the depths of the picture.
+    pub depth: LineDepth,
+}
+
+impl Segment {
+    /// Size in memory, in bytes.
+    pub const BYTES: usize = 32;
+
+    /// The segment in memory (docs/formats.md, "Segments in memory").
+    #[must_use]
+    pub const fn words(&self) -> [u32; Self::BYTES / 4] {
+        let [a, b] = self.ends;
+        let (w, bias) = match self.depth {
+            LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
+            LineDepth::Tested { bias } => ([a.w, b.w], bias),
+        };
+        let colour = self.colour.0 as u32;
+        #[rustfmt::skip]
+        let words = [
+            a.x as u32, a.y as u32, w[0], colour,
+            b.x as u32, b.y as u32, w[1], bias as u32,
+        ];
+        words
+    }
+
+    /// What precedes `segments` segments in memory, as long as a segment.
+    #[must_use]
+    pub const fn header(segments: u32) -> [u32; Self::BYTES / 4] {
+        [1, 2 * segments, 0, 0, 0, 0, 0, 0]
+    }
+
+    /// Draws the part of the segment in the picture. Returns the number of pixels written.
+    pub fn draw(&self, target: &mut FrameBuffer) -> u32 {
+        draw(&self.ends, self.colour, self.depth, target)
+    }
+}
+
 /// A pixel of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LinePixel {

@@ -11,7 +11,7 @@
 //
 // Streams are valid/ready. The stages behind the walk cannot be stopped; the walk stands still while the FIFO has no room for all
 // pixels on the way. Latency 5 clocks, throughput a pixel a clock. `size` and `first_row`, the size code of the picture and the
-// first row of the band, must hold while pieces are inside. `idle` is low from the clock after a piece is taken until its last
+// first row of the band, must hold while pieces are inside. Of a piece from a damaged memory only pixels in the band are drawn. `idle` is low from the clock after a piece is taken until its last
 // group is taken.
 
 `default_nettype none
@@ -60,7 +60,7 @@ module line_raster (
     assign moves_minor  = !error[20];
     assign moves_column = x_major || moves_minor;
     assign moves_line   = !x_major || moves_minor;
-    assign shown    = !column[11] && column[10:6] < blocks;
+    assign shown    = !column[11] && column[10:6] < blocks && line <= last_line;
     assign ends     = !shown || count == 12'd1 || moves_line && line == (up ? '0 : last_line);
     assign in_ready = room && (!active || ends);
     assign takes    = in_valid && in_ready;

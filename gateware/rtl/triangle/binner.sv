@@ -11,6 +11,9 @@
 // written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
 // these changes rare.
 //
+// With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and takes the place of a triangle's
+// descriptor (line_pkg::stored_t). `in_line` must hold from `restart` until `done`.
+//
 // Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the
 // input, so it moves a clock after its last word. `in_ready` is a register.
 //
@@ -27,6 +30,7 @@ module binner #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned COUNT_BITS   = 20,
     parameter bit          SMOOTH       = 1'b0,
+    parameter bit          LINES        = 1'b0,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire                     clk,
@@ -50,6 +54,8 @@ module binner #(
     output logic                    in_ready,
     input  wire  triangle_pkg::descriptor_t       in_descriptor,
     input  wire  [PLANES_BITS-1:0]  in_planes,
+    input  wire                     in_line,
+    input  wire  line_pkg::piece_t  in_piece,
     input  wire                     exception_valid,
     output logic                    exception_ready,
     input  wire  [31:0]             exception_number,
@@ -88,6 +94,8 @@ module binner #(
 
     logic [128*DESCRIPTOR_WORDS-1:0] words;
     logic [WORD_BITS-1:0]    word;
+    logic [127:0]            word_data;
+    logic [9:0]              first_row;
     logic [ADDRESS_BITS-1:0] descriptor_word;
     logic [95:0]             gathered;
     logic                    free, list_full, descriptors_full, exceptions_full;
@@ -98,6 +106,24 @@ module binner #(
         assign words = in_descriptor;
 
         wire _unused = &{1'b0, in_planes};
+    end
+
+    if (LINES) begin : lines
+        logic [$bits(in_piece)-1:0] piece;
+
+        assign piece     = in_piece;
+        assign first_row = in_line ? in_piece.row : in_descriptor.top;
+
+        // The words that a piece does not need repeat its lower bits, so that a word has as few sources as possible.
+        always_comb begin
+            word_data = in_line ? piece[127:0] : words[128 * word +: 128];
+            if (in_line && word[1]) word_data[127:64] = {piece[181:166], line_pkg::MARK, 8'd0, piece[165:128]};
+        end
+    end else begin : triangles_alone
+        assign word_data = words[128 * word +: 128];
+        assign first_row = in_descriptor.top;
+
+        wire _unused = &{1'b0, in_line, in_piece};
     end
 
     assign idle            = state == IDLE;
@@ -135,8 +161,8 @@ module binner #(
     assign by_171 = 16'(parts_1) + {by_85, 1'b0};
 
     always_ff @(posedge clk) begin
-        if (state == IDLE) row <= in_descriptor.top;
-        if (state == WORD) row <= in_descriptor.bottom - 1'b1;
+        if (state == IDLE) row <= first_row;
+        if (state == WORD && !(LINES && in_line)) row <= in_descriptor.bottom - 1'b1;
         top_comes  <= {top_comes[1], top_comes[0] && !descriptors_full, state == IDLE && in_valid && !in_ready};
         parts_1    <= parts;
         by_85      <= 15'(by_5) + {by_5, 4'b0};
@@ -205,7 +231,7 @@ module binner #(
             end else if (free) begin
                 write_valid     <= 1'b1;
                 write_addr      <= descriptor_word;
-                write_data      <= words[128 * word +: 128];
+                write_data      <= word_data;
                 write_strobe    <= '1;
                 write_descriptor <= 1'b1;
                 descriptor_word <= descriptor_word + 1'b1;

@@ -5,13 +5,17 @@
 //   mesh ─────▶│ mesh_walk │──▶│ vertex_cache │──▶│ classify │──▶│ setup │──▶│ binner │──▶ descriptors, lists
 //              └───────────┘   └──────────────┘   └──────────┘   └───────┘   └────────┘
 //                                │ fetch  ▲ projected   └─ exception ─────────────▲
-//                                ▼        │
-//   vertices ─────────────────▶ vertex_stage
+//                                ▼        │                                       ▲
+//   vertices ─────────────────▶ vertex_stage                                      │
+//   segments ─────────────────▶ line_setup ───────────────────────────────────────┘ pieces of lines
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold from a clock before `start` until `done` (one
 // clock), when all results are in memory. With `done`, two errors mark an incomplete frame: `mesh_error` (a chunk without
 // vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries or exceptions). The lists then name
 // the descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
+//
+// With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats.md, "Segments in memory"): mesh_walk reads them
+// as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
 //
 // Throughput is that of the slowest part: 11 clocks a drawn triangle (33 with smooth shading), 3 a culled one, 6 a vertex that is
 // not in the cache, and in the binner 6 clocks a triangle (9 with SMOOTH) and 2 more for each of its bands after the first. Memory:
@@ -21,6 +25,7 @@
 
 module geometry_unit #(
     parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          LINES        = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
@@ -90,7 +95,7 @@ module geometry_unit #(
         end
     end
 
-    logic                    triangle_valid, triangle_ready, chunk;
+    logic                    word_valid, word_ready, triangle_valid, triangle_ready, chunk;
     logic [127:0]            triangle;
     logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
     // Address of the first word after the mesh.
@@ -105,8 +110,44 @@ module geometry_unit #(
         .busy(walk_busy), .error(mesh_error), .chunk, .vertex_base,
         .ask_valid(ask_valid[0]), .ask_ready(ask_ready[0]), .ask_addr(ask_addr[0 +: ADDRESS_BITS]),
         .data_valid(data_valid[0]), .data_ready(data_ready[0]), .data(data[0 +: 128]),
-        .out_valid(triangle_valid), .out_ready(triangle_ready), .out_triangle(triangle)
+        .out_valid(word_valid), .out_ready(word_ready), .out_triangle(triangle)
     );
+
+    // The words of a mesh are triangles or, in a pass of lines, halves of segments.
+    logic             in_lines, half_ready, piece_valid, piece_ready;
+    line_pkg::piece_t piece;
+
+    assign in_lines       = LINES && flags.lines;
+    assign triangle_valid = word_valid && !in_lines;
+    assign word_ready     = in_lines ? half_ready : triangle_ready;
+
+    if (LINES) begin : lines
+        line_pkg::segment_t segment;
+        logic               has_first, segment_ready;
+
+        assign half_ready = !has_first || segment_ready;
+
+        // The first half waits here for the second one, which stays at the input.
+        always_ff @(posedge clk) begin
+            if (in_lines && word_valid && half_ready) has_first <= !has_first;
+            if (!has_first) {segment.colour, segment.a_w, segment.a_y, segment.a_x}
+                <= {triangle[111:96], triangle[87:64], triangle[51:32], triangle[19:0]};
+
+            if (rst || restart || clear) has_first <= 1'b0;
+        end
+
+        assign {segment.b_w, segment.b_y, segment.b_x} = {triangle[87:64], triangle[51:32], triangle[19:0]};
+
+        line_setup line_setup (
+            .clk, .rst(rst || restart), .size(flags.size), .bias(triangle[111:96]),
+            .in_valid(has_first && word_valid), .in_ready(segment_ready), .in_segment(segment),
+            .out_valid(piece_valid), .out_ready(piece_ready), .out_piece(piece)
+        );
+    end else begin : triangles_alone
+        assign {half_ready, piece_valid, piece} = '0;
+
+        wire _unused = &{1'b0, piece_ready};
+    end
 
     logic             fetch_valid, fetch_ready, projected_valid, projected_ready, placed_valid, placed_ready;
     logic [15:0]      fetch_index;
@@ -193,19 +234,23 @@ module geometry_unit #(
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
-    logic                    write_valid, write_ready, write_descriptor, descriptors_ready, lists_ready;
+    logic                    binner_ready, write_valid, write_ready, write_descriptor, descriptors_ready, lists_ready;
     logic [ADDRESS_BITS-1:0] write_addr;
     logic [127:0]            write_data;
     logic [15:0]             write_strobe;
 
-    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH)) binner (
+    assign descriptor_ready = binner_ready && !in_lines;
+    assign piece_ready      = binner_ready && in_lines;
+
+    binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .LINES(LINES)) binner (
         .clk, .rst(rst || restart), .restart(clear), .finish(state == FINISH), .done(lists_done), .idle(lists_idle), .full,
         .size(flags.size), .descriptor_base(parameters.descriptors[4 +: ADDRESS_BITS]),
         .descriptor_limit(parameters.descriptor_limit), .list_base(parameters.lists[4 +: ADDRESS_BITS]),
         .list_shift(parameters.list_shift), .exception_base(parameters.exceptions[4 +: ADDRESS_BITS]),
         .exception_limit(parameters.exception_limit),
         .descriptors(results.descriptor_count), .exceptions(results.exception_count),
-        .in_valid(descriptor_valid), .in_ready(descriptor_ready), .in_descriptor(descriptor), .in_planes(planes),
+        .in_valid(in_lines ? piece_valid : descriptor_valid), .in_ready(binner_ready), .in_descriptor(descriptor),
+        .in_planes(planes), .in_line(in_lines), .in_piece(piece),
         .exception_valid, .exception_ready, .exception_number,
         .write_valid, .write_ready, .write_addr, .write_data, .write_strobe, .write_descriptor
     );
@@ -242,7 +287,7 @@ module geometry_unit #(
     logic [FLIGHT_BITS-1:0] flight;
     logic                   came, was_unseen, was_culled, was_kept, was_exception;
 
-    assign drained = flight == '0 && !came && !triangle_valid;
+    assign drained = flight == '0 && !came && !word_valid;
 
     always_ff @(posedge clk) begin
         came          <= triangle_valid && triangle_ready;

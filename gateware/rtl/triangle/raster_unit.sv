@@ -2,7 +2,8 @@
 // descriptors in each band), which the geometry unit and the firmware have written to memory.
 //
 //                                                                             ┌─▶ write_port 0 ─┐
-//   lists, descriptors ──▶ list_reader ──▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
+//   lists, descriptors ──▶ list_reader ─┬▶ triangle_raster ──┬▶ band_buffer ──┴─▶ write_port 1 ─┴─▶ frame, depth
+//                                       └▶ line_raster ──────┤
 //   pixels of a field, from a raymarcher ────────────────────┘
 //
 // `start` (one clock, not while `busy`) begins a frame. The parameters must hold until `done` (one clock), when the frame is in
@@ -14,6 +15,9 @@
 // `field_sink.start` begins the field. When the triangles of a band are drawn, `open` admits the field's pixels of this band
 // until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
+//
+// With LINES, a descriptor may be a piece of a line (line_pkg::stored_t). Triangles and pieces are drawn in the order of the lists:
+// a piece after triangles waits until their last group is taken, about 30 clocks, and so does a triangle after pieces.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
 // must then be low, and the unit reads no memory.
@@ -33,6 +37,7 @@ module raster_unit #(
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
+    parameter  bit          LINES        = 1'b0,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
@@ -133,7 +138,22 @@ module raster_unit #(
         end
     end
 
-    // Each band is drawn in two steps: first its triangles (`drawn_*`), then the pixels of the field (`field_source`).
+    // Groups of one pixel, of lines or of the field.
+    typedef struct packed {
+        logic [1:0]  halves;
+        logic [10:0] row;
+        logic [5:0]  line;
+        logic [7:0]  column;
+        logic [7:0]  mask;
+        logic [17:0] code;
+        logic [15:0] colour;
+    } pixel_t;
+
+    // `from_line` is high while descriptors are pieces of lines, and groups come from line_raster.
+    logic   from_line, line_valid, line_ready;
+    pixel_t line_pixel;
+
+    // Each band is drawn in two steps: first its triangles (`drawn_*`) and lines, then the pixels of the field (`field_source`).
     logic            group_valid, group_ready;
     logic            drawn_valid, drawn_ready;
     logic [10:0]     drawn_row;
@@ -163,17 +183,19 @@ module raster_unit #(
 
         // `stray` is high for a descriptor with groups outside of the picture, which is skipped.
         logic stray, list_damaged;
+        // `is_line` is high for a piece of a line, and `piece_taken` in the clock after line_raster has taken it.
+        logic is_line, piece_taken, line_idle;
 
         assign stray = descriptor.group_left > descriptor.group_start || descriptor.group_start > descriptor.group_right
                     || descriptor.group_right >= stride;
 
         // The item that ends a band is taken only while that band is drawn, so descriptors are read at most one band ahead.
-        assign triangle_valid = item_valid && !band_ends && !stray;
-        assign item_ready     = band_ends ? read_odd == band[0] : triangle_ready;
-        assign drawn          = read_odd != band[0] && raster_idle;
+        assign triangle_valid = item_valid && !band_ends && !stray && !is_line && !from_line;
+        assign item_ready     = band_ends ? read_odd == band[0] : is_line ? piece_taken : triangle_ready && !from_line;
+        assign drawn          = read_odd != band[0] && raster_idle && line_idle;
 
         always_ff @(posedge clk) begin
-            list_error <= !begins && (list_error || list_damaged || item_valid && !band_ends && stray);
+            list_error <= !begins && (list_error || list_damaged || item_valid && !band_ends && stray && !is_line);
             if (rst) list_error <= 1'b0;
 
             if (begins) begin
@@ -204,13 +226,50 @@ module raster_unit #(
             .group_valid(drawn_valid), .group_ready(drawn_ready), .group_row(drawn_row), .group_line(drawn_line),
             .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
         );
+        if (LINES) begin : lines
+            line_pkg::stored_t stored;
+            logic              piece_valid, piece_ready;
+
+            assign stored  = descriptor;
+            assign is_line = stored.mark == line_pkg::MARK;
+
+            // The descriptor stays until the clock after its piece is taken, so that no path leads from the walk along a line to
+            // list_reader.
+            assign piece_valid = item_valid && !band_ends && is_line && from_line && read_odd == band[0] && !piece_taken;
+
+            always_ff @(posedge clk) begin
+                piece_taken <= piece_valid && piece_ready;
+                if (item_valid && !band_ends)
+                    from_line <= from_line ? is_line || !line_idle : is_line && read_odd == band[0] && raster_idle;
+
+                if (rst || restart) {piece_taken, from_line} <= '0;
+            end
+
+            line_raster line_raster (
+                .clk, .rst(rst || restart), .size(flags.size), .first_row(read_row), .idle(line_idle),
+                .in_valid(piece_valid), .in_ready(piece_ready), .in_piece({stored.colour, stored.high, stored.low}),
+                .group_valid(line_valid), .group_ready(line_ready), .group_row(line_pixel.row), .group_line(line_pixel.line),
+                .group_column(line_pixel.column), .group_mask(line_pixel.mask), .group_code(line_pixel.code),
+                .group_colour(line_pixel.colour)
+            );
+
+            assign line_pixel.halves = 2'b11;
+
+            wire _unused = &{1'b0, stored};
+        end else begin : triangles_alone
+            assign {is_line, from_line, piece_taken, line_valid, line_pixel} = '0;
+            assign line_idle = 1'b1;
+
+            wire _unused = &{1'b0, line_ready};
+        end
     end else begin : fields_alone
+        assign {from_line, line_valid, line_pixel} = '0;
         assign drawn       = 1'b1;
         assign list_error  = 1'b0;
         assign walk_events = '0;
         assign {ask_valid, ask_addr, data_ready} = '0;
         assign {drawn_valid, drawn_row, drawn_line, drawn_column, drawn_mask, drawn_codes, drawn_colours} = '0;
-        wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready};
+        wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
     // Whether groups come from the raymarcher in this clock; without TRIANGLES, from nowhere else.
@@ -218,17 +277,27 @@ module raster_unit #(
 
     assign from_field = FIELDS && (field_sink.open || !TRIANGLES);
 
+    logic   of_pixels;
+    pixel_t pixel;
+
+    assign of_pixels = from_field || from_line;
+
     always_comb begin
-        drawn_ready      = group_ready && !from_field;
+        pixel = line_pixel;
+        if (from_field) pixel = {field_source.halves, field_source.row, field_source.line, field_source.column, field_source.mask,
+                                 field_source.code, field_source.colour};
+
+        drawn_ready      = group_ready && !of_pixels;
+        line_ready       = group_ready && from_line && !from_field;
         field_sink.ready = group_ready && FIELDS && field_sink.open;
-        group_valid      = from_field ? field_source.valid && field_sink.open : drawn_valid;
-        group_halves     = from_field ? field_source.halves : 2'b11;
-        group_row        = from_field ? field_source.row : drawn_row;
-        group_line       = from_field ? field_source.line : drawn_line;
-        group_column     = from_field ? field_source.column : drawn_column;
-        group_mask       = from_field ? field_source.mask : drawn_mask;
-        group_codes      = from_field ? {8{field_source.code}} : drawn_codes;
-        group_colours    = from_field ? {8{field_source.colour}} : drawn_colours;
+        group_valid      = from_field ? field_source.valid && field_sink.open : from_line ? line_valid : drawn_valid;
+        group_halves     = of_pixels ? pixel.halves : 2'b11;
+        group_row        = of_pixels ? pixel.row : drawn_row;
+        group_line       = of_pixels ? pixel.line : drawn_line;
+        group_column     = of_pixels ? pixel.column : drawn_column;
+        group_mask       = of_pixels ? pixel.mask : drawn_mask;
+        group_codes      = of_pixels ? {8{pixel.code}} : drawn_codes;
+        group_colours    = of_pixels ? {8{pixel.colour}} : drawn_colours;
     end
 
     logic                    word_valid, word_ready, odd_bank;

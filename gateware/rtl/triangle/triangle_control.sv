@@ -6,7 +6,8 @@
 // The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
 // 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^MEMORY_BITS words from
 // BASE on) ends the pass with ERROR_ADDRESS before its first access to memory. A build without TRIANGLES ends each geometry
-// pass, and a raster pass with `first` or `second`, with ERROR_TRIANGLES.
+// pass, and a raster pass with `first` or `second`, with ERROR_TRIANGLES; a build without LINES ends a geometry pass with `lines`
+// with ERROR_LINES.
 //
 // A pass is requested by one clock of `ask`. `ended` (one clock) answers each request when its pass is refused, done or
 // cancelled; `error` then holds until the next request of this pass.
@@ -26,6 +27,7 @@ module triangle_control #(
     parameter  logic [31:0] BASE         = 32'h4000_0000,
     parameter  bit          TRIANGLES    = 1'b1,
     parameter  bit          SMOOTH       = 1'b0,
+    parameter  bit          LINES        = 1'b0,
     parameter  int unsigned MEMORY_BITS  = triangle_registers_pkg::ADDRESS_BITS,
     parameter  int unsigned SIZES        = 7, // picture sizes of this build: bit k for the size of code k
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
@@ -62,7 +64,8 @@ module triangle_control #(
                            ERROR_MESH = triangle_registers_pkg::ERROR_MESH, ERROR_FULL = triangle_registers_pkg::ERROR_FULL,
                            ERROR_LIST = triangle_registers_pkg::ERROR_LIST,
                            ERROR_CANCELLED = triangle_registers_pkg::ERROR_CANCELLED,
-                           ERROR_TRIANGLES = triangle_registers_pkg::ERROR_TRIANGLES;
+                           ERROR_TRIANGLES = triangle_registers_pkg::ERROR_TRIANGLES,
+                           ERROR_LINES = triangle_registers_pkg::ERROR_LINES;
 
     // Bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = triangle_registers_pkg::ADDRESS_BITS + 2;
@@ -98,10 +101,11 @@ module triangle_control #(
     assign has_triangles = !rastering || raster_kept.first || raster_kept.second;
 
     always_comb begin
-        if (!TRIANGLES && has_triangles) refusal = ERROR_TRIANGLES;
-        else if (!SUPPORTED[size])       refusal = ERROR_SIZE;
-        else if (misplaced)              refusal = ERROR_ADDRESS;
-        else                             refusal = ERROR_NONE;
+        if (!TRIANGLES && has_triangles)                      refusal = ERROR_TRIANGLES;
+        else if (!LINES && !rastering && geometry_kept.lines) refusal = ERROR_LINES;
+        else if (!SUPPORTED[size])                            refusal = ERROR_SIZE;
+        else if (misplaced)                                   refusal = ERROR_ADDRESS;
+        else                                                  refusal = ERROR_NONE;
     end
 
     // First address and length (in words) of the region that is checked, and the values from which this length is selected.

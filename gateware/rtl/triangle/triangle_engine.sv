@@ -15,6 +15,8 @@
 // is interpolated over the depth, with a division at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have
 // twice the words.
 //
+// LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments in place of a mesh.
+//
 // FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws what a raymarcher sends and nothing else: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
 // `geometry_start` must then stay low.
@@ -24,7 +26,8 @@
 module triangle_engine #(
     parameter bit TRIANGLES = 1'b1,
     parameter bit SMOOTH    = 1'b0,
-    parameter bit FIELDS    = 1'b0
+    parameter bit FIELDS    = 1'b0,
+    parameter bit LINES     = 1'b0
 ) (
     input  wire  clk,
     input  wire  rst,
@@ -107,7 +110,7 @@ module triangle_engine #(
             .rdata_valid(raster_read_answer.rdata_valid), .rdata(raster_read_answer.rdata)
         );
 
-        geometry_unit #(.SMOOTH(SMOOTH)) geometry_unit (
+        geometry_unit #(.SMOOTH(SMOOTH), .LINES(LINES)) geometry_unit (
             .clk, .rst, .restart(cancel), .start(geometry_start), .busy(status.geometry_busy), .done(status.geometry_done),
             .mesh_error(status.mesh_error), .full(status.full), .flags(geometry_flags), .parameters(geometry), .view,
             .ask_valid(ask_valid[1:0]), .ask_ready(ask_ready[1:0]), .ask_addr(ask_addr[2*ADDRESS_BITS-1:0]),
@@ -127,7 +130,7 @@ module triangle_engine #(
                          data_valid, data_ready, data, mesh_read_answer, vertex_read_answer, raster_read_answer};
     end
 
-    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS)) raster_unit (
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS), .LINES(LINES)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster),
         .field_source, .field_sink,

@@ -19,12 +19,14 @@ package triangle_registers_pkg;
     localparam logic [3:0] ERROR_LIST = 4'd6;
     localparam logic [3:0] ERROR_CANCELLED = 4'd7;
     localparam logic [3:0] ERROR_TRIANGLES = 4'd8;
+    localparam logic [3:0] ERROR_LINES = 4'd9;
 
     // Choices of a geometry pass.
     typedef struct packed {
         logic [1:0] size;
         logic cull;
         logic smooth;
+        logic lines;
     } geometry_flags_t;
 
     // Parameters of the geometry pass. Places in memory are byte addresses.

@@ -1,5 +1,5 @@
-//! Inputs for tests that several crates share: random numbers, cameras in `f64`, models, meshes, triangles on the screen and
-//! scenes.
+//! Inputs for tests that several crates share: random numbers, cameras in `f64`, models, meshes, triangles and segments on the
+//! screen, and scenes.
 
 pub mod camera;
 pub mod math;
@@ -8,6 +8,7 @@ pub mod model;
 pub mod picture;
 pub mod random;
 pub mod scenes;
+pub mod segments;
 pub mod triangles;
 
 pub use camera::Camera;

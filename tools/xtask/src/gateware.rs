@@ -75,6 +75,8 @@ pub enum Block {
     Triangle,
     /// The raymarcher; without the triangle engine the gateware draws fields alone
     Raymarch,
+    /// The line engine, a part of the triangle engine
+    Line,
 }
 
 impl Block {
@@ -84,6 +86,7 @@ impl Block {
             Self::Scanout => "scanout",
             Self::Triangle => "triangle",
             Self::Raymarch => "raymarch",
+            Self::Line => "line",
         }
     }
 }

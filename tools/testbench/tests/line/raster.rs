@@ -1,12 +1,13 @@
 //! The raster of lines: every pixel of every piece, band by band.
 
 use glint_model::SIZES;
-use glint_model::line::LineDepth;
+use glint_model::line::Segment;
 use glint_model::triangle::setup::Bounds;
 use glint_testbench::{Bits, Layout, Module, Port, Sink, Source, Stalls, exchange};
+use glint_vectors::segments::{difficult, of_50_pixels, random};
 use rand_pcg::Pcg64Mcg;
 
-use crate::segments::{self, Segment};
+use crate::segments::{bands, piece, pixels};
 
 /// Columns of a group.
 const LANES: u32 = 8;
@@ -35,18 +36,18 @@ impl Bench {
     }
 
     /// Draws the pieces of segments in a band, and compares the groups with the model's pixels. Returns the clocks and the pixels.
-    fn band(&mut self, size: usize, band: &Bounds, bias: u16, segments: &[Segment]) -> [u64; 2] {
+    fn band(&mut self, size: usize, band: &Bounds, segments: &[Segment]) -> [u64; 2] {
         let stride = SIZES[size].0 / LANES;
         self.module.drive("first_row", band.top);
         let mut expected = vec![];
         for segment in segments {
-            let Some(piece) = segment.piece(&self.piece, band, bias) else {
+            let Some(piece) = piece(segment, &self.piece, band) else {
                 continue;
             };
             self.source.push(vec![piece]);
-            for pixel in segment.pixels(band) {
+            for pixel in pixels(segment, band) {
                 let [column, line] = [pixel.column as u32, (pixel.row - band.top) as u32];
-                let code = pixel.code(LineDepth::Tested { bias });
+                let code = pixel.code(segment.depth);
                 let group = column / LANES;
                 expected.push([
                     line * stride + group,
@@ -54,7 +55,7 @@ impl Bench {
                     group,
                     1 << (column % LANES),
                     code,
-                    segment.colour.into(),
+                    segment.colour.0.into(),
                 ]);
             }
         }
@@ -82,10 +83,10 @@ impl Bench {
         [self.module.cycles() - start, expected.len() as u64]
     }
 
-    fn picture(&mut self, size: usize, bias: u16, segments: &[Segment]) -> [u64; 2] {
+    fn picture(&mut self, size: usize, segments: &[Segment]) -> [u64; 2] {
         let mut sums = [0; 2];
-        for band in segments::bands(size) {
-            let counts = self.band(size, &band, bias, segments);
+        for band in bands(size) {
+            let counts = self.band(size, &band, segments);
             sums = [sums[0] + counts[0], sums[1] + counts[1]];
         }
         sums
@@ -99,13 +100,11 @@ fn group(item: &[Bits]) -> [u32; 6] {
 #[test]
 fn random_segments() {
     for (seed, stalls) in [(1, [0.0, 0.0]), (2, [0.5, 0.2]), (3, [0.1, 0.7])] {
-        let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        let mut numbers = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
         for size in 0..3 {
-            let segments: Vec<Segment> = (0..200)
-                .map(|_| segments::random(&mut random, size))
-                .collect();
+            let segments: Vec<Segment> = (0..200).map(|_| random(&mut numbers, size)).collect();
             let mut bench = Bench::new(seed, stalls, size);
-            bench.picture(size, [0, 77, u16::MAX][size], &segments);
+            bench.picture(size, &segments);
         }
     }
 }
@@ -114,7 +113,7 @@ fn random_segments() {
 fn difficult_segments() {
     for size in 0..3 {
         let mut bench = Bench::new(4, [0.0, 0.3], size);
-        bench.picture(size, 5, &segments::difficult(size));
+        bench.picture(size, &difficult(size));
     }
 }
 
@@ -123,9 +122,9 @@ fn difficult_segments() {
 fn a_pixel_a_clock() {
     for size in 0..3 {
         let mut bench = Bench::new(5, [0.0; 2], size);
-        let segments = segments::of_50_pixels(size, 1000);
-        let [clocks, pixels] = bench.picture(size, 0, &segments);
-        let latency = 10 * segments::bands(size).len() as u64;
+        let segments = of_50_pixels(size, 1000);
+        let [clocks, pixels] = bench.picture(size, &segments);
+        let latency = 10 * bands(size).len() as u64;
         println!("size {size}: {pixels} pixels in {clocks} clocks");
         assert!(
             clocks <= pixels + latency,

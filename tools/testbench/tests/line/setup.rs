@@ -1,17 +1,19 @@
 //! The set-up of segments: every field of every piece.
 
+use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
+use glint_model::line::{LineDepth, Segment};
 use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, exchange};
+use glint_vectors::segments::{difficult, of_50_pixels, random};
 use rand_pcg::Pcg64Mcg;
 
-use crate::segments::{self, Segment};
+use crate::segments::{pieces, placed};
 
 /// Sends segments to the set-up, and compares its pieces with those of the model. Returns the clocks.
 fn check(
     seed: u32,
     [source_stalls, sink_stalls]: [f64; 2],
     size: usize,
-    bias: u16,
     segments: &[Segment],
 ) -> u64 {
     let mut module = Module::new("line_setup", seed);
@@ -21,10 +23,10 @@ fn check(
     let layouts = ["segment_t", "piece_t"]
         .map(|name| module.packed_type(&format!("line_pkg::{name}")).clone());
     module.drive("size", size as u32);
-    module.drive("bias", bias);
     let start = module.cycles();
     for segment in segments {
-        let expected = segment.pieces(&layouts[1], size, bias);
+        module.drive("bias", placed(segment).1);
+        let expected = pieces(segment, &layouts[1], size);
         source.push(vec![pack(&layouts[0], segment)]);
         let begin = module.cycles();
         while !source.is_empty() {
@@ -43,7 +45,7 @@ fn check(
 }
 
 fn pack(layout: &Layout, segment: &Segment) -> Bits {
-    let [a, b] = segment.ends;
+    let ([a, b], _) = placed(segment);
     layout
         .record()
         .with("a_x", a.x)
@@ -52,19 +54,17 @@ fn pack(layout: &Layout, segment: &Segment) -> Bits {
         .with("b_x", b.x)
         .with("b_y", b.y)
         .with("b_w", b.w)
-        .with("colour", segment.colour)
+        .with("colour", segment.colour.0)
         .bits()
 }
 
 #[test]
 fn random_segments() {
     for (seed, stalls) in [(1, [0.0, 0.0]), (2, [0.5, 0.2]), (3, [0.1, 0.7])] {
-        let mut random = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        let mut numbers = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
         for size in 0..3 {
-            let segments: Vec<Segment> = (0..400)
-                .map(|_| segments::random(&mut random, size))
-                .collect();
-            check(seed, stalls, size, [0, 77, u16::MAX][size], &segments);
+            let segments: Vec<Segment> = (0..400).map(|_| random(&mut numbers, size)).collect();
+            check(seed, stalls, size, &segments);
         }
     }
 }
@@ -72,7 +72,7 @@ fn random_segments() {
 #[test]
 fn difficult_segments() {
     for size in 0..3 {
-        check(4, [0.0, 0.3], size, 5, &segments::difficult(size));
+        check(4, [0.0, 0.3], size, &difficult(size));
     }
 }
 
@@ -80,9 +80,9 @@ fn difficult_segments() {
 #[test]
 fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     for size in 0..3 {
-        let mut segments = segments::of_50_pixels(size, 300);
+        let mut segments = of_50_pixels(size, 300);
         let each = |segments: &[Segment]| {
-            let clocks = check(5, [0.0; 2], size, 0, segments);
+            let clocks = check(5, [0.0; 2], size, segments);
             clocks as f64 / segments.len() as f64
         };
         let deep = each(&segments);
@@ -97,10 +97,10 @@ fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     }
 }
 
-/// 31 clocks, or 59 with a depth step, one for each of 10 pixels, two for the piece, and one for each band above.
+/// 31 clocks, or 59 with a depth step, one for each of 10 pixels, one for the piece, and one for each band above.
 #[test]
 fn clocks_of_a_segment() {
-    for (row, depth, clocks) in [(5, 0, 43), (5, 64_000, 71), (100, 0, 47), (100, 64_000, 71)] {
+    for (row, depth, clocks) in [(5, 0, 42), (5, 64_000, 70), (100, 0, 46), (100, 64_000, 70)] {
         let place = |x: i32, w| ScreenVertex {
             x: 256 * x + 128,
             y: 256 * row + 128,
@@ -108,8 +108,9 @@ fn clocks_of_a_segment() {
         };
         let segment = Segment {
             ends: [place(10, 0), place(20, depth)],
-            colour: 1,
+            colour: Rgb565(1),
+            depth: LineDepth::Tested { bias: 0 },
         };
-        assert_eq!(check(6, [0.0; 2], 1, 0, &[segment]), clocks, "{segment:?}");
+        assert_eq!(check(6, [0.0; 2], 1, &[segment]), clocks, "{segment:?}");
     }
 }

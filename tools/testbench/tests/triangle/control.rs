@@ -9,8 +9,8 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::control::bench::{Bench, Events};
 use crate::control::passes::{
-    ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LIST, Limits, MEMORY, MESH, NAMES,
-    NONE, Pass, RASTER, SIZE, TRIANGLES, refusal, regions,
+    ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LINES, LIST, Limits, MEMORY, MESH,
+    NAMES, NONE, Pass, RASTER, SIZE, TRIANGLES, refusal, regions,
 };
 
 /// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
@@ -78,6 +78,7 @@ fn a_build_has_less_memory_and_fewer_sizes() {
         memory: MEMORY,
         sizes: 2,
         triangles: true,
+        lines: false,
     };
     for which in [GEOMETRY, RASTER] {
         bench.passes = Pass::good();
@@ -108,6 +109,37 @@ fn a_build_has_less_memory_and_fewer_sizes() {
                 bench.passes[which].set(port, BASE);
             }
         }
+    }
+}
+
+/// A build without lines refuses each geometry pass of lines, and a build with lines starts it as any other.
+#[test]
+fn a_build_without_lines_refuses_them() {
+    let mut random = Pcg64Mcg::new(9);
+    for (name, lines) in [
+        ("triangle_control", false),
+        ("triangle_control_lines", true),
+    ] {
+        let mut bench = Bench::of(name, 48, 5);
+        bench.limits.lines = lines;
+        let mut errors = [0; 10];
+        for _ in 0..1000 {
+            bench.passes = [GEOMETRY, RASTER].map(|which| some_pass(&mut random, which));
+            let of_lines = random.random();
+            bench.passes[GEOMETRY]
+                .flags
+                .choose(if of_lines { &["lines"] } else { &["cull"] });
+            let error = bench.ask([true, false])[GEOMETRY];
+            assert_eq!(error == LINES, of_lines && !lines);
+            errors[error as usize] += 1;
+        }
+        println!("{name}: {errors:?} geometry passes by error");
+        assert!(
+            [NONE, SIZE, ADDRESS]
+                .map(|error| errors[error as usize])
+                .iter()
+                .all(|&n| n > 10)
+        );
     }
 }
 
@@ -428,8 +460,8 @@ fn random_sequences() {
 fn some_pass(random: &mut Pcg64Mcg, which: usize) -> Pass {
     let mut pass = Pass::good()[which].clone();
     pass.flags.size = random.random_range(0..4);
-    for (_, set) in &mut pass.flags.others {
-        *set = random.random();
+    for (name, set) in &mut pass.flags.others {
+        *set = random.random_bool(if *name == "lines" { 0.1 } else { 0.5 });
     }
     if pass.flags.size == 3 && random.random_bool(0.9) {
         pass.flags.size = 2;

@@ -81,6 +81,7 @@ impl Bench {
                 memory: MEMORY,
                 sizes: 3,
                 triangles: true,
+                lines: false,
             },
             states: [State::Idle; 2],
             errors: [NONE; 2],

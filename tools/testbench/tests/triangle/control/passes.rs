@@ -14,6 +14,7 @@ pub const FULL: u64 = 5;
 pub const LIST: u64 = 6;
 pub const CANCELLED: u64 = 7;
 pub const TRIANGLES: u64 = 8;
+pub const LINES: u64 = 9;
 
 /// Index of the geometry pass in arrays of both passes; `RASTER` is the index of the raster pass.
 pub const GEOMETRY: usize = 0;
@@ -97,7 +98,7 @@ impl Pass {
             Self {
                 flags: Flags {
                     size: 1,
-                    others: vec![("cull", true), ("smooth", false)],
+                    others: vec![("cull", true), ("smooth", false), ("lines", false)],
                 },
                 ports: geometry.to_vec(),
             },
@@ -183,6 +184,8 @@ pub struct Limits {
     pub sizes: usize,
     /// Whether the build draws triangles.
     pub triangles: bool,
+    /// Whether the build draws lines.
+    pub lines: bool,
 }
 
 /// Returns the error code with which an ask for a pass must be refused, or `NONE`.
@@ -200,6 +203,8 @@ pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limi
     };
     if !limits.triangles && (which == GEOMETRY || lists()) {
         TRIANGLES
+    } else if !limits.lines && pass.flags.is_set("lines") {
+        LINES
     } else if pass.size() >= limits.sizes {
         SIZE
     } else if regions(which, pass, list_shift, descriptor)

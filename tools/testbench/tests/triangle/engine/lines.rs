@@ -1,0 +1,245 @@
+//! Tests of the line engine in the passes of the triangle engine: frames of lines alone, and of lines and triangles.
+
+use glint_core::colour::Rgb565;
+use glint_model::ScreenVertex;
+use glint_model::line::{LineDepth, Segment};
+use glint_vectors::meshes::{self, ahead, at};
+use glint_vectors::segments::{difficult, of_50_pixels, random};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use super::bench::{Bench, Expected, Gathered, SIZES, expected};
+use super::generated;
+
+/// Clocks of a frame at 60 frames a second and 81.25 MHz.
+const FRAME_CLOCKS: u64 = 81_250_000 / 60;
+
+/// Draws segments, and compares the frame with the model's. Returns the clocks of both passes.
+fn draw(bench: &mut Bench, name: &str, size: (u32, u32), segments: &[Segment]) -> [u64; 2] {
+    let mut expected = Expected::clear(size);
+    expected.draw_segments(segments);
+    let mut gathered = Gathered::default();
+    bench.configure_lines(segments, &expected);
+    let geometry = bench.gather(name, &mut gathered);
+    [geometry, bench.draw_gathered(name, &gathered, &expected)]
+}
+
+#[test]
+fn random_segments_with_random_stalls() {
+    for seed in 0..12 {
+        let mut numbers = Pcg64Mcg::new(u128::from(seed) << 1 | 1);
+        let size = seed as usize % 3;
+        let mut bench = Bench::lines(seed, [0.0, 0.2, 0.5, 0.7][seed as usize % 4]);
+        bench.with_depth = seed % 5 == 0;
+        for frame in 0..3 {
+            let count = numbers.random_range(0..150);
+            let segments: Vec<_> = (0..count).map(|_| random(&mut numbers, size)).collect();
+            bench.slot = numbers.random_range(0..2);
+            let name = format!("seed {seed}, frame {frame}");
+            draw(&mut bench, &name, SIZES[size], &segments);
+        }
+    }
+}
+
+#[test]
+fn difficult_segments() {
+    for (size, &picture) in SIZES.iter().enumerate() {
+        let mut bench = Bench::lines(21, 0.1);
+        draw(&mut bench, "difficult segments", picture, &difficult(size));
+    }
+}
+
+/// Segments of 50 pixels: a frame of 10,000 takes less than a sixtieth of a second, and both passes of a frame work at the same time.
+#[test]
+fn ten_thousand_segments_of_50_pixels() {
+    for (size, &picture) in SIZES.iter().enumerate() {
+        let mut bench = Bench::lines(22, 0.0);
+        bench.with_depth = false;
+        let segments = of_50_pixels(size, 10_000);
+        let [geometry, raster] = draw(&mut bench, "50 pixels", picture, &segments);
+        println!("{picture:?}: {geometry} clocks for the geometry, {raster} for the raster");
+        assert!(geometry.max(raster) < FRAME_CLOCKS);
+    }
+}
+
+/// A step of a frame.
+enum Step {
+    /// A rectangle across the picture, in one colour, at a distance from the eye.
+    Face(f64, u16),
+    /// Segments.
+    Lines(Vec<Segment>),
+}
+
+/// The depth code that the face at a distance has at all its pixels.
+fn code(distance: f64) -> u32 {
+    expected(&face(distance, 0), &ahead(1.0, 0.1), SIZES[0], false).nearest()
+}
+
+fn face(distance: f64, colour: u16) -> Vec<u8> {
+    let corner = |x: f64, z: f64| at(x, distance, z);
+    let [left, right, top, bottom] = [-0.9, 0.7, -0.3, 0.4];
+    let corners = [
+        corner(left, top),
+        corner(right, top),
+        corner(right, bottom),
+        corner(left, bottom),
+    ];
+    let triangle = |places: [usize; 3]| (places.map(|i| corners[i]), colour);
+    meshes::mesh(&[triangle([0, 1, 2]), triangle([0, 2, 3])], 100)
+}
+
+/// Lines and faces of one list keep their order, also where their depths are equal.
+#[test]
+fn lines_and_faces_in_turn() {
+    let mut numbers = Pcg64Mcg::new(23);
+    for round in 0..8 {
+        let size = [0, 0, 1, 2][round % 4];
+        let codes = [0.0, 0.1].map(code);
+        let steps = (0..6).map(|step| {
+            if numbers.random() {
+                return Step::Face([0.0, 0.1][numbers.random_range(0..2)], 0x1111 * step);
+            }
+            let lines = (0..numbers.random_range(0..40)).map(|_| {
+                let w = 64 * codes[numbers.random_range(0..2)];
+                let segment = random(&mut numbers, size);
+                Segment {
+                    ends: segment.ends.map(|end| ScreenVertex { w, ..end }),
+                    depth: LineDepth::Tested {
+                        bias: numbers.random_range(0..2),
+                    },
+                    ..segment
+                }
+            });
+            Step::Lines(lines.collect())
+        });
+        let steps: Vec<Step> = steps.collect();
+        let mut bench = Bench::lines(round as u32, [0.0, 0.3][round / 4]);
+        let mut gathered = Gathered::default();
+        let mut frame = Expected::clear(SIZES[size]);
+        let name = format!("round {round}");
+        for step in &steps {
+            match step {
+                Step::Face(distance, colour) => {
+                    let mesh = face(*distance, *colour);
+                    let face = expected(&mesh, &ahead(1.0, 0.1), SIZES[size], false);
+                    bench.configure(&mesh, &face);
+                    frame.draw_over(&face);
+                }
+                Step::Lines(segments) => {
+                    bench.configure_lines(segments, &frame);
+                    frame.draw_segments(segments);
+                }
+            }
+            bench.gather(&name, &mut gathered);
+        }
+        bench.draw_gathered(&name, &gathered, &frame);
+    }
+}
+
+#[test]
+fn full_lists_and_damaged_segments_are_reported() {
+    let mut bench = Bench::lines(24, 0.2);
+    let segments = of_50_pixels(0, 60);
+    let clear = Expected::clear(SIZES[0]);
+    let run = |bench: &mut Bench| {
+        bench.wait_for("status.ready");
+        bench.pulse("geometry_start");
+        bench.wait_for("status.geometry_done");
+        bench.set("geometry_flags.lines", 0);
+        ["status.full", "status.mesh_error"].map(|path| bench.read(path))
+    };
+    for (port, value, errors) in [
+        ("geometry.descriptor_limit", 10, [1, 0]),
+        ("geometry.list_shift", 0, [1, 0]),
+        ("geometry.mesh_bytes", 32 + 32 * 60 - 16, [0, 1]),
+        ("geometry.mesh_bytes", 0, [0, 1]),
+    ] {
+        bench.configure_lines(&segments, &clear);
+        bench.set(port, value);
+        assert_eq!(run(&mut bench), errors, "{port} {value}");
+        draw(&mut bench, "with room", SIZES[0], &segments);
+    }
+    // Half a segment at the end has no effect.
+    for words in [1, 119] {
+        bench.configure_lines(&segments, &clear);
+        bench.overwrite_words(words);
+        bench.set("geometry.mesh_bytes", u64::from(32 + 16 * words));
+        assert_eq!(run(&mut bench), [0, 0], "{words} words");
+        draw(&mut bench, "whole segments", SIZES[0], &segments);
+    }
+}
+
+/// A cancelled frame of lines does not change the next frame, of lines or of triangles.
+#[test]
+fn a_cancelled_frame_leaves_a_working_engine() {
+    let segments = of_50_pixels(0, 60);
+    let mesh = generated("icosphere:4");
+    let faces = expected(&mesh, &ahead(1.0, 0.1), SIZES[0], true);
+    let mut numbers = Pcg64Mcg::new(25);
+    for stalls in [0.0, 0.6] {
+        let mut bench = Bench::lines(25, stalls);
+        for start in ["geometry_start", "raster_start"] {
+            for _ in 0..4 {
+                draw(&mut bench, "before", SIZES[0], &segments);
+                bench.configure_lines(&segments, &Expected::clear(SIZES[0]));
+                bench.pulse(start);
+                (0..numbers.random_range(0..4000)).for_each(|_| bench.clock());
+                bench.pulse("cancel");
+                bench.set("geometry_flags.lines", 0);
+                if numbers.random() {
+                    bench.draw("triangles", &mesh, &faces);
+                }
+            }
+        }
+    }
+}
+
+/// Draws frames from random pieces: such a frame ends and writes only its own memory, and the next frame is correct.
+#[test]
+fn frames_end_with_random_pieces() {
+    let mut bench = Bench::lines(26, 0.1);
+    bench.with_depth = false;
+    for seed in 0..9 {
+        let mut numbers = Pcg64Mcg::new(seed);
+        let size = SIZES[seed as usize % 3];
+        let clear = Expected::clear(size);
+        let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| numbers.random()).collect();
+        for descriptor in descriptors.as_chunks_mut::<48>().0 {
+            // The mark of a piece is in the bits 366 and 367.
+            descriptor[45] |= 0xc0;
+        }
+        let list: Vec<_> = (0..40).map(|_| numbers.random_range(0..300)).collect();
+        let lengths = std::array::from_fn(|_| numbers.random_range(0..=40));
+        let name = format!("seed {seed}");
+        bench.draw_raw(&name, &clear, &descriptors, lengths, &list);
+        assert_eq!(bench.read("status.list_error"), 0, "{name}");
+        let segments = of_50_pixels(0, 20);
+        draw(&mut bench, &format!("after {name}"), SIZES[0], &segments);
+        let nothing: [Segment; 0] = [];
+        draw(
+            &mut bench,
+            &format!("nothing after {name}"),
+            SIZES[2],
+            &nothing,
+        );
+    }
+}
+
+/// Engines without lines skip pieces, and report them.
+#[test]
+fn a_build_without_lines_reports_pieces() {
+    let segment = Segment {
+        ends: [[0, 0], [9000, 9000]].map(|[x, y]| ScreenVertex { x, y, w: 640 }),
+        colour: Rgb565(0xffff),
+        depth: LineDepth::Over,
+    };
+    let clear = Expected::clear(SIZES[0]);
+    let mut gathered = Gathered::default();
+    let mut bench = Bench::lines(27, 0.0);
+    bench.configure_lines(&[segment], &clear);
+    bench.gather("a piece", &mut gathered);
+    let mut bench = Bench::new(28, 0.0);
+    bench.start_gathered(&gathered, &clear);
+    bench.wait_for("status.raster_done");
+    assert_eq!(bench.read("status.list_error"), 1);
+}
