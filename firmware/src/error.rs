@@ -13,7 +13,7 @@ use glint_core::wireframe::ProgramError;
 use glint_model::RenderError;
 
 use crate::gateware::Fallback;
-use crate::models::{FIELDS, Model};
+use crate::models::{CUBE, FIELDS, MAX_MESHES, NameError, RemoveError};
 use crate::objects::{OBJECTS, ObjectError};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::wireframe::WIREFRAME;
@@ -33,8 +33,6 @@ pub enum CommandError<'l> {
     Scene(&'l str),
     /// The board has no memory or no screen for this picture size.
     Size(Size),
-    /// No mesh was uploaded.
-    NoUpload,
     /// The name is not a mesh, so it cannot be an object.
     ObjectMesh(&'l str),
     /// The list of objects cannot be changed.
@@ -61,8 +59,22 @@ pub enum CommandError<'l> {
         command: &'static str,
         /// Length of the upload in bytes.
         bytes: u32,
-        /// Length of the memory for the upload in bytes.
-        room: usize,
+        /// Length of the free memory in bytes.
+        free: usize,
+    },
+    /// A mesh cannot be uploaded under this name.
+    MeshName {
+        /// The name.
+        name: &'l str,
+        /// The reason.
+        error: NameError,
+    },
+    /// A mesh cannot be removed.
+    Unload {
+        /// The name.
+        name: &'l str,
+        /// The reason.
+        error: RemoveError,
     },
     /// A transfer failed.
     Transfer(Failure),
@@ -108,21 +120,20 @@ impl Display for CommandError<'_> {
             Self::Key(key) => write!(f, "info `{key}`: expected an entry, `info` lists them"),
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
-                let models = Model::ALL.iter().map(|model| model.name());
                 let fields = FIELDS.iter().map(|(name, _)| *name);
-                let names = models.chain(fields).chain([OBJECTS, WIREFRAME]);
-                names.enumerate().try_for_each(|(i, name)| {
-                    write!(f, "{} {name}", if i == 0 { "" } else { " or" })
-                })
+                let mut names = [CUBE].into_iter().chain(fields).chain([OBJECTS, WIREFRAME]);
+                names.try_for_each(|name| write!(f, " {name} or"))?;
+                f.write_str(" an uploaded mesh, `scene` lists them")
             }
             Self::Size(size) => write!(
                 f,
                 "size: {size} not available on this board, expected a smaller size"
             ),
-            Self::NoUpload => f.write_str("scene model: no mesh uploaded, expected `load` first"),
             Self::ObjectMesh(name) => {
-                let [cube, uploaded] = Model::ALL.map(Model::name);
-                write!(f, "object add `{name}`: expected {cube} or {uploaded}")
+                write!(
+                    f,
+                    "object add `{name}`: expected a mesh, `models` lists them"
+                )
             }
             Self::Object(error) => error.fmt(f),
             Self::NoObjects => {
@@ -149,10 +160,35 @@ impl Display for CommandError<'_> {
             Self::TooLong {
                 command,
                 bytes,
-                room,
-            } => write!(f, "{command} {bytes}: expected at most {room} bytes"),
+                free,
+            } => write!(
+                f,
+                "{command} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of a mesh"
+            ),
+            Self::MeshName { name, error } => {
+                write!(f, "load `{name}`: ")?;
+                match error {
+                    NameError::BuiltIn => f.write_str("built-in scene, expected another name"),
+                    NameError::Full => write!(
+                        f,
+                        "{MAX_MESHES} meshes, expected at most {MAX_MESHES}; `unload NAME` removes one"
+                    ),
+                }
+            }
+            Self::Unload { name, error } => {
+                write!(f, "unload `{name}`: ")?;
+                match error {
+                    RemoveError::Unknown => {
+                        f.write_str("expected an uploaded mesh, `models` lists them")
+                    }
+                    RemoveError::Object(number) => write!(
+                        f,
+                        "the mesh of object {number}, expected `object remove {number}` first"
+                    ),
+                }
+            }
             Self::Transfer(error) => error.fmt(f),
-            Self::Mesh(error) => write!(f, "load: not a mesh, previous mesh kept: {error}"),
+            Self::Mesh(error) => write!(f, "load: not a mesh, previous meshes kept: {error}"),
             Self::Program(error) => write!(f, "program: previous scene kept: {error}"),
             Self::NoWireframe => f.write_str(
                 "press: no wireframe shown, expected `scene wireframe` or `program` first",

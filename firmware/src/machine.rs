@@ -57,7 +57,7 @@ pub struct Machine {
     pub terminal: Terminal,
     /// Camera, field, size and appearance.
     pub scene: Scene,
-    /// The built-in mesh and wireframe program, the uploaded one and the staging memory.
+    /// The built-in mesh and wireframe program, the uploaded ones, the objects and the staging memory.
     pub models: Models,
     /// Frame buffers and renderers.
     pub renderer: Renderer,

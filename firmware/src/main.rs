@@ -8,7 +8,7 @@
 //! commands (scene, object, appearance, camera, imu, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
-//! machine (state) ─┬─ renderer, gateware, scene, models, objects, memory
+//! machine (state) ─┬─ renderer, gateware, scene, models, objects, arena, memory
 //!                  ├─ terminal, transfer
 //!                  ├─ sensor, replay
 //!                  └─ interrupts
@@ -19,6 +19,8 @@
 #![no_main]
 #![deny(unsafe_code)]
 
+#[allow(unsafe_code)] // Divides memory into regions and moves them.
+mod arena;
 mod bench;
 mod commands;
 mod cube;
@@ -33,7 +35,7 @@ mod machine;
 mod main_loop;
 #[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
 mod memory;
-#[allow(unsafe_code)] // Keeps a mesh or a program beyond the borrow of its buffer.
+#[allow(unsafe_code)] // Keeps meshes and programs beyond the borrow of their memory.
 mod models;
 mod objects;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.

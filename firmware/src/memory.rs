@@ -9,7 +9,7 @@ use glint_model::Projected;
 use litex_pac::cpu;
 use litex_pac::memories::MAIN_RAM;
 
-use crate::models::Buffer;
+use crate::arena::Arena;
 
 /// All windows of main memory. `take` lends each of them only once.
 pub struct Memory {
@@ -19,8 +19,8 @@ pub struct Memory {
     pub depth: &'static mut [u32],
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
-    /// Memory for two meshes: the uploaded one, and the staging memory.
-    pub meshes: [Buffer; 2],
+    /// Memory for uploaded meshes and programs, and the staging memory.
+    pub uploads: Arena,
     /// Memory for the descriptors and band lists that pass from the triangle engine's geometry pass to its raster pass.
     pub lists: &'static mut [u32],
 }
@@ -33,9 +33,8 @@ unsafe extern "C" {
     static _depth_size: u8;
     static mut _scratch: u8;
     static _scratch_size: u8;
-    static mut _mesh_a: u8;
-    static mut _mesh_b: u8;
-    static _mesh_size: u8;
+    static mut _uploads: u8;
+    static _uploads_size: u8;
     static mut _lists: u8;
     static _lists_size: u8;
     static mut _windows_end: u8;
@@ -85,10 +84,7 @@ impl Memory {
                 memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),
                 ready: 0,
             },
-            meshes: [
-                Buffer::new(window!(_mesh_a, _mesh_size, u8)),
-                Buffer::new(window!(_mesh_b, _mesh_size, u8)),
-            ],
+            uploads: Arena::new(window!(_uploads, _uploads_size, u8)),
             lists: window!(_lists, _lists_size, u32),
         })
     }

@@ -1,54 +1,26 @@
-//! Meshes, wireframe programs and named fields: the built-in ones, the uploaded one, and the staging memory for the next upload.
+//! Meshes, wireframe programs and named fields: the built-in ones and the uploaded ones, and the staging memory for the next upload.
 
 use core::slice;
 
 use glint_core::field::{Cubes, Field, Menger, Primitive};
 use glint_core::fixed::Q32_32;
-use glint_core::mesh::{Mesh, MeshError};
+use glint_core::mesh::{MAX_NAME, Mesh, MeshError};
 use glint_core::object::Place;
+use glint_core::regions::Region;
 use glint_core::wireframe::{Program, ProgramError};
+use heapless::{String, Vec};
 
+use crate::arena::Arena;
 use crate::cube;
-use crate::objects::{ObjectError, Objects};
+use crate::objects::{OBJECTS, ObjectError, Objects};
+use crate::wireframe::WIREFRAME;
 
-/// Memory for one mesh or wireframe program.
-pub struct Buffer {
-    memory: &'static mut [u8],
-}
-
-impl Buffer {
-    /// A buffer in `memory`, aligned to 16 bytes.
-    pub const fn new(memory: &'static mut [u8]) -> Self {
-        Self { memory }
-    }
-}
-
-/// A mesh that the console can show by name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Model {
-    /// The built-in cube, shown until a mesh is uploaded.
-    Cube,
-    /// The mesh that was uploaded last.
-    Uploaded,
-}
-
-impl Model {
-    /// Every model, in the order of help texts.
-    pub const ALL: [Self; 2] = [Self::Cube, Self::Uploaded];
-
-    /// The name on the console.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cube => "cube",
-            Self::Uploaded => "model",
-        }
-    }
-
-    /// The model with this name.
-    pub fn of(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|model| model.name() == name)
-    }
-}
+/// Name of the built-in mesh, which is shown until a mesh is uploaded. A mesh that is uploaded under this name takes its place.
+pub const CUBE: &str = "cube";
+/// Name of a mesh that is uploaded without a name.
+pub const MODEL: &str = "model";
+/// Largest number of uploaded meshes.
+pub const MAX_MESHES: usize = 16;
 
 /// Fields that the command `scene` shows, with their names.
 pub const FIELDS: [(&str, Field); 2] = [
@@ -65,18 +37,43 @@ pub const FIELDS: [(&str, Field); 2] = [
     ),
 ];
 
-/// The last upload.
-enum Upload {
-    Mesh(Mesh<'static>),
-    Program(Program<'static>),
+/// The name of a mesh.
+pub type Name = String<MAX_NAME>;
+
+/// A mesh and its name.
+#[derive(Clone)]
+struct Named {
+    name: Name,
+    mesh: Mesh<'static>,
 }
 
-/// The built-in mesh and program, and two buffers: one for the uploaded mesh or program, one as staging memory.
+/// Reason why no mesh can be uploaded under a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NameError {
+    /// The name is that of a built-in scene.
+    BuiltIn,
+    /// There are [`MAX_MESHES`] meshes with other names.
+    Full,
+}
+
+/// Reason why a mesh cannot be removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RemoveError {
+    /// No uploaded mesh has the name.
+    Unknown,
+    /// The object with this number, from 1, has the mesh.
+    Object(u32),
+}
+
+/// The built-in mesh and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes.
 pub struct Models {
-    buffers: [Buffer; 2],
-    /// The uploaded mesh or program, in the first buffer.
-    uploaded: Option<Upload>,
-    shown: Model,
+    arena: Arena,
+    /// The uploaded meshes and their memory.
+    meshes: Vec<(Named, Region), MAX_MESHES>,
+    /// The uploaded program and its memory.
+    program: Option<(Program<'static>, Region)>,
+    /// The shown mesh.
+    shown: Named,
     cube: Mesh<'static>,
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
@@ -88,12 +85,13 @@ impl Models {
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
-    pub fn new(buffers: [Buffer; 2], cube_program: Program<'static>) -> Result<Self, MeshError> {
+    pub fn new(arena: Arena, cube_program: Program<'static>) -> Result<Self, MeshError> {
         let cube = Mesh::new_checked(&cube::BYTES)?;
         Ok(Self {
-            buffers,
-            uploaded: None,
-            shown: Model::Cube,
+            arena,
+            meshes: Vec::new(),
+            program: None,
+            shown: named(CUBE, cube),
             cube,
             cube_program,
             objects: Objects::default(),
@@ -101,38 +99,54 @@ impl Models {
     }
 
     /// The shown mesh.
-    pub fn mesh(&self) -> &Mesh<'_> {
-        match (self.shown, &self.uploaded) {
-            (Model::Uploaded, Some(Upload::Mesh(mesh))) => mesh,
-            _ => &self.cube,
-        }
+    pub const fn mesh(&self) -> &Mesh<'_> {
+        &self.shown.mesh
+    }
+
+    /// The name of the shown mesh.
+    pub fn shown(&self) -> &str {
+        &self.shown.name
     }
 
     /// The wireframe program.
-    pub const fn program(&self) -> &Program<'_> {
-        match &self.uploaded {
-            Some(Upload::Program(program)) => program,
-            _ => &self.cube_program,
-        }
+    pub fn program(&self) -> &Program<'_> {
+        let uploaded = self.program.as_ref().map(|(program, _)| program);
+        uploaded.unwrap_or(&self.cube_program)
     }
 
-    /// The shown model.
-    pub const fn shown(&self) -> Model {
-        self.shown
+    /// The uploaded program, if there is one.
+    pub fn uploaded_program(&self) -> Option<&Program<'_>> {
+        self.program.as_ref().map(|(program, _)| program)
     }
 
-    /// Whether the model exists: always true for the cube, and true for the upload while a mesh is the last upload.
-    pub const fn has(&self, model: Model) -> bool {
-        matches!(model, Model::Cube) || matches!(self.uploaded, Some(Upload::Mesh(_)))
+    /// Names and meshes: the built-in one, and then the uploaded ones.
+    pub fn meshes(&self) -> impl Iterator<Item = (&str, &Mesh<'_>)> {
+        let uploaded = self.meshes.iter();
+        let uploaded = uploaded.map(|(named, _)| (named.name.as_str(), &named.mesh));
+        let cube = (CUBE, &self.cube);
+        let built_in = uploaded
+            .clone()
+            .all(|(name, _)| name != CUBE)
+            .then_some(cube);
+        built_in.into_iter().chain(uploaded)
     }
 
-    /// Shows a model if it exists. Returns whether it exists.
-    pub const fn show(&mut self, model: Model) -> bool {
-        let exists = self.has(model);
-        if exists {
-            self.shown = model;
-        }
-        exists
+    /// Number of uploaded meshes.
+    pub fn upload_count(&self) -> usize {
+        self.meshes.len()
+    }
+
+    /// Number of bytes without an upload.
+    pub fn free(&self) -> usize {
+        self.arena.free()
+    }
+
+    /// Shows the mesh with this name. Returns whether it exists, and whether it was not shown before.
+    pub fn show(&mut self, name: &str) -> Option<bool> {
+        let mesh = self.find(name)?;
+        let is_other = self.shown.name != name;
+        self.shown = named(name, mesh);
+        Some(is_other)
     }
 
     /// The objects.
@@ -145,62 +159,173 @@ impl Models {
         &mut self.objects
     }
 
-    /// Adds an object with the mesh of `model`, if it exists.
-    pub fn add_object(&mut self, model: Model, place: &Place) -> Option<Result<(), ObjectError>> {
-        let mesh = match (model, &self.uploaded) {
-            (Model::Cube, _) => self.cube,
-            (Model::Uploaded, Some(Upload::Mesh(mesh))) => *mesh,
-            _ => return None,
-        };
-        Some(self.objects.add(model, mesh, place))
+    /// Adds an object with the mesh of this name, if it exists.
+    pub fn add_object(&mut self, name: &str, place: &Place) -> Option<Result<(), ObjectError>> {
+        let mesh = self.find(name)?;
+        Some(self.objects.add(&named(name, mesh).name, mesh, place))
     }
 
-    /// The staging memory for the next upload, which is separate from the shown mesh.
+    fn find(&self, name: &str) -> Option<Mesh<'static>> {
+        let uploaded = self.meshes.iter().find(|(named, _)| named.name == name);
+        let built_in = (name == CUBE).then_some(self.cube);
+        uploaded.map(|(named, _)| named.mesh).or(built_in)
+    }
+
+    /// The staging memory for the next upload, which is separate from all uploads.
     pub fn staging(&mut self) -> &mut [u8] {
-        self.buffers[1].memory
+        self.arena.staging()
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and shows this mesh
-    /// as the uploaded model.
+    /// Checks that a mesh may have this name.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn check_name(&self, name: &str) -> Result<(), NameError> {
+        let mut fields = FIELDS.iter().map(|(name, _)| *name);
+        if [OBJECTS, WIREFRAME].contains(&name) || fields.any(|field| field == name) {
+            return Err(NameError::BuiltIn);
+        }
+        let is_new = self.meshes.iter().all(|(named, _)| named.name != name);
+        if self.meshes.is_full() && is_new {
+            return Err(NameError::Full);
+        }
+        Ok(())
+    }
+
+    /// Returns the first `length` bytes of the staging memory; `None` if the free memory is shorter. This may move uploads, so no
+    /// frame may be in progress.
+    pub fn staging_of(&mut self, length: usize) -> Option<&mut [u8]> {
+        if (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
+            self.close_gaps();
+        }
+        self.arena.staging().get_mut(..length)
+    }
+
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, keeps them under `name`, in place of an earlier mesh
+    /// of this name, and shows the mesh.
     ///
     /// # Errors
     /// [`MeshError`] for an invalid mesh; then nothing changes.
-    pub fn accept(&mut self, length: usize) -> Result<(), MeshError> {
-        let mesh = Mesh::new_checked(self.staged(length))?;
-        self.keep(Upload::Mesh(mesh));
-        self.shown = Model::Uploaded;
+    pub fn accept(&mut self, name: &str, length: usize) -> Result<(), MeshError> {
+        let Some(region) = self.arena.keep(length) else {
+            // The caller has checked name and length, so this returns an error.
+            return Mesh::new_checked(&[]).map(drop);
+        };
+        let mesh = match Mesh::new_checked(self.lasting(region, length)) {
+            Ok(mesh) => mesh,
+            Err(error) => {
+                self.arena.release(region);
+                return Err(error);
+            }
+        };
+        let new = (named(name, mesh), region);
+        self.shown = new.0.clone();
+        self.objects.replace(name, mesh);
+        let old = self.meshes.iter_mut().find(|(old, _)| old.name == name);
+        match old.map(|old| core::mem::replace(old, new.clone())) {
+            Some((_, unused)) => self.arena.release(unused),
+            // The caller has checked that the list is not full.
+            None => drop(self.meshes.push(new)),
+        }
         Ok(())
     }
 
     /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program in place of the
-    /// last upload.
+    /// last one.
     ///
     /// # Errors
     /// [`ProgramError`] for an invalid program; then nothing changes.
     pub fn accept_program(&mut self, length: usize) -> Result<(), ProgramError<'static>> {
-        let program = Program::new_checked(self.staged(length))?;
-        self.keep(Upload::Program(program));
-        self.shown = Model::Cube;
+        let Some(region) = self.arena.keep(length) else {
+            // The caller has checked the length, so this returns an error.
+            return Program::new_checked(&[]).map(drop);
+        };
+        match Program::new_checked(self.lasting(region, length)) {
+            Ok(program) => {
+                if let Some((_, old)) = self.program.replace((program, region)) {
+                    self.arena.release(old);
+                }
+                Ok(())
+            }
+            Err(error) => {
+                self.arena.release(region);
+                Err(error)
+            }
+        }
+    }
+
+    /// Removes an uploaded mesh, and moves the others together, so no frame may be in progress. If the mesh is shown, the cube is
+    /// shown instead.
+    ///
+    /// # Errors
+    /// No mesh has the name, or an object has the mesh.
+    pub fn remove(&mut self, name: &str) -> Result<(), RemoveError> {
+        let position = self.meshes.iter().position(|(named, _)| named.name == name);
+        let position = position.ok_or(RemoveError::Unknown)?;
+        if let Some(number) = self.objects.first_of(name) {
+            return Err(RemoveError::Object(number));
+        }
+        let (_, region) = self.meshes.remove(position);
+        if self.shown.name == name {
+            self.shown = named(CUBE, self.cube);
+        }
+        self.arena.release(region);
+        self.close_gaps();
         Ok(())
     }
 
-    /// The first `length` bytes of the staging memory, for [`keep`](Self::keep).
-    fn staged(&self, length: usize) -> &'static [u8] {
-        let staged = self.buffers[1].memory.get(..length).unwrap_or_default();
-        // SAFETY: the memory is 'static. The callers drop the slice, or pass what borrows from it to `keep`, by which its buffer
-        // becomes the first buffer. Only `staging` lends a buffer for writing, and always lends the second buffer. Only `keep`
-        // swaps the buffers, and it drops the last upload, also from the objects, when it does so.
-        unsafe { slice::from_raw_parts(staged.as_ptr(), staged.len()) }
+    /// Moves all uploads together, so that one gap remains.
+    fn close_gaps(&mut self) {
+        let (shown, cube) = (self.shown.name.clone(), self.cube);
+        // Nothing may borrow from the arena while it moves its regions.
+        let lengths: Vec<usize, MAX_MESHES> = self
+            .meshes
+            .iter_mut()
+            .map(|(named, _)| {
+                let length = named.mesh.bytes().len();
+                named.mesh = cube;
+                length
+            })
+            .collect();
+        self.objects.replace_all(|_| Some(cube));
+        self.shown = named(CUBE, cube);
+        let program = self.program.take();
+        let program = program.map(|(program, region)| (program.bytes().len(), region));
+
+        self.arena.close_gaps();
+        for (index, length) in lengths.iter().enumerate() {
+            let region = self.meshes.get(index).map(|(_, region)| *region);
+            let mesh = region.map(|region| Mesh::new_checked(self.lasting(region, *length)));
+            if let (Some((named, _)), Some(Ok(mesh))) = (self.meshes.get_mut(index), mesh) {
+                named.mesh = mesh;
+            }
+        }
+        if let Some((length, region)) = program {
+            let program = Program::new_checked(self.lasting(region, length));
+            self.program = program.ok().map(|program| (program, region));
+        }
+        let meshes = &self.meshes;
+        self.objects.replace_all(|name| {
+            let moved = meshes.iter().find(|(named, _)| named.name == name);
+            moved.map(|(named, _)| named.mesh)
+        });
+        self.show(&shown);
     }
 
-    /// Keeps an upload that borrows from the staging memory, in place of the last one.
-    fn keep(&mut self, upload: Upload) {
-        let mesh = match &upload {
-            Upload::Mesh(mesh) => Some(*mesh),
-            Upload::Program(_) => None,
-        };
-        self.objects.replace(Model::Uploaded, mesh);
-        self.uploaded = Some(upload);
-        self.buffers.swap(0, 1);
+    /// The first `length` bytes of a region, for a mesh or a program that borrows them.
+    fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
+        let bytes = self.arena.bytes(region, length);
+        // SAFETY: the memory is 'static. What borrows these bytes is dropped, or kept in `meshes`, `program`, `shown` and `objects`,
+        // which are private. `accept`, `accept_program` and `remove` take it out of these before they release its region, and
+        // `close_gaps` before it moves the regions; the arena lends nothing but gaps for writing.
+        unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
+    }
+}
+
+/// A mesh and its name, which has at most [`MAX_NAME`] bytes.
+fn named(name: &str, mesh: Mesh<'static>) -> Named {
+    Named {
+        name: Name::try_from(name).unwrap_or_default(),
+        mesh,
     }
 }

@@ -3,12 +3,10 @@
 use core::fmt::{self, Display};
 
 use glint_core::matrix::MatrixError;
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{MAX_NAME, Mesh};
 use glint_core::object::{MAX_OBJECTS, Place};
 use glint_model::{MeshSubject, Object, Placement};
-use heapless::Vec;
-
-use crate::models::Model;
+use heapless::{String, Vec};
 
 /// Name of the scene on the console.
 pub const OBJECTS: &str = "objects";
@@ -57,8 +55,8 @@ impl Display for ObjectError {
 /// A bounded list of objects. Placements are made when an object changes, not for each frame.
 #[derive(Default)]
 pub struct Objects {
-    /// The mesh of each object.
-    models: Vec<Model, MAX_OBJECTS>,
+    /// The name of each object's mesh.
+    names: Vec<String<MAX_NAME>, MAX_OBJECTS>,
     objects: Vec<Object<'static>, MAX_OBJECTS>,
 }
 
@@ -68,12 +66,10 @@ impl Objects {
         &self.objects
     }
 
-    /// Meshes and places of all objects, in order.
-    pub fn list(&self) -> impl Iterator<Item = (Model, Place)> {
-        self.models
-            .iter()
-            .copied()
-            .zip(self.objects.iter().map(place))
+    /// Names of the meshes, and places, of all objects in order.
+    pub fn list(&self) -> impl Iterator<Item = (&str, Place)> {
+        let names = self.names.iter().map(String::as_str);
+        names.zip(self.objects.iter().map(place))
     }
 
     /// Adds an object at the end of the list.
@@ -82,7 +78,7 @@ impl Objects {
     /// [`ObjectError::Full`].
     pub fn add(
         &mut self,
-        model: Model,
+        name: &String<MAX_NAME>,
         mesh: Mesh<'static>,
         at: &Place,
     ) -> Result<(), ObjectError> {
@@ -93,7 +89,7 @@ impl Objects {
         };
         self.objects.push(object).map_err(|_| ObjectError::Full)?;
         // Both lists have the same length and capacity.
-        self.models.push(model).map_err(|_| ObjectError::Full)
+        self.names.push(name.clone()).map_err(|_| ObjectError::Full)
     }
 
     /// Changes the object with this number, from 1: applies `next` to its place.
@@ -120,27 +116,33 @@ impl Objects {
             Some(number) => {
                 let index = self.index(number)?;
                 self.objects.remove(index);
-                self.models.remove(index);
+                self.names.remove(index);
             }
             None => *self = Self::default(),
         }
         Ok(())
     }
 
-    /// Gives the objects of `model` another mesh; `None` removes these objects.
-    pub fn replace(&mut self, model: Model, mesh: Option<Mesh<'static>>) {
-        for index in (0..self.models.len()).rev() {
-            if self.models.get(index) != Some(&model) {
-                continue;
-            }
-            match (mesh, self.objects.get_mut(index)) {
-                (Some(mesh), Some(object)) => object.subject.mesh = mesh,
-                _ => {
-                    self.objects.remove(index);
-                    self.models.remove(index);
-                }
+    /// Gives the objects whose mesh has this name another mesh.
+    pub fn replace(&mut self, name: &str, mesh: Mesh<'static>) {
+        self.replace_all(|other| (other == name).then_some(mesh));
+    }
+
+    /// Gives each object the mesh that `find` returns for the name of its mesh; with `None` it keeps its mesh.
+    pub fn replace_all(&mut self, find: impl Fn(&str) -> Option<Mesh<'static>>) {
+        for (name, object) in self.names.iter().zip(&mut self.objects) {
+            if let Some(mesh) = find(name) {
+                object.subject.mesh = mesh;
             }
         }
+    }
+
+    /// The number of the first object whose mesh has this name, from 1.
+    pub fn first_of(&self, name: &str) -> Option<u32> {
+        let mut numbered = (1..).zip(&self.names);
+        numbered
+            .find(|(_, known)| *known == name)
+            .map(|(number, _)| number)
     }
 
     /// Sets the options of all objects: `options` returns the subject for a mesh.

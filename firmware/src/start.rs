@@ -157,7 +157,7 @@ pub fn machine() -> Result<Machine, StartError> {
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
-        Models::new(memory.meshes, program).map_err(StartError::Cube)?,
+        Models::new(memory.uploads, program).map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

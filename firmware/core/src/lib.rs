@@ -31,6 +31,7 @@ pub mod object;
 pub mod orientation;
 pub mod picture;
 pub mod polar;
+pub mod regions;
 pub mod stereo;
 pub mod trig;
 pub mod vector;

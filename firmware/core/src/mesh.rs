@@ -15,6 +15,8 @@ pub use encode::{EncodeError, IndexedTriangle, encode};
 pub const MAGIC: [u8; 4] = *b"GLM1";
 /// Largest length of a mesh in bytes.
 pub const MAX_BYTES: u32 = 32 << 20;
+/// Largest length of a mesh's name in bytes.
+pub const MAX_NAME: usize = 24;
 /// Largest number of vertices of a chunk.
 pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
@@ -24,6 +26,11 @@ pub const MAX_RADIUS: u32 = 56_756;
 const RECORD: usize = 16;
 /// Bytes of the mesh's header.
 const HEADER: usize = 2 * RECORD;
+
+/// Whether a text may be the name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
+pub fn is_name(text: &str) -> bool {
+    (1..=MAX_NAME).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic())
+}
 
 /// A checked mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

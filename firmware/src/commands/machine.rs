@@ -45,7 +45,7 @@ impl<'l> MachineCommands<'l> for Machine {
             }),
             None => (models.mesh().vertex_count(), models.mesh().triangle_count()),
         };
-        let (field, model) = (scene.field(), models.shown().name());
+        let (field, model) = (scene.field(), models.shown());
         let with_mesh = match field {
             Some(_) if scene.with_mesh() && !scene.shows_wireframe() && !scene.shows_objects() => {
                 format_args!(" with {model}")

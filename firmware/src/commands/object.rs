@@ -5,7 +5,6 @@ use glint_core::console::{ObjectAction, ObjectCommands};
 use crate::error::CommandError;
 use crate::job::{Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::Model;
 
 impl<'l> ObjectCommands<'l> for Machine {
     fn object(&mut self, action: Option<ObjectAction<'l>>) -> Outcome<'l> {
@@ -17,18 +16,15 @@ impl<'l> ObjectCommands<'l> for Machine {
         } = self;
         match action.unwrap_or(ObjectAction::List) {
             ObjectAction::List => {
-                for (number, (model, place)) in (1..).zip(models.objects().list()) {
-                    let name = model.name();
+                for (number, (name, place)) in (1..).zip(models.objects().list()) {
                     terminal.print(format_args!("object {number} {name} {place}\n"));
                 }
                 return Ok(Reply::Done);
             }
             ObjectAction::Add { mesh: name, place } => {
-                let model = Model::of(name).ok_or(CommandError::ObjectMesh(name))?;
-                let added = models.add_object(model, &place);
-                added
-                    .ok_or(CommandError::NoUpload)?
-                    .map_err(CommandError::Object)?;
+                let added = models.add_object(name, &place);
+                let added = added.ok_or(CommandError::ObjectMesh(name))?;
+                added.map_err(CommandError::Object)?;
                 scene.show_objects();
             }
             ObjectAction::Change { number, next } => models

@@ -12,7 +12,7 @@ use crate::error::CommandError;
 use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::{FIELDS, Model};
+use crate::models::{FIELDS, MAX_MESHES, MODEL};
 use crate::objects::OBJECTS;
 use crate::wireframe::WIREFRAME;
 
@@ -25,11 +25,48 @@ impl<'l> SceneCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn load(&mut self, upload: Manifest) -> Outcome<'l> {
+    fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> Outcome<'l> {
+        let (name, length) = (name.unwrap_or(MODEL), upload.length as usize);
+        let accepted = self.models.check_name(name);
+        accepted.map_err(|error| CommandError::MeshName { name, error })?;
         upload::receive(self, "load", upload)?;
-        let length = upload.length as usize;
-        self.models.accept(length).map_err(CommandError::Mesh)?;
+        let accepted = self.models.accept(name, length);
+        accepted.map_err(CommandError::Mesh)?;
         self.scene.set_field(None);
+        self.scene.touch();
+        Ok(Reply::Done)
+    }
+
+    fn models(&mut self) -> Outcome<'l> {
+        let Self {
+            terminal, models, ..
+        } = self;
+        for (name, mesh) in models.meshes() {
+            let (vertices, triangles, bytes) = (
+                mesh.vertex_count(),
+                mesh.triangle_count(),
+                mesh.bytes().len(),
+            );
+            terminal.print(format_args!(
+                "mesh {name} vertices {vertices} triangles {triangles} bytes {bytes}\n"
+            ));
+        }
+        if let Some(program) = models.uploaded_program() {
+            let (segments, bytes) = (program.segment_count(), program.bytes().len());
+            terminal.print(format_args!("program segments {segments} bytes {bytes}\n"));
+        }
+        let (count, free) = (models.upload_count(), models.free());
+        terminal.print(format_args!(
+            "uploads {count} of {MAX_MESHES}\nfree {free} bytes\n"
+        ));
+        Ok(Reply::Done)
+    }
+
+    fn unload(&mut self, name: &'l str) -> Outcome<'l> {
+        let removed = self.models.remove(name);
+        removed.map_err(|error| CommandError::Unload { name, error })?;
+        // The staging memory is another one from now on.
+        self.replay = None;
         self.scene.touch();
         Ok(Reply::Done)
     }
@@ -99,14 +136,10 @@ fn list(machine: &mut Machine) {
     let (wireframe, objects) = (scene.shows_wireframe(), scene.shows_objects());
     let instead = wireframe || objects;
     let field = scene.field();
-    for model in Model::ALL {
-        let shown = !instead && (field.is_none() || scene.with_mesh()) && model == models.shown();
-        let state = match (shown, models.has(model)) {
-            (true, _) => "shown",
-            (_, true) => "there",
-            (_, false) => "empty",
-        };
-        terminal.print(format_args!("scene {} {state}\n", model.name()));
+    for (name, _) in models.meshes() {
+        let shown = !instead && (field.is_none() || scene.with_mesh()) && name == models.shown();
+        let state = if shown { "shown" } else { "there" };
+        terminal.print(format_args!("scene {name} {state}\n"));
     }
     for (name, named) in FIELDS {
         let shown = !instead && field == Some(&named);
@@ -140,13 +173,9 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>
         scene.set_field(Some(*field));
         return Ok(());
     }
-    let model = Model::of(name).ok_or(CommandError::Scene(name))?;
-    let before = models.shown();
-    if !models.show(model) {
-        return Err(CommandError::NoUpload);
-    }
+    let is_other = models.show(name).ok_or(CommandError::Scene(name))?;
     scene.set_field(None);
-    if model != before {
+    if is_other {
         scene.touch();
     }
     Ok(())

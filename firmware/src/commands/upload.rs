@@ -11,7 +11,7 @@ use crate::transfer;
 /// is the name of the command that uploads them.
 ///
 /// # Errors
-/// The upload is too long, or the transfer fails.
+/// The upload is longer than the free memory, or the transfer fails.
 pub fn receive<'m>(
     machine: &'m mut Machine,
     command: &'static str,
@@ -25,17 +25,15 @@ pub fn receive<'m>(
         uart,
         ..
     } = machine;
-    let staging = models.staging();
-    let room = staging.len();
-    let Some(staging) = staging.get_mut(..manifest.length as usize) else {
-        return Err(CommandError::TooLong {
-            command,
-            bytes: manifest.length,
-            room,
-        });
-    };
     // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
     *replay = None;
+    let length = manifest.length as usize;
+    let free = models.free();
+    let staging = models.staging_of(length).ok_or(CommandError::TooLong {
+        command,
+        bytes: manifest.length,
+        free,
+    })?;
     // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
     // have been interrupted near its end.
     cpu::flush_data_cache();

@@ -1,7 +1,7 @@
 //! Uploads and downloads over a board's line, by the transfer protocol of `glint-core`.
 
 use crate::board::{Board, BoardError, BoardName};
-use crate::console::{Console, ConsoleError};
+use crate::console::{self, Console, ConsoleError};
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 
 /// An error of a transfer.
@@ -46,17 +46,22 @@ pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 /// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
 
-/// Uploads a mesh and shows it.
+/// Uploads a mesh under a name, by default `model`, and shows it.
 ///
 /// # Errors
 /// The transfer fails or the firmware refuses the mesh; the board still shows its last frame.
 pub fn upload<B: Board + ?Sized>(
     console: &mut Console<B>,
     mesh: &[u8],
+    name: Option<&str>,
     session: u8,
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
-    upload_for(console, "load", mesh, session, progress, &mut |_| {})
+    let mut command = command_for("load", mesh);
+    if let Some(name) = name {
+        command = format!("{command} {name}");
+    }
+    announce(console, &command, mesh, session, progress, &mut |_| {})
 }
 
 /// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board asks for them. Calls
@@ -72,22 +77,39 @@ pub fn upload_for<B: Board + ?Sized>(
     progress: &mut Progress,
     on_line: &mut dyn FnMut(&str),
 ) -> Result<(), TransferError> {
+    let command = command_for(name, data);
+    announce(console, &command, data, session, progress, on_line)
+}
+
+/// The console command `name` with the length and CRC-32 of `data`.
+fn command_for(name: &str, data: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(data);
-    let command = format!("{name} {length} {crc32:08x}");
-    console.send(&command)?;
-    if console.lines(&command, on_line)? {
+    format!("{name} {length} {crc32:08x}")
+}
+
+/// Sends a console command that announces `data`, and uploads the data if the board asks for them.
+fn announce<B: Board + ?Sized>(
+    console: &mut Console<B>,
+    command: &str,
+    data: &[u8],
+    session: u8,
+    progress: &mut Progress,
+    on_line: &mut dyn FnMut(&str),
+) -> Result<(), TransferError> {
+    console.send(command)?;
+    if console.lines(command, on_line)? {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
         // The rest of the reply is read even after a failed transfer, so that it is not taken for the reply to the next command.
-        let reply = console.lines(&command, on_line);
+        let reply = console.lines(command, on_line);
         sent?;
         reply?;
     }
     Ok(())
 }
 
-/// Writes data directly to the board's staging memory, where uploads arrive. At the next upload of the same data the board finds
-/// their CRC-32 there, and skips the transfer.
+/// Writes data directly to the board's staging memory, where uploads arrive, if they fit there. At the next upload of the same data
+/// the board finds their CRC-32 there, and skips the transfer.
 ///
 /// # Errors
 /// [`TransferError::NoMemory`], or the data exceed the board's memory.
@@ -95,9 +117,17 @@ pub fn stage<B: Board + ?Sized>(
     console: &mut Console<B>,
     data: &[u8],
 ) -> Result<(), TransferError> {
-    let address = address(console, "staging")?;
+    let command = "info staging";
+    let lines = console.command(command)?;
+    let entry: String = console::value(command, &lines, "staging")?;
+    let (address, room) = entry.split_once(' ').unwrap_or((&entry, "0"));
+    let address = parse_address("staging", address)?;
+    let room: usize = room.parse().unwrap_or(0);
     let memory = console.board().memory().ok_or(TransferError::NoMemory)?;
-    Ok(memory.write_memory(address, data)?)
+    if data.len() <= room {
+        memory.write_memory(address, data)?;
+    }
+    Ok(())
 }
 
 /// Reads `length` bytes of the board's main memory directly, from `offset` bytes after the address that the command `info` prints
@@ -121,12 +151,16 @@ pub fn read_memory<B: Board + ?Sized>(
 /// The address that the board's command `info` prints for `key`.
 fn address<B: Board + ?Sized>(console: &mut Console<B>, key: &str) -> Result<u32, ConsoleError> {
     let word = console.info(key)?;
+    parse_address(key, &word)
+}
+
+fn parse_address(key: &str, word: &str) -> Result<u32, ConsoleError> {
     word.strip_prefix("0x")
         .and_then(|digits| u32::from_str_radix(digits, 16).ok())
         .ok_or_else(|| ConsoleError::Reply {
             command: format!("info {key}"),
             expected: "an address 0x…".to_owned(),
-            found: word.clone(),
+            found: word.to_owned(),
         })
 }
 

@@ -8,7 +8,8 @@ use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::commands;
 use super::values::{
-    FieldOfView, HalfTurn, Imu, LookAt, Mounting, Name, Sensitivity, Size, Upload, View, Whole,
+    FieldOfView, HalfTurn, Imu, LookAt, MeshName, Mounting, Name, Sensitivity, Size, Upload, View,
+    Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::field::Field;
@@ -39,7 +40,9 @@ commands! {
     /// Commands of the scene: mesh, field and wireframe.
     SceneCommands {
         scene Scene(name: Option<Name>): "list the scenes, or show one";
-        load Load(upload: Upload): "upload a mesh (binary) and show it";
+        load Load(upload: Upload, name: Option<MeshName>): "upload a mesh (binary) under a name (default model) and show it";
+        models Models(): "list the meshes and the memory for uploads";
+        unload Unload(name: MeshName): "remove an uploaded mesh";
         program Program(upload: Upload): "upload a wireframe program (binary) and show it";
         press Press(key: Key, rotate: Flag): "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
         field Field(field: Option<Or<Off, Field>>): "show or set the distance field; off shows the mesh";

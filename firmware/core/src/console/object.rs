@@ -3,7 +3,7 @@
 use super::argument::{Argument, Keyword, Or, Reader};
 use super::error::ValueError;
 use super::syntax::{Kind, Parameter, Shape};
-use super::values::{Name, Whole};
+use super::values::{MeshName, Whole};
 use crate::choice::choices;
 use crate::object::{MAX_OBJECTS, Operation, Place, PlaceError};
 
@@ -68,7 +68,7 @@ type Number = Whole<{ MAX_OBJECTS as u32 }>;
 pub struct Object;
 
 static ACTION: Parameter = Parameter::of::<Action>("action");
-static MESH: Parameter = Parameter::of::<Name>("mesh");
+static MESH: Parameter = Parameter::of::<MeshName>("mesh");
 static NUMBER: Parameter = Parameter::of::<Number>("number");
 static REMOVED: Parameter = Parameter::of::<Or<All, Number>>("number");
 
@@ -112,7 +112,7 @@ impl Argument for Object {
         let change = match reader.read::<Action>(&ACTION)? {
             Action::List => return Some(ObjectAction::List),
             Action::Add => {
-                let mesh = reader.read::<Name>(&MESH)?;
+                let mesh = reader.read::<MeshName>(&MESH)?;
                 let place = Place::parse(reader.words());
                 let place = accepted(reader, place)?;
                 return Some(ObjectAction::Add { mesh, place });

@@ -16,7 +16,7 @@ use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{self, Rgb, parse_rgb};
-use crate::mesh::MAX_BYTES;
+use crate::mesh::{self, MAX_BYTES};
 use crate::picture;
 use crate::stereo;
 use crate::wire::Manifest;
@@ -30,6 +30,18 @@ impl WordArgument for Name {
 
     fn parse(text: &str) -> Option<&str> {
         Some(text)
+    }
+}
+
+/// The name of a mesh.
+pub struct MeshName;
+
+impl WordArgument for MeshName {
+    type Value<'a> = &'a str;
+    const KIND: Kind = Kind::Text(&"a name of at most 24 visible characters of ASCII");
+
+    fn parse(text: &str) -> Option<&str> {
+        Some(text).filter(|text| mesh::is_name(text))
     }
 }
 

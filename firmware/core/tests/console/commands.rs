@@ -290,8 +290,21 @@ fn every_command_is_understood() {
                 length: 32 << 20,
                 crc32: 0xDEAD_BEEF,
             },
+            name: None,
         },
     );
+    assert_parses(
+        "load 16 0 icosphere:4",
+        Command::Load {
+            upload: Manifest {
+                length: 16,
+                crc32: 0,
+            },
+            name: Some("icosphere:4"),
+        },
+    );
+    assert_parses("models", Command::Models {});
+    assert_parses("unload teapot", Command::Unload { name: "teapot" });
     assert_parses(
         "program 256 0123abcd",
         Command::Program {
@@ -322,6 +335,7 @@ fn every_command_is_understood() {
                 length: 16,
                 crc32: 0,
             },
+            name: None,
         },
     );
     assert_parses("replay", Command::Replay { upload: None });

@@ -57,6 +57,10 @@ fn mistakes_are_named_with_their_place() {
         "load: CRC32 is \"123456789\" (column 8): expected up to 8 hexadecimal digits",
     );
     assert_refused(
+        "unload a-name-of-more-than-24-bytes",
+        "unload: NAME is \"a-name-of-more-than-24-b...\" (column 8): expected a name of at most 24 visible characters of ASCII",
+    );
+    assert_refused(
         "leds 65536",
         "leds: VALUE is \"65536\" (column 6): expected a whole number from 0 to 65535",
     );

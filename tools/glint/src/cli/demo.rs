@@ -138,7 +138,7 @@ impl DemoArguments {
         }
         let (name, _) = models.last().unwrap_or(first);
         if models.is_empty() {
-            renderer.upload(&first.1.mesh, Route::Memory, &mut |_, _| {})?;
+            renderer.upload(&first.1.mesh, None, Route::Memory, &mut |_, _| {})?;
         }
         let path = self.out.join("orbit.png");
         let cycles = self.orbit(&mut renderer, &path)?;

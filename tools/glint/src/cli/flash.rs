@@ -8,7 +8,8 @@ use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::flash;
 use glint::render::{BoardRenderer, Route};
-use std::path::PathBuf;
+use glint_core::mesh::{MAX_NAME, is_name};
+use std::path::{Path, PathBuf};
 
 /// Load a program onto a board through its BIOS, and start it.
 ///
@@ -35,11 +36,15 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model to a board and show it.
+/// Upload a model to a board under a name, beside the models it has, and show it.
 #[derive(Args)]
 pub struct UploadArguments {
     /// Mesh file, or name of a generator.
     model: String,
+    /// Name of the model on the board, at most 24 visible characters of ASCII [default: the file's name
+    /// without its ending, or `model` for a generator].
+    #[arg(long, value_parser = mesh_name)]
+    name: Option<String>,
     /// Board: `virtual` or a serial port.
     #[arg(long)]
     board: BoardName,
@@ -51,6 +56,20 @@ pub struct UploadArguments {
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
+}
+
+fn mesh_name(text: &str) -> Result<String, String> {
+    let expected = format!("expected 1 to {MAX_NAME} visible characters of ASCII");
+    is_name(text).then(|| text.to_owned()).ok_or(expected)
+}
+
+/// The name of a model on the board: that of its file without folder and ending, with `-` for characters that a name cannot have.
+/// `None` for a generator.
+fn default_name(model: &str) -> Option<String> {
+    let path = Path::new(model);
+    let stem = path.extension().and(path.file_stem())?.to_string_lossy();
+    let visible = |c: char| if c.is_ascii_graphic() { c } else { '-' };
+    Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
 fn parse_address(text: &str) -> Result<u32, String> {
@@ -95,10 +114,12 @@ impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let model = load(&self.model, self.keep_scale)?;
         let mut board = self.line.board(&self.board)?;
+        let name = self.name.or_else(|| default_name(&self.model));
         let start = board.now_ms();
         let bar = bar("mesh");
         BoardRenderer::new(Console::new(&mut *board)).upload(
             &model.mesh,
+            name.as_deref(),
             Route::Serial,
             &mut advance(&bar),
         )?;

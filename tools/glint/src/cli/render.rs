@@ -255,11 +255,6 @@ impl RenderArguments {
     }
 
     fn objects(&self) -> anyhow::Result<Vec<Description>> {
-        anyhow::ensure!(
-            self.object.is_empty() || self.board == ModelOrBoard::Model,
-            "--object: expected --board model, found --board {}",
-            self.board
-        );
         let objects = self
             .object
             .iter()

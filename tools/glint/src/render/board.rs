@@ -1,6 +1,6 @@
 //! A renderer that draws frames on a board, by console commands.
 
-use super::commands::{field_commands, mesh_commands, size_command, view_command};
+use super::commands::{field_commands, mesh_commands, object_command, size_command, view_command};
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
 use crate::board::Board;
@@ -8,8 +8,9 @@ use crate::console::{self, Console};
 use crate::picture::Image;
 use crate::transfer::{self, Progress, Route};
 use glint_core::camera::View;
+use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
-use glint_model::Frame;
+use glint_model::{Frame, Object};
 
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
@@ -60,7 +61,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Shows a frame on the board: uploads its mesh if it has one, and waits until the frame is drawn.
+    /// Shows a frame on the board: uploads its meshes if it has some, and waits until the frame is drawn. All objects of a frame
+    /// have the options of the first one.
     ///
     /// # Errors
     /// The firmware refuses, or the upload fails.
@@ -80,7 +82,10 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             for command in mesh_commands(mesh) {
                 self.console.command(&command)?;
             }
-            self.upload(mesh.mesh.bytes(), route, progress)?;
+            self.upload(mesh.mesh.bytes(), None, route, progress)?;
+        }
+        if let Some(objects) = frame.subject.objects() {
+            self.show_objects(objects, route, progress)?;
         }
         if let Some(field) = frame.subject.field_part() {
             let with_mesh = frame.subject.mesh_part().is_some();
@@ -91,13 +96,41 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// Uploads a mesh and shows it.
+    /// Replaces the board's objects, whose meshes are uploaded once each, and shows them.
+    fn show_objects(
+        &mut self,
+        objects: &[Object],
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        self.console.command("object remove all")?;
+        let options = objects.first().map(|object| mesh_commands(&object.subject));
+        for command in options.iter().flatten() {
+            self.console.command(command)?;
+        }
+        let mut uploaded: Vec<Mesh> = Vec::new();
+        for object in objects {
+            let mesh = object.subject.mesh;
+            let known = uploaded.iter().position(|known| *known == mesh);
+            let number = known.unwrap_or(uploaded.len()) + 1;
+            let name = format!("object{number}");
+            if known.is_none() {
+                self.upload(mesh.bytes(), Some(&name), route, progress)?;
+                uploaded.push(mesh);
+            }
+            self.console.command(&object_command(&name, object))?;
+        }
+        Ok(())
+    }
+
+    /// Uploads a mesh under a name, by default `model`, and shows it.
     ///
     /// # Errors
     /// The upload fails, or the board does not offer `route`.
     pub fn upload(
         &mut self,
         mesh: &[u8],
+        name: Option<&str>,
         route: Route,
         progress: &mut Progress,
     ) -> Result<(), Error> {
@@ -108,6 +141,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(transfer::upload(
             &mut self.console,
             mesh,
+            name,
             self.uploads,
             progress,
         )?)

@@ -4,8 +4,9 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::choice::switch_name;
 use glint_core::light::Hexadecimal;
+use glint_core::object::Place;
 use glint_core::picture::Size;
-use glint_model::{Clip, FieldSubject, MeshSubject};
+use glint_model::{Clip, FieldSubject, MeshSubject, Object};
 
 /// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {
@@ -23,6 +24,15 @@ pub fn mesh_commands(subject: &MeshSubject) -> [String; 4] {
         },
         format!("winding {}", subject.winding),
     ]
+}
+
+/// The console command that adds an object with the mesh `name`. Its decimals are exact.
+pub fn object_command(name: &str, object: &Object) -> String {
+    let place = Place {
+        matrix: *object.placement.matrix(),
+        colour: object.colour,
+    };
+    format!("object add {name} {place}")
 }
 
 /// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.

@@ -61,7 +61,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     let mut board = running_board();
     let mut renderer = renderer(&mut board);
     renderer
-        .upload(&mesh, Route::Memory, &mut |_, _| {})
+        .upload(&mesh, None, Route::Memory, &mut |_, _| {})
         .unwrap();
     // Frames alternate between two frame buffers. `colour` and `depth` are the addresses of this frame; after one `render` the
     // next frame is drawn there again.

@@ -6,6 +6,7 @@ mod attitudes;
 mod common;
 mod fields;
 mod meshes;
+mod objects;
 mod sensor;
 mod serial_boot;
 mod uploads;

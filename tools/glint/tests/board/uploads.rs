@@ -96,7 +96,7 @@ fn a_bad_upload_leaves_the_old_model() {
     let mut board = running_board();
     let mut console = console(&mut board);
     let quiet: &mut transfer::Progress = &mut |_, _| {};
-    transfer::upload(&mut console, &good, 1, quiet).unwrap();
+    transfer::upload(&mut console, &good, None, 1, quiet).unwrap();
     let shown = frame(&mut console);
 
     // The announced CRC-32 is not that of the mesh that is sent.
@@ -123,7 +123,7 @@ fn a_bad_upload_leaves_the_old_model() {
     for (number, at) in [(3, 40), (4, last_triangle + 1)] {
         let mut damaged = other.clone();
         damaged[at] ^= 0x80;
-        let refused = transfer::upload(&mut console, &damaged, number, quiet)
+        let refused = transfer::upload(&mut console, &damaged, None, number, quiet)
             .unwrap_err()
             .to_string();
         assert!(refused.contains("not a mesh"), "byte {at}: {refused}");
@@ -132,7 +132,7 @@ fn a_bad_upload_leaves_the_old_model() {
     assert!(frame(&mut console) == shown);
 
     // A good upload still works.
-    transfer::upload(&mut console, &other, 5, quiet).unwrap();
+    transfer::upload(&mut console, &other, None, 5, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     assert!(frame(&mut console) != shown);
 }

@@ -1,0 +1,95 @@
+//! The division of a memory into regions of any length, side by side, and the gaps between them.
+
+use core::ops::Range;
+
+/// Regions begin at multiples of this number of bytes, the width of a memory word.
+pub const ALIGNMENT: usize = 16;
+
+/// The number of a region.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region(usize);
+
+/// A memory of a certain length, with at most `N` regions.
+#[derive(Clone, Debug)]
+pub struct Regions<const N: usize> {
+    length: usize,
+    /// The range of each region; an empty one is free.
+    ranges: [Range<usize>; N],
+}
+
+impl<const N: usize> Regions<N> {
+    /// A memory without regions.
+    pub const fn new(length: usize) -> Self {
+        Self {
+            length,
+            ranges: [const { 0..0 }; N],
+        }
+    }
+
+    /// Number of bytes in all gaps.
+    pub fn free(&self) -> usize {
+        let used: usize = self.used().map(Range::len).sum();
+        self.length - used
+    }
+
+    /// The largest gap; the first one of equals.
+    pub fn gap(&self) -> Range<usize> {
+        let next = |start: usize| {
+            let later = self.used().filter(|range| range.start >= start);
+            let starts = later.map(|range| range.start);
+            starts.min().unwrap_or(self.length)
+        };
+        let starts = self.used().map(|range| range.end).chain([0]);
+        starts
+            .map(|start| start..next(start))
+            .max_by_key(|gap| (gap.len(), self.length - gap.start))
+            .unwrap_or(0..0)
+    }
+
+    /// Makes a region of the first `length` bytes of the largest gap, rounded up to [`ALIGNMENT`]. `None` if the gap is shorter, or if
+    /// there are `N` regions.
+    pub fn keep(&mut self, length: usize) -> Option<Region> {
+        let gap = self.gap();
+        let length = length.max(1).checked_next_multiple_of(ALIGNMENT)?;
+        let number = self.ranges.iter().position(Range::is_empty)?;
+        let range = self.ranges.get_mut(number)?;
+        (length <= gap.len()).then(|| {
+            *range = gap.start..gap.start + length;
+            Region(number)
+        })
+    }
+
+    /// The range of a region.
+    pub fn range(&self, Region(number): Region) -> Range<usize> {
+        self.ranges.get(number).cloned().unwrap_or_default()
+    }
+
+    /// Makes a region part of the gaps.
+    pub fn release(&mut self, Region(number): Region) {
+        if let Some(range) = self.ranges.get_mut(number) {
+            *range = 0..0;
+        }
+    }
+
+    /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy` with each range that is
+    /// moved, and with the place of its first byte from then on, which is before the range and after all regions that were moved.
+    pub fn close_gaps(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
+        let mut end = 0;
+        let later = |range: &&mut Range<usize>, end| range.start < range.end && range.start >= end;
+        while let Some(range) = (self.ranges.iter_mut())
+            .filter(|range| later(range, end))
+            .min_by_key(|range| range.start)
+        {
+            let length = range.len();
+            if range.start > end {
+                copy(range.clone(), end);
+            }
+            *range = end..end + length;
+            end += length;
+        }
+    }
+
+    fn used(&self) -> impl Iterator<Item = &Range<usize>> {
+        self.ranges.iter().filter(|range| range.start < range.end)
+    }
+}

@@ -1,0 +1,117 @@
+//! Objects on the board: meshes under names, side by side in memory, drawn as the model draws them.
+
+use crate::common::{address, console, info, mesh, renderer, running_board, timeless};
+use glint::board::{Board, SimulatedBoard};
+use glint::console::Console;
+use glint::object::Description;
+use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
+use glint::{transfer, view};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::{Object, Placement};
+
+/// Objects of three meshes, one of them twice, from a camera that sees them overlap.
+#[test]
+fn objects_are_the_models() {
+    let meshes = ["cube", "icosphere:1", "sponge:1"].map(mesh);
+    let [cube, sphere, sponge] = &meshes;
+    let objects = [
+        (
+            cube,
+            "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
+        ),
+        (sphere, "- scale 0.5,0.5,-1 move 0.5,0.3,0.2"),
+        (sponge, "- scale 0.4 rotate y 30 move 0.2,-0.6,0.3"),
+        (
+            cube,
+            "- matrix 0.2,0.1,0,0,0.3,0,0,0,0.5,0,0.1,0.5 colour 30c0ff",
+        ),
+    ]
+    .map(|(mesh, text)| {
+        let place = Description::parse(text).unwrap().place;
+        Object {
+            subject: MeshSubject::new(Mesh::new_checked(mesh).unwrap()),
+            placement: Placement::new(place.matrix),
+            colour: place.colour,
+        }
+    });
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let subject = Subject::Objects(&objects);
+    let frame = Frame::new(subject, view::spherical("2.5,30,60").unwrap(), Size::W320);
+    let expected = render::on_model(&frame).unwrap();
+    let parts = Parts {
+        colour: true,
+        depth: true,
+    };
+    let rendered = renderer.render(&frame, parts, &mut |_, _| {}).unwrap();
+    assert!(rendered.image.colour == expected.image.colour);
+    assert!(rendered.image.depth == expected.image.depth);
+    let found = timeless(rendered.stats).triangles().clone();
+    assert_eq!(
+        found.triangles_drawn,
+        expected.stats.triangles().triangles_drawn
+    );
+}
+
+/// The bytes of the mesh `name` in the board's memory, at `address`.
+fn bytes(console: &mut Console<SimulatedBoard>, address: u32, length: usize) -> Vec<u8> {
+    let mut bytes = vec![0; length];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(address, &mut bytes).unwrap();
+    bytes
+}
+
+/// Uploads lie side by side. A refused one leaves the others, and after `unload` the others move together.
+#[test]
+fn meshes_have_names_and_share_the_memory() {
+    let [a, b, c] = ["cube", "icosphere:1", "icosphere:2"].map(mesh);
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    let start = address(&mut console, "staging");
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    for (number, (mesh, name)) in (1..).zip([(&a, "a"), (&b, "b"), (&c, "c")]) {
+        transfer::stage(&mut console, mesh).unwrap();
+        transfer::upload(&mut console, mesh, Some(name), number, quiet).unwrap();
+    }
+    assert_eq!(info::<String>(&mut console, "scene"), "c");
+    let free = |bytes: usize| format!("free {} bytes", (64 << 20) - bytes);
+    let list = |console: &mut Console<SimulatedBoard>| console.command("models").unwrap();
+    let all = [
+        "mesh cube vertices 8 triangles 12 bytes 368".to_owned(),
+        format!("mesh a vertices 24 triangles 12 bytes {}", a.len()),
+        format!("mesh b vertices 12 triangles 20 bytes {}", b.len()),
+        format!("mesh c vertices 42 triangles 80 bytes {}", c.len()),
+        "uploads 3 of 16".to_owned(),
+        free(a.len() + b.len() + c.len()),
+    ];
+    assert_eq!(list(&mut console), all);
+
+    let mut damaged = b.clone();
+    let last = damaged.len() - 1;
+    damaged[last] ^= 1;
+    let refused = transfer::upload(&mut console, &damaged, Some("d"), 4, quiet).unwrap_err();
+    assert!(refused.to_string().contains("not a mesh"), "{refused}");
+    assert_eq!(list(&mut console), all);
+
+    console.command("object add c scale 0.5").unwrap();
+    let refused = console.command("unload c").unwrap_err().to_string();
+    assert!(refused.contains("the mesh of object 1"), "{refused}");
+    console.command("unload a").unwrap();
+    console.command("unload b").unwrap();
+    assert!(bytes(&mut console, start, c.len()) == c);
+    let end = start + c.len() as u32;
+    assert_eq!(address(&mut console, "staging"), end);
+    // The moved mesh is drawn from its new place.
+    transfer::stage(&mut console, &b).unwrap();
+    let lines = console.command("render").unwrap();
+    assert!(
+        lines.iter().any(|line| line == "triangles_in 80"),
+        "{lines:?}"
+    );
+    // An object shows the mesh that takes the place of its own.
+    transfer::upload(&mut console, &b, Some("c"), 5, quiet).unwrap();
+    console.command("scene objects").unwrap();
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    assert_eq!(list(&mut console).last(), Some(&free(b.len())));
+}
