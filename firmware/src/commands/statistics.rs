@@ -35,8 +35,13 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
         }
         RenderedBy::Gateware(counters) => (Backend::Gateware, Some(counters)),
     };
+    let soft_core = engine.map(|counters| {
+        let cycles = drawn.cycles.saturating_sub(counters.cycles_busy.into());
+        ("cycles_soft_core", cycles)
+    });
     let values = frame_values(drawn.cycles, &drawn.stats, clock.frequency())
         .into_iter()
+        .chain(soft_core)
         .chain(engine.iter().flat_map(engine_values));
     if !json {
         terminal.print_entry("backend", &backend);

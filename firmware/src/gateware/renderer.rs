@@ -71,7 +71,13 @@ pub struct GatewareRenderer {
     constants: [FrameConstants; 2],
     watchdog: Watchdog,
     start: Start,
+    /// Time at which the last pass was started: the lower half of the cycle counter.
+    pass_start: u32,
 }
+
+/// Clock cycles for which [`GatewareRenderer::advance`] waits for a pass that it has started, 0.25 ms at 81.25 MHz. A pass of the main
+/// loop takes 3,000 cycles and more, most of them to load its code, so a wait is faster for a short pass of the engine.
+const PATIENCE: u32 = 20_000;
 
 impl GatewareRenderer {
     /// A renderer for two frame buffers, of which the first is at `first_frame_buffer`, and a clock of `frequency`; `None` if
@@ -99,6 +105,7 @@ impl GatewareRenderer {
             constants: Default::default(),
             watchdog: Watchdog::new(frequency),
             start: Start::default(),
+            pass_start: 0,
         })
     }
 
@@ -145,6 +152,27 @@ impl GatewareRenderer {
         frame: &Frame,
         output: &mut Output,
     ) -> Option<Result<Rendered, Fallback>> {
+        loop {
+            let result = self.step(frame, output);
+            if result.is_some() || !self.ends_soon() {
+                return result;
+            }
+        }
+    }
+
+    /// Waits for the end of a short pass: until [`PATIENCE`] after its start. Returns whether it has ended.
+    fn ends_soon(&self) -> bool {
+        loop {
+            if self.is_ready() {
+                return true;
+            }
+            if cpu::cycles_low().wrapping_sub(self.pass_start) > PATIENCE {
+                return false;
+            }
+        }
+    }
+
+    fn step(&mut self, frame: &Frame, output: &mut Output) -> Option<Result<Rendered, Fallback>> {
         let step = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output).err().map(Err),
             (Stage::Geometry, Subject::Mesh(mesh) | Subject::MeshInField(mesh, _)) => {
@@ -305,6 +333,7 @@ impl GatewareRenderer {
         // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of
         // this pass; the mesh stays while the renderer is busy.
         unsafe { self.engine.start_geometry(pass) };
+        self.pass_start = cpu::cycles_low();
     }
 
     pub(super) fn start_raster(
@@ -328,6 +357,7 @@ impl GatewareRenderer {
         // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
         // colours and depth codes until then.
         unsafe { self.engine.start_raster(&pass) };
+        self.pass_start = cpu::cycles_low();
     }
 
     /// Clips the exceptions, the triangles that need it, of the geometry pass that wrote `self.buffers[place]`.

@@ -44,6 +44,24 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
+/// A frame of the shown mesh from another camera takes few cycles of the soft core beside the passes of the engine.
+#[test]
+fn a_new_camera_takes_few_cycles_of_the_soft_core() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:6");
+    let frame = mesh_frame(&mesh, "2,30,60", Size::W320);
+    renderer
+        .show(&frame, Route::Memory, &mut |_, _| {})
+        .unwrap();
+    for camera in ["2.5,40,65", "3,130,80"] {
+        let stats = renderer.look(&view::spherical(camera).unwrap()).unwrap();
+        let cycles = stats.engine.get("cycles_soft_core").unwrap();
+        println!("{camera}: {cycles} of {:?} cycles", stats.cycles);
+        assert!(cycles <= 15_000);
+    }
+}
+
 /// Renders a mesh on the board from three positions of the camera, one of them inside the mesh, and compares the picture on the
 /// monitor, the depth buffer and the counts with the model's.
 fn the_monitor_shows_what_the_model_renders(name: &str) {
