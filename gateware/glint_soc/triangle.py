@@ -97,6 +97,8 @@ class TriangleEngine(LiteXModule):
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
             CSRField("lines", offset=8, description="Draw lines: `mesh` has segments in place of triangles."),
+            CSRField("orthographic", offset=9, description="Orthographic projection, in which X and Y are not divided and depth codes "
+                     "are linear. Light between vertices is not: `smooth` must be 0."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
             "and those from `light_0` on, must hold while it runs.")
         address = "Byte address, a multiple of 16, of"
@@ -111,7 +113,8 @@ class TriangleEngine(LiteXModule):
             "in both passes.")
         self._exceptions = Parameter(32, name="exceptions", description=f"{address} the list of exceptions, written by the pass.")
         self._exception_limit = Parameter(_COUNT_BITS, name="exception_limit", description="Most exceptions, 4 bytes each.")
-        self._scale_shift = Parameter(5, name="scale_shift", description="Scale shift f of rows U and V.")
+        self._scale_shift = Parameter(5, name="scale_shift", description="Scale shift f of rows U and V; in orthographic projection "
+            "f + 1 - ke.")
         rows = {}
         for row, meaning in [("u", "U"), ("v", "V"), ("n", "n")]:
             for i, axis in enumerate("xyz"):
@@ -229,7 +232,7 @@ class TriangleEngine(LiteXModule):
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
 
         geometry_flags = Struct("geometry_flags_t", "Choices of a geometry pass.", {
-            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth", "lines")})
+            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth", "lines", "orthographic")})
         geometry = Struct("geometry_t", "Parameters of the geometry pass. Places in memory are byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,

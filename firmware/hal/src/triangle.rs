@@ -12,6 +12,7 @@ use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
 use core::time::Duration;
 
+use glint_core::camera::Projection;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::{MeshSetup, Shading};
@@ -219,7 +220,7 @@ impl TriangleEngine {
         registers.exceptions().write(pass.exceptions);
         registers.exception_limit().write(pass.exception_limit);
 
-        registers.scale_shift().write(frame.scale_shift as u8);
+        registers.scale_shift().write(frame.engine_shift() as u8);
         // The registers are written one by one, because a loop would need a table of their addresses.
         let [u, v, n, light] =
             [frame.u, frame.v, frame.n, frame.light].map(|row| row.map(|value| value as u32));
@@ -254,6 +255,7 @@ impl TriangleEngine {
                 .with_start(true)
                 .with_cull(pass.cull)
                 .with_smooth(pass.shading == Shading::Smooth)
+                .with_orthographic(frame.projection == Projection::Orthographic)
                 .with_size(code(size)),
         })
     }

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x7207_fab1;
+pub const BUILD_ID: u32 = 0xc5aa_c021;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 9 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
+        /// `geometry`, 10 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -2926,7 +2926,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_503c) }
         }
 
-        /// `scale_shift`, 5 bits: Scale shift f of rows U and V. Reads as 0.
+        /// `scale_shift`, 5 bits: Scale shift f of rows U and V; in orthographic projection f + 1 - ke. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn scale_shift(&self) -> Register<u8, ReadWrite> {
@@ -3693,6 +3693,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_lines(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
+        }
+
+        /// `orthographic`, bit 9: Orthographic projection, in which X and Y are not divided and depth codes are linear. Light between vertices is not: `smooth` must be 0.
+        #[inline]
+        #[must_use]
+        pub const fn orthographic(self) -> bool {
+            (self.0 >> 9) & 1 != 0
+        }
+
+        /// This value with another `orthographic`.
+        #[inline]
+        #[must_use]
+        pub const fn with_orthographic(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
         }
     }
 

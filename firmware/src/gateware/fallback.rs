@@ -19,8 +19,8 @@ pub enum Fallback {
     Clip,
     /// The triangle engine knows the winding of the mesh only.
     Winding,
-    /// The triangle engine has no orthographic projection.
-    Projection,
+    /// The triangle engine shades smoothly in perspective only.
+    Orthographic,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
@@ -56,7 +56,9 @@ impl fmt::Display for Fallback {
             Self::Objects => f.write_str("triangle engine: one mesh a frame"),
             Self::Clip => f.write_str("triangle engine: no clipping to the view volume"),
             Self::Winding => f.write_str("triangle engine: no winding by the screen"),
-            Self::Projection => f.write_str("triangle engine: no orthographic projection"),
+            Self::Orthographic => {
+                f.write_str("triangle engine: no smooth shading in orthographic projection")
+            }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
         }

@@ -269,8 +269,10 @@ impl GatewareRenderer {
             if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
                 return Err(EngineError::Shading.into());
             }
-            if frame.view.projection() == Projection::Orthographic {
-                return Err(Fallback::Projection);
+            if mesh.shading == Shading::Smooth
+                && frame.view.projection() == Projection::Orthographic
+            {
+                return Err(Fallback::Orthographic);
             }
             if mesh.clip != Clip::Guard {
                 return Err(Fallback::Clip);

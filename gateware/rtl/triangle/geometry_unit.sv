@@ -174,7 +174,7 @@ module geometry_unit #(
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
 
     vertex_stage vertex_stage (
-        .clk, .rst(rst || restart), .scale_shift(view.scale_shift),
+        .clk, .rst(rst || restart), .orthographic(flags.orthographic), .scale_shift(view.scale_shift),
         .row_u(view.row_u), .row_v(view.row_v), .row_n(view.row_n),
         .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
         .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),

@@ -27,6 +27,7 @@ package triangle_registers_pkg;
         logic cull;
         logic smooth;
         logic lines;
+        logic orthographic;
     } geometry_flags_t;
 
     // Parameters of the geometry pass. Places in memory are byte addresses.

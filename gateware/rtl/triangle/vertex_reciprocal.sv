@@ -1,4 +1,5 @@
-// Step 5 of the vertex stage: y = recip(m), about 2^47/m, one result every 6 clocks. Up to three vertices share one multiplier.
+// Step 5 of the vertex stage: y = recip(m), about 2^47/m, or 2^24 − m in orthographic projection; one result every 6 clocks. Up to
+// three vertices share one multiplier.
 // docs/formats.md, "The reciprocal", defines y0, y1, e0' and e1'.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
@@ -12,6 +13,7 @@ module vertex_reciprocal (
     input  wire         clk,
     input  wire         half,
     input  wire  [1:0]  element,
+    input  wire         orthographic,
     input  wire  [23:0] m,
     output logic [23:0] y
 );
@@ -22,9 +24,10 @@ module vertex_reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // −m is valid from clock 10 on, and `minus_m_later` from 16 on; y0 from 11 on; y1 from 18 and `y1_later` from 24 on. The seed
+    // −m is valid from clock 10 on, `minus_m_later` from 16 on and `minus_m_last` from 22 on; y0 from 11 on; y1 from 18 and `y1_later` from 24 on. The seed
     // comes from a block RAM, whose output is late in the clock, so y0 is a register behind it.
     logic signed [24:0] minus_m, minus_m_later;
+    logic        [23:0] minus_m_last;
     logic        [9:0]  seed, y0;
     logic        [16:0] y1, y1_later;
     logic signed [24:0] a;
@@ -63,6 +66,7 @@ module vertex_reciprocal (
         if (!half && element == 2'd2) begin
             minus_m       <= -{1'b0, m};
             minus_m_later <= minus_m;
+            minus_m_last  <= minus_m_later[23:0];
             seed          <= seeds[m[22:15]];
         end
         y0 <= seed;
@@ -70,7 +74,7 @@ module vertex_reciprocal (
             y1       <= p[35] ? '1 : p[34:18];
             y1_later <= y1;
         end
-        if (half && element == 2'd2) y <= sum[24] ? '1 : sum[23:0];
+        if (half && element == 2'd2) y <= orthographic ? minus_m_last : sum[24] ? '1 : sum[23:0];
     end
 endmodule
 

@@ -8,6 +8,8 @@
 //   31, 32       x and y; the first product included half a unit and the centre
 //   33…36        km·y is shifted to w, rounded and saturated
 //   37           `vertex` is valid
+//
+// In orthographic projection the factor of X' and Y' is 2^23 in place of y.
 
 `default_nettype none
 
@@ -16,6 +18,7 @@ module vertex_snap (
     input  wire               half,
     input  wire  [1:0]        element,
     // Frame.
+    input  wire               orthographic,
     input  wire  [9:0]        centre_x,
     input  wire  [9:0]        centre_y,
     input  wire  [16:0]       depth_mantissa,
@@ -56,6 +59,7 @@ module vertex_snap (
             default: a = {8'b0, depth_mantissa};
         endcase
         b = half ? {11'b0, inverse[23:17]} : {1'b0, inverse[16:0]};
+        if (orthographic && element != 2'd2) b = {11'b0, half, 6'b0};
     end
 
     multiply_add #(.BITS(46)) multiply (.clk(clk), .enable(1'b1), .a(a), .b(b), .c(c), .p(p));

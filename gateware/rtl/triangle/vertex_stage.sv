@@ -1,5 +1,6 @@
 // The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. It performs steps 1 to 8 of
-// docs/formats.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on).
+// docs/formats.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` those of
+// "Orthographic projection", in the same clocks.
 //
 // A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
 // schedule of 6 clocks, which repeats for each vertex: `half` is 0, 0, 0, 1, 1, 1 and `element` is 0, 1, 2, 0, 1, 2 in clocks 1
@@ -19,7 +20,8 @@ module vertex_stage (
     input  wire                clk,
     input  wire                rst,
     // Frame constants.
-    input  wire  [4:0]         scale_shift, // f of docs/formats.md
+    input  wire                orthographic,
+    input  wire  [4:0]         scale_shift, // f of docs/formats.md, or f + 1 − ke in orthographic projection
     input  wire  [2:0][24:0]   row_u,       // x component in the lowest bits
     input  wire  [2:0][24:0]   row_v,
     input  wire  [2:0][24:0]   row_n,
@@ -75,17 +77,19 @@ module vertex_stage (
     triangle_pkg::projected_t vertex;
 
     vertex_transform transform (
-        .clk(clk), .half(half), .element(element), .row_u(row_u), .row_v(row_v), .row_n(row_n), .tx(tx), .ty(ty), .tz(tz),
-        .near_z(near_z), .position(position), .planar(planar), .zeros(zeros), .behind(behind), .mantissa(mantissa));
+        .clk(clk), .half(half), .element(element), .orthographic(orthographic), .depth_exponent(depth_exponent),
+        .row_u(row_u), .row_v(row_v), .row_n(row_n), .tx(tx), .ty(ty), .tz(tz), .near_z(near_z), .position(position),
+        .planar(planar), .zeros(zeros), .behind(behind), .mantissa(mantissa));
 
     vertex_normalise normalise (
         .clk(clk), .half(half), .element(element), .scale_shift(scale_shift), .planar(planar), .zeros(zeros),
         .x(x), .y(y));
 
-    vertex_reciprocal reciprocal (.clk(clk), .half(half), .element(element), .m(mantissa), .y(inverse));
+    vertex_reciprocal reciprocal (
+        .clk(clk), .half(half), .element(element), .orthographic(orthographic), .m(mantissa), .y(inverse));
 
     vertex_snap snap (
-        .clk(clk), .half(half), .element(element), .centre_x(centre_x), .centre_y(centre_y),
+        .clk(clk), .half(half), .element(element), .orthographic(orthographic), .centre_x(centre_x), .centre_y(centre_y),
         .depth_mantissa(depth_mantissa), .depth_exponent(depth_exponent), .zeros(zeros), .behind(behind), .x(x), .y(y),
         .inverse(inverse), .vertex(vertex));
 

@@ -1,5 +1,6 @@
 // Steps 1 to 4 of the vertex stage (docs/formats.md): transforms a position P to camera coordinates X, Y, Z, compares Z with
-// the near plane, and normalises Z to its mantissa.
+// the near plane, and normalises Z to its mantissa. In orthographic projection the frame's depth scale, in place of Z, gives the
+// bits that the mantissa takes.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
@@ -16,6 +17,8 @@ module vertex_transform (
     input  wire                half,
     input  wire  [1:0]         element,
     // Frame.
+    input  wire                orthographic,
+    input  wire  signed [3:0]  depth_exponent,
     input  wire  [2:0][24:0]   row_u,
     input  wire  [2:0][24:0]   row_v,
     input  wire  [2:0][24:0]   row_n,
@@ -70,6 +73,11 @@ module vertex_transform (
     multiply_add #(.BITS(44)) multiply_deep (
         .clk(clk), .enable(1'b1), .a(row_deep), .b(18'(factor)), .c(addend_deep), .p(deep));
 
+    // In orthographic projection the mantissa starts with bit 35 + ke of Z.
+    logic [3:0] places;
+
+    assign places = 4'd5 - depth_exponent;
+
     // Compares Z < near in two halves of their bits. near_z has no bits above 38; `far` is high if Z has a bit set above 38. In
     // a Z beyond the near plane the highest set bit is one of the bits 30 to 40.
     logic        negative, far, high_less, high_equal, low_less;
@@ -97,6 +105,7 @@ module vertex_transform (
             10'b0000000001: zeros <= 4'd9;
             default:        zeros <= 4'd10;
         endcase
+        if (orthographic) zeros <= places;
     end
 
     // Shifts the highest set bit of Z to the top, first by multiples of four.

@@ -7,7 +7,7 @@ mod lines;
 
 use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint::{convert, generate};
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q32_32, Turns};
 use glint_vectors::meshes::{self, ahead, at};
 use glint_vectors::scenes::{inside, scenes};
@@ -58,6 +58,34 @@ fn scenes_at_640x360() {
 #[test]
 fn scenes_at_1280x720() {
     all_scenes(SIZES[2], 0.0);
+}
+
+/// Draws frames in orthographic projection and in perspective in turn, with stalls of the memory and without.
+#[test]
+fn scenes_in_orthographic_projection() {
+    let (mut pixels, mut clipped) = (0, 0);
+    for (number, stalls) in (0..).zip([0.0, 0.4]) {
+        let mut bench = Bench::new(30 + number, stalls);
+        for (name, mesh, view, cull) in scenes(generated) {
+            // Skips large meshes, which take long and test nothing more.
+            if mesh.len() > 1 << 20 {
+                continue;
+            }
+            for projection in Projection::ALL {
+                let view = view.with_projection(projection);
+                let frame = expected(&mesh, &view, SIZES[0], cull);
+                bench.with_depth = projection == Projection::Orthographic;
+                bench.slot ^= 1;
+                bench.draw(&format!("{name}, {projection}"), &mesh, &frame);
+                if bench.with_depth {
+                    pixels += frame.stats.pixels_covered;
+                    clipped += frame.stats.clipped;
+                }
+            }
+        }
+    }
+    println!("{clipped} clipped, {pixels} pixels in orthographic projection");
+    assert!(clipped > 20 && pixels > 100_000);
 }
 
 /// Draws frames with smooth and with flat shading in turn, with stalls of the memory and without.

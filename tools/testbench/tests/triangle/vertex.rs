@@ -1,5 +1,6 @@
 //! Compares the vertex stage with the model.
 
+use glint_core::camera::Projection;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls, step};
@@ -20,7 +21,9 @@ fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {
 }
 
 fn set_frame(module: &mut Module, frame: &MeshSetup) {
-    module.drive("scale_shift", frame.scale_shift);
+    let is_orthographic = frame.projection == Projection::Orthographic;
+    module.drive("orthographic", is_orthographic);
+    module.drive("scale_shift", frame.engine_shift());
     module.drive_all("row_u", frame.u);
     module.drive_all("row_v", frame.v);
     module.drive_all("row_n", frame.n);
@@ -131,7 +134,10 @@ fn random_cameras_and_vertices() {
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
-        let view = camera(&mut random, round).rounded();
+        let projection = Projection::ALL[round as usize / 4 % 2];
+        let view = camera(&mut random, round)
+            .rounded()
+            .with_projection(projection);
         let radius = if random.coin() { RADIUS } else { 14_190 };
         let frame = MeshSetup::new(&view, width, height, radius).unwrap();
         let positions: Vec<_> = (0..60).map(|_| position(&mut random)).collect();
@@ -220,6 +226,56 @@ fn edges() {
         "near planes {near_planes}, edges of the guard band {guard_edges}, full depths {full_depths}"
     );
     assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
+}
+
+/// Tests frame constants in orthographic projection that put a vertex at a limit: the near plane, the guard band, and depths and
+/// places on both sides of a rounding limit, for every depth scale and scale shift.
+#[test]
+fn orthographic_edges() {
+    let mut random = Random(6);
+    let mut bench = Bench::new(11, 0.1, 0.1);
+    let view = camera(&mut random, 4).rounded();
+    let view = view.with_projection(Projection::Orthographic);
+    let (mut scales, mut seen) = ([[false; 12]; 12], [0; 3]);
+    for round in 0..6000 {
+        let (width, height) = SIZES[round % 3];
+        let mut frame = MeshSetup::new(&view, width, height, RADIUS).unwrap();
+        frame.depth.exponent = random.integer(-6, 5) as i32;
+        frame.near = 4 << (18 + frame.depth.exponent);
+        frame.scale_shift = random.integer(7, 18) as u32;
+        scales[(frame.depth.exponent + 6) as usize][frame.scale_shift as usize - 7] = true;
+        let range = 1_i64 << (36 + frame.depth.exponent);
+        let unit = 1_i64 << (12 + frame.depth.exponent);
+        let z = match round / 3 % 4 {
+            0 => frame.near + random.integer(-1, 1) * random.integer(0, unit),
+            1 => range - random.integer(1, 200 * unit),
+            2 => random.integer(1, (1 << 24) - 1) * unit + random.integer(-1, 1),
+            _ => random.integer(frame.near, range - 1),
+        };
+        // Units of 1/256 pixel, half of them, and the end of the guard band.
+        let pixel = 1_i64 << (6 + frame.scale_shift);
+        let mut place = |size: u32| {
+            let centre = 256 * i64::from(size) / 2;
+            let whole = match round / 12 % 4 {
+                0 => 2047 * 256 - centre + random.integer(-2, 2),
+                1 => -2047 * 256 - centre + random.integer(-2, 2),
+                2 => (1 << 20) * [1, -1][round % 2] + random.integer(-2, 2),
+                _ => random.integer(-1 << 18, 1 << 18),
+            };
+            let x = whole * pixel + pixel / 2 + random.integer(-1, 1);
+            x.clamp(-1 << 42, (1 << 42) - 1)
+        };
+        frame.translation = [place(width), place(height), z];
+        let kind = match project(&frame, &transform(&frame, [0; 3])) {
+            Projected::Behind => 0,
+            Projected::BeyondGuard(_) => 1,
+            Projected::Visible(_) => 2,
+        };
+        seen[kind] += 1;
+        bench.check(&frame, &[[0; 3]]);
+    }
+    println!("behind, beyond the guard band, visible: {seen:?}");
+    assert!(scales == [[true; 12]; 12] && seen.iter().all(|&count| count > 300));
 }
 
 /// The camera coordinates of a vertex at the origin are the translation. The tested translations cover mantissas of Z at

@@ -1,6 +1,6 @@
 //! Test bench of the triangle engine, with a memory, and the expected frames.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::mesh::Mesh;
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
@@ -375,7 +375,11 @@ impl Bench {
                 "geometry_flags.smooth",
                 (options.shading == Shading::Smooth).into(),
             ),
-            ("view.scale_shift", frame.scale_shift.into()),
+            (
+                "geometry_flags.orthographic",
+                (frame.projection == Projection::Orthographic).into(),
+            ),
+            ("view.scale_shift", frame.engine_shift().into()),
             ("view.near_z", frame.near as u64),
             ("view.depth_mantissa", frame.depth.mantissa.into()),
             ("raster_flags.size", size),
