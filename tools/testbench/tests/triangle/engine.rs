@@ -3,6 +3,7 @@
 
 mod bench;
 mod fields;
+mod gathered;
 mod lines;
 
 use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};

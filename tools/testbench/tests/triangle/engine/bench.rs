@@ -2,7 +2,6 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::mesh::Mesh;
-use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex_cache;
@@ -11,21 +10,19 @@ use glint_model::{
 };
 use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
 
-use glint_vectors::meshes::ahead;
-
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
 
 // Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: the engine writes the first one,
 // and the clipper (firmware on the board, here the model) the second one.
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
-const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
-const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
+pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
+pub const DESCRIPTORS: [u32; 2] = [0x10_0000, 0x14_0000];
 const EXCEPTIONS: u32 = 0x18_0000;
-const MESH: u32 = 0x1c_0000;
+pub const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
-const LIST_SHIFT: u32 = 11;
+pub const LIST_SHIFT: u32 = 11;
 /// Number of words behind a picture that are checked not to change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
 /// Largest number of exceptions (triangles left to the clipper) that the engine may write. There is also room for this number
@@ -37,8 +34,8 @@ pub const CLEAR: u16 = 0x1234;
 pub struct Expected {
     pub size: (u32, u32),
     options: Options<'static>,
-    colour: Vec<u16>,
-    depth: Vec<u32>,
+    pub colour: Vec<u16>,
+    pub depth: Vec<u32>,
     frame: MeshSetup,
     clipped: Vec<DrawnTriangle>,
     pub stats: Stats,
@@ -128,41 +125,6 @@ pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>)
     }
 }
 
-impl Expected {
-    /// A frame with nothing drawn.
-    pub fn clear(size: (u32, u32)) -> Self {
-        let pixels = (size.0 * size.1) as usize;
-        picture(size, &ahead(1.0, 0.1), vec![CLEAR; pixels], vec![0; pixels])
-    }
-
-    /// The largest depth code.
-    pub fn nearest(&self) -> u32 {
-        self.depth.iter().copied().max().unwrap_or(0)
-    }
-
-    /// Draws segments over the frame, each with its depth test.
-    pub fn draw_segments(&mut self, segments: &[Segment]) {
-        let mut target = FrameBuffer {
-            width: self.size.0,
-            height: self.size.1,
-            colour: &mut self.colour,
-            depth: &mut self.depth,
-        };
-        for segment in segments {
-            segment.draw(&mut target);
-        }
-    }
-
-    /// Draws the pixels of another frame over the frame, with the depth test.
-    pub fn draw_over(&mut self, other: &Self) {
-        for (i, &code) in other.depth.iter().enumerate() {
-            if code > 0 && code >= self.depth[i] {
-                (self.colour[i], self.depth[i]) = (other.colour[i], code);
-            }
-        }
-    }
-}
-
 /// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading
 /// that the engine was built for.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
@@ -195,26 +157,11 @@ fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
     memory.write(LISTS[1], &lengths);
 }
 
-/// Descriptors, in words, and band lists of several passes.
-pub struct Gathered {
-    descriptors: Vec<Bits>,
-    lists: [Vec<u32>; 64],
-}
-
-impl Default for Gathered {
-    fn default() -> Self {
-        Self {
-            descriptors: vec![],
-            lists: std::array::from_fn(|_| vec![]),
-        }
-    }
-}
-
 pub struct Bench {
     pub module: Module,
     counters: Counters,
     ability: Shading,
-    memory: Memory,
+    pub memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
     /// Whether frames are drawn with depths, which are then compared too.
@@ -461,80 +408,6 @@ impl Bench {
         assert_eq!(self.read("status.list_error"), 0, "{name}: the lists");
         self.compare(name, expected);
         clocks
-    }
-
-    /// Sets the engine up for a pass that makes descriptors of segments.
-    pub fn configure_lines(&mut self, segments: &[Segment], expected: &Expected) {
-        self.configure(&[], expected);
-        let header = Segment::header(segments.len() as u32);
-        let words = segments.iter().map(Segment::words);
-        let words: Vec<[u32; 8]> = std::iter::once(header).chain(words).collect();
-        let words: Vec<[u8; 4]> = words
-            .as_flattened()
-            .iter()
-            .map(|w| w.to_le_bytes())
-            .collect();
-        self.memory.write(MESH, words.as_flattened());
-        self.set("geometry.mesh", u64::from(MESH) * 16);
-        self.set("geometry.mesh_bytes", 4 * words.len() as u64);
-        self.set("geometry_flags.lines", 1);
-    }
-
-    /// Runs the geometry pass for which the engine is set up, which has room for all its descriptors, and returns its clocks. The
-    /// descriptors and lists are appended to `gathered`.
-    pub fn gather(&mut self, name: &str, gathered: &mut Gathered) -> u64 {
-        self.wait_for("status.ready");
-        self.pulse("geometry_start");
-        let clocks = self.wait_for("status.geometry_done");
-        let errors = ["status.mesh_error", "status.full"].map(|path| self.read(path));
-        assert_eq!(errors, [0; 2], "{name}: error, full");
-        self.set("geometry_flags.lines", 0);
-
-        let first = gathered.descriptors.len() as u32 / 3;
-        let count = self.read("results.descriptor_count") as u32;
-        let words = DESCRIPTORS[0]..DESCRIPTORS[0] + 3 * count;
-        gathered
-            .descriptors
-            .extend(words.map(|word| self.memory.word(word)));
-        for (band, list) in (0..).zip(&mut gathered.lists) {
-            let length = self.memory.entry(LISTS[0], band);
-            let entry = |i| self.memory.entry(LISTS[0] + list_word(band, LIST_SHIFT), i);
-            list.extend((0..length).map(|i| first + entry(i)));
-        }
-        clocks
-    }
-
-    /// Draws a frame from the descriptors and lists of several passes, and compares it with the expected one. Returns the clocks.
-    pub fn draw_gathered(&mut self, name: &str, gathered: &Gathered, expected: &Expected) -> u64 {
-        self.start_gathered(gathered, expected);
-        self.finish(name, expected)
-    }
-
-    /// Starts the raster pass of a frame from the descriptors and lists of several passes.
-    pub fn start_gathered(&mut self, gathered: &Gathered, expected: &Expected) {
-        self.configure(&[], expected);
-        for (word, &data) in (DESCRIPTORS[0]..).zip(&gathered.descriptors) {
-            self.memory.store(word, data, u16::MAX);
-        }
-        let bytes =
-            |list: &[u32]| -> Vec<u8> { list.iter().flat_map(|n| n.to_le_bytes()).collect() };
-        let lengths = gathered.lists.each_ref().map(|list| list.len() as u32);
-        self.memory.write(LISTS[0], &bytes(&lengths));
-        for (band, list) in (0..).zip(&gathered.lists) {
-            let place = LISTS[0] + list_word(band, LIST_SHIFT);
-            self.memory.write(place, &bytes(list));
-        }
-        self.set("raster.count[0]", gathered.descriptors.len() as u64 / 3);
-        self.set("raster_flags.first", 1);
-        self.set("raster_flags.second", 0);
-        self.wait_for("status.ready");
-        self.pulse("raster_start");
-    }
-
-    /// Overwrites the number of words of the segments in memory.
-    pub fn overwrite_words(&mut self, words: u32) {
-        self.memory
-            .store(MESH, Bits::from_words(&[1, words, 0, 0]), u16::MAX);
     }
 
     /// Draws a frame from any descriptors and lists, valid or not. The list of every band has the entries `list`; `lengths`
