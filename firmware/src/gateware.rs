@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! renderer ── repeat (benchmark loops)
+//!    ├── lines (wireframes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
 //!    └── fallback (reasons to draw by the CPU)
@@ -9,6 +10,7 @@
 
 mod buffers;
 mod fallback;
+mod lines;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod renderer;
 mod repeat;

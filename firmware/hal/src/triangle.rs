@@ -15,6 +15,7 @@ use core::time::Duration;
 use glint_core::camera::Projection;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_model::line::Segment;
 use glint_model::{MeshSetup, Shading};
 use litex_pac::triangle::{
     self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
@@ -182,6 +183,12 @@ impl TriangleEngine {
         self.registers.caps().read().triangles()
     }
 
+    /// Whether this gateware draws lines. If not, [`Error::Lines`] ends each geometry pass of lines.
+    #[must_use]
+    pub fn draws_lines(&self) -> bool {
+        self.registers.caps().read().lines()
+    }
+
     /// Best shading that this gateware can draw: `Smooth` if it was built with smooth shading, otherwise `Flat`. It
     /// determines the length of a descriptor (`glint_model::triangle::descriptor::words`).
     #[must_use]
@@ -209,14 +216,7 @@ impl TriangleEngine {
         let records = pass.mesh.records();
         registers.mesh().write(records.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(records) as u32);
-        registers
-            .geometry_descriptors()
-            .write(pass.lists.descriptors);
-        registers
-            .descriptor_limit()
-            .write(pass.lists.descriptor_limit);
-        registers.geometry_lists().write(pass.lists.lists);
-        registers.list_shift().write(list_shift);
+        self.write_output(&pass.lists, list_shift);
         registers.exceptions().write(pass.exceptions);
         registers.exception_limit().write(pass.exception_limit);
 
@@ -260,10 +260,43 @@ impl TriangleEngine {
         })
     }
 
+    /// Writes the registers of a geometry pass of lines, as [`prepare_geometry`](Self::prepare_geometry) does of a mesh. `segments`
+    /// begins with their [`header`](Segment::header).
+    pub fn prepare_lines(
+        &mut self,
+        segments: &[[u32; Segment::WORDS]],
+        size: Size,
+        lists: &Lists,
+        list_shift: u8,
+    ) -> Prepared {
+        let registers = &self.registers;
+        registers.mesh().write(segments.as_ptr().addr() as u32);
+        registers.mesh_bytes().write(size_of_val(segments) as u32);
+        self.write_output(lists, list_shift);
+        // Lines have no exceptions: the list of them has a place, because the engine checks it, and no room.
+        registers.exceptions().write(lists.lists);
+        registers.exception_limit().write(0);
+        Prepared {
+            start: GeometryStart::default()
+                .with_start(true)
+                .with_lines(true)
+                .with_size(code(size)),
+        }
+    }
+
+    /// Writes the registers that tell where a geometry pass puts its output.
+    fn write_output(&self, lists: &Lists, list_shift: u8) {
+        let registers = &self.registers;
+        registers.geometry_descriptors().write(lists.descriptors);
+        registers.descriptor_limit().write(lists.descriptor_limit);
+        registers.geometry_lists().write(lists.lists);
+        registers.list_shift().write(list_shift);
+    }
+
     /// Starts the prepared geometry pass.
     ///
     /// # Safety
-    /// Until the pass has ended, its mesh must not be written and its output must not be accessed. The output is overwritten.
+    /// Until the pass has ended, its mesh or segments must not be written and its output must not be accessed. The output is overwritten.
     pub unsafe fn start_geometry(&mut self, pass: Prepared) {
         // Writes of the CPU to memory must precede the start of the engine.
         compiler_fence(Ordering::SeqCst);

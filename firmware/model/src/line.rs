@@ -42,12 +42,12 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// Size in memory, in bytes.
-    pub const BYTES: usize = 32;
+    /// Number of 32-bit words in memory.
+    pub const WORDS: usize = 8;
 
     /// The segment in memory (docs/formats.md, "Segments in memory").
     #[must_use]
-    pub const fn words(&self) -> [u32; Self::BYTES / 4] {
+    pub const fn words(&self) -> [u32; Self::WORDS] {
         let [a, b] = self.ends;
         let (w, bias) = match self.depth {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
@@ -64,7 +64,7 @@ impl Segment {
 
     /// What precedes `segments` segments in memory, as long as a segment.
     #[must_use]
-    pub const fn header(segments: u32) -> [u32; Self::BYTES / 4] {
+    pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
     }
 

@@ -2,11 +2,11 @@
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Size;
-use glint_core::wireframe::{Pose, Program, Projection};
+use glint_core::wireframe::{Pose, Program, Projection, Segment};
 
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
-use crate::line::{LineDepth, draw};
+use crate::line::{self, LineDepth};
 use crate::triangle::ScreenVertex;
 
 /// The colour of the lines: green.
@@ -22,6 +22,19 @@ pub struct WireframeSubject<'a> {
     pub program: Program<'a>,
     /// The motion of all segments.
     pub pose: Pose,
+}
+
+impl WireframeSubject<'_> {
+    /// The line of a segment of the program, over everything; `None` if no part of it is on the screen.
+    #[must_use]
+    pub fn line(&self, projection: &Projection, segment: Segment) -> Option<line::Segment> {
+        let ends = projection.line(self.pose.segment(segment))?;
+        Some(line::Segment {
+            ends: ends.map(|[x, y]| ScreenVertex { x, y, w: 0 }),
+            colour: LINE_COLOUR,
+            depth: LineDepth::Over,
+        })
+    }
 }
 
 /// Counts of a wireframe's picture.
@@ -58,10 +71,9 @@ pub fn render_wireframe(
             progress();
         }
         stats.segments += 1;
-        if let Some(line) = projection.line(subject.pose.segment(segment)) {
-            let ends = line.map(|[x, y]| ScreenVertex { x, y, w: 0 });
+        if let Some(line) = subject.line(&projection, segment) {
             stats.lines += 1;
-            stats.pixels += u64::from(draw(&ends, LINE_COLOUR, LineDepth::Over, target));
+            stats.pixels += u64::from(line.draw(target));
         }
     }
     Ok(stats)

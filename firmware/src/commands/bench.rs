@@ -72,7 +72,11 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         }
     };
     let rays = rendered.stats.field;
-    let kernel = if rays.is_some() { "field" } else { "triangle" };
+    let kernel = match (&rays, &rendered.stats.wireframe) {
+        (Some(_), _) => "field",
+        (None, Some(_)) => "lines",
+        (None, None) => "triangle",
+    };
     terminal.print(format_args!(
         "bench {kernel} frames {FRAMES} cycles {}",
         rendered.cycles

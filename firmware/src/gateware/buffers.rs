@@ -4,8 +4,9 @@ use core::mem;
 
 use glint_core::colour::Shading;
 use glint_hal::triangle::{Lists, Set};
-use glint_model::Stats;
+use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{self, list_shift};
+use glint_model::{Stats, WireframeStats};
 
 /// Numbers of items for which the memory of one frame has room. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
@@ -41,7 +42,7 @@ pub struct Buffers {
     lists: &'static mut [u32],
     /// Numbers of the exceptions: triangles that the geometry pass leaves to the clipper.
     pub exceptions: &'static mut [u32],
-    /// Descriptors of clipped triangles.
+    /// Descriptors of clipped triangles, or the segments of a wireframe.
     pub clipped_descriptors: &'static mut [u32],
     /// Band lists of clipped triangles.
     pub clipped_lists: &'static mut [u32],
@@ -68,6 +69,16 @@ impl Buffers {
             sets: [None; 2],
             stats: Stats::default(),
         })
+    }
+
+    /// The memory of a wireframe's segments, which has no clipped triangles.
+    pub const fn segments(&self) -> &[[u32; Segment::WORDS]] {
+        self.clipped_descriptors.as_chunks().0
+    }
+
+    /// The memory of a wireframe's segments, for writing.
+    pub const fn segments_mut(&mut self) -> &mut [[u32; Segment::WORDS]] {
+        self.clipped_descriptors.as_chunks_mut().0
     }
 
     /// The list shift of both passes for a picture of this width.
@@ -101,6 +112,15 @@ impl Buffers {
             lists: address(self.clipped_lists),
         }
     }
+}
+
+/// How much of a wireframe's program is projected to segments.
+#[derive(Default)]
+pub struct Projected {
+    /// Words of the program.
+    pub words: usize,
+    /// Counts of these words, without pixels.
+    pub stats: WireframeStats,
 }
 
 /// The address by which the engine accesses a region of memory.

@@ -10,11 +10,12 @@ use glint_hal::triangle::{
 };
 use glint_model::triangle::descriptor::ListWriter;
 use glint_model::{
-    Clip, Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, clip_exceptions,
+    Clip, Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, WireframeStats,
+    clip_exceptions,
 };
 use litex_pac::cpu;
 
-use super::buffers::{Buffers, Room, address};
+use super::buffers::{Buffers, Projected, Room, address};
 use super::fallback::Fallback;
 use super::watchdog::Watchdog;
 
@@ -36,10 +37,12 @@ pub struct Rendered {
     pub counters: Counters,
 }
 
-/// The pass of the triangle engine that is running, or `Idle`.
+/// The step of a frame in progress: a pass of the triangle engine, or one of the CPU; or `Idle`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
+    /// The CPU projects the segments of a wireframe.
+    Project,
     Geometry,
     Raster,
 }
@@ -57,9 +60,12 @@ pub struct GatewareRenderer {
     pub(super) engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
     draws_triangles: bool,
-    shading: Shading,
+    draws_lines: bool,
+    pub(super) shading: Shading,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
-    buffers: [Buffers; 2],
+    pub(super) buffers: [Buffers; 2],
+    /// The projected part of a wireframe.
+    pub(super) projected: Projected,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
     /// Size of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the buffer
@@ -92,6 +98,7 @@ impl GatewareRenderer {
         let room = Room::of(memory.len())?;
         Some(Self {
             draws_triangles: engine.draws_triangles(),
+            draws_lines: engine.draws_lines(),
             shading: engine.shading(),
             engine,
             raymarcher,
@@ -99,6 +106,7 @@ impl GatewareRenderer {
                 Buffers::split_off(&mut memory, room)?,
                 Buffers::split_off(&mut memory, room)?,
             ],
+            projected: Projected::default(),
             first_frame_buffer,
             drawn_sizes: [None; 2],
             stage: Stage::Idle,
@@ -111,11 +119,17 @@ impl GatewareRenderer {
 
     /// The subjects that the gateware draws, as a list for the console. The CPU draws the others.
     pub const fn subjects(&self) -> &'static str {
-        match (self.draws_triangles, self.raymarcher.is_some()) {
-            (true, true) => "meshes, fields",
-            (true, false) => "meshes",
-            (false, true) => "fields",
-            (false, false) => "none",
+        match (
+            self.draws_triangles,
+            self.raymarcher.is_some(),
+            self.draws_lines,
+        ) {
+            (true, true, true) => "meshes, fields, wireframes",
+            (true, true, false) => "meshes, fields",
+            (true, false, true) => "meshes, wireframes",
+            (true, false, false) => "meshes",
+            (false, true, _) => "fields",
+            (false, false, _) => "none",
         }
     }
 
@@ -128,6 +142,7 @@ impl GatewareRenderer {
     pub fn is_ready(&self) -> bool {
         match self.stage {
             Stage::Idle => false,
+            Stage::Project => true,
             Stage::Geometry => self.engine.geometry().is_some(),
             Stage::Raster => self.engine.raster().is_some(),
         }
@@ -175,6 +190,22 @@ impl GatewareRenderer {
     fn step(&mut self, frame: &Frame, output: &mut Output) -> Option<Result<Rendered, Fallback>> {
         let step = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output).err().map(Err),
+            (Stage::Project, Subject::Wireframe(wireframe)) => {
+                match self.project(wireframe, frame.size, 0) {
+                    Ok(false) => return None,
+                    Ok(true) => {
+                        let prepared = self.prepare_lines(frame.size, 0);
+                        self.start_geometry(prepared);
+                        self.stage = Stage::Geometry;
+                        return None;
+                    }
+                    Err(error) => Err(error),
+                }
+            }
+            (Stage::Geometry, Subject::Wireframe(_)) => match self.engine.geometry() {
+                None => return self.check_progress(output).err().map(Err),
+                Some(result) => result.map(|()| self.take_lines(0)),
+            },
             (Stage::Geometry, Subject::Mesh(mesh) | Subject::MeshInField(mesh, _)) => {
                 match self.engine.geometry() {
                     None => return self.check_progress(output).err().map(Err),
@@ -209,6 +240,9 @@ impl GatewareRenderer {
             let prepared = self.prepare_geometry(mesh, 0)?;
             self.start_geometry(prepared);
             self.stage = Stage::Geometry;
+        } else if let Subject::Wireframe(_) = frame.subject {
+            self.projected = Projected::default();
+            self.stage = Stage::Project;
         } else {
             self.start_raster(frame, output, [None; 2]);
             self.stage = Stage::Raster;
@@ -246,12 +280,16 @@ impl GatewareRenderer {
             pixels_drawn: counters.pixels_drawn.into(),
             ..self.buffers[place].stats
         });
+        let wireframe = matches!(frame.subject, Subject::Wireframe(_)).then(|| WireframeStats {
+            pixels: counters.pixels_drawn.into(),
+            ..self.projected.stats
+        });
         Rendered {
             cycles,
             stats: FrameStats {
                 mesh,
                 field: field.as_ref().map(raymarch::ray_counts),
-                wireframe: None,
+                wireframe,
             },
             counters,
         }
@@ -259,7 +297,7 @@ impl GatewareRenderer {
 
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
-        if matches!(frame.subject, Subject::Wireframe(_)) {
+        if matches!(frame.subject, Subject::Wireframe(_)) && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
         if let Some(mesh) = frame.subject.mesh_part() {

@@ -1,7 +1,7 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
 use glint_hal::triangle::{PassResult, TriangleEngine};
-use glint_model::{Frame, MeshSubject};
+use glint_model::{Frame, MeshSubject, Subject};
 
 use super::fallback::Fallback;
 use super::renderer::{GatewareRenderer, Output, Rendered};
@@ -22,9 +22,12 @@ impl GatewareRenderer {
         output: &mut Output,
         count: u32,
     ) -> Result<Rendered, Fallback> {
-        match frame.subject.mesh_part() {
-            Some(mesh) => self.repeat_mesh(mesh, frame, output, count),
-            None => self.repeat_field(frame, output, count),
+        match (&frame.subject, frame.subject.mesh_part()) {
+            (Subject::Wireframe(wireframe), _) => {
+                self.repeat_lines(wireframe, frame, output, count)
+            }
+            (_, Some(mesh)) => self.repeat_mesh(mesh, frame, output, count),
+            (_, None) => self.repeat_field(frame, output, count),
         }
     }
 
@@ -92,7 +95,7 @@ impl GatewareRenderer {
     }
 
     /// Waits for the end of the pass whose result the function `result` reads.
-    fn wait(
+    pub(super) fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,

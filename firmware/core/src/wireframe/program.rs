@@ -167,6 +167,19 @@ impl<'a> Program<'a> {
         self.words.as_flattened()
     }
 
+    /// Number of words, with the end.
+    pub const fn word_count(&self) -> usize {
+        self.words.len()
+    }
+
+    /// The segment in a word; `None` if the word is another instruction, or beyond the program.
+    pub fn segment(&self, word: usize) -> Option<Segment> {
+        match Instruction::decode(self.words.get(word)?) {
+            Ok(Instruction::Segment(segment)) => Some(segment),
+            _ => None,
+        }
+    }
+
     /// The instructions, with the end.
     pub fn instructions(&self) -> impl Iterator<Item = Instruction> + use<'a> {
         // Every word of a checked program is an instruction.

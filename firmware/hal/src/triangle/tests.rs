@@ -67,6 +67,41 @@ fn triangles_are_drawn_by_builds_that_say_so() {
 }
 
 #[test]
+fn a_pass_of_lines_has_segments_and_no_exceptions() {
+    let (engine, block) = probe(IDENT);
+    let mut engine = engine.unwrap();
+    assert!(!engine.draws_lines());
+    let address = registers().caps().address();
+    block.borrow_mut().values.insert(address, 1 << 5);
+    assert!(engine.draws_lines());
+
+    let segments = [Segment::header(2), [0; 8], [1; 8]];
+    let lists = Lists {
+        descriptors: 0x4600_0000,
+        descriptor_limit: 77,
+        lists: 0x4700_0000,
+    };
+    let prepared = engine.prepare_lines(&segments, Size::W640, &lists, 9);
+    let r = registers();
+    assert!(!r.geometry().read().start(), "not yet");
+    // SAFETY: the model has no engine that accesses memory.
+    unsafe { engine.start_geometry(prepared) };
+    let start = r.geometry().read();
+    assert!(start.start() && start.lines());
+    assert_eq!(start.size(), Some(triangle::Size::W640));
+    assert_eq!(r.mesh().read(), segments.as_ptr().addr() as u32);
+    assert_eq!(r.mesh_bytes().read(), 96);
+    assert_eq!(
+        [r.geometry_descriptors().read(), r.geometry_lists().read()],
+        [0x4600_0000, 0x4700_0000]
+    );
+    assert_eq!(
+        [r.list_shift().read().into(), r.exception_limit().read()],
+        [9, 0]
+    );
+}
+
+#[test]
 fn a_geometry_pass_is_described_before_it_is_started() {
     let (engine, block) = probe(IDENT);
     let bytes = mesh();

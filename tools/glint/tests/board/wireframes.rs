@@ -48,6 +48,12 @@ fn shown(console: &mut Console<SimulatedBoard>) -> [Vec<u16>; 2] {
     })
 }
 
+/// A value of the statistics.
+fn count(stats: &[String], name: &str) -> u64 {
+    let found = stats.iter().find_map(|line| line.strip_prefix(name));
+    found.unwrap().trim().parse().unwrap()
+}
+
 /// Sets the buttons to each value for a number of milliseconds, then waits until the frames are drawn.
 fn buttons(console: &mut Console<SimulatedBoard>, script: &[(u8, u64)]) {
     let board = console.board().inner();
@@ -67,16 +73,18 @@ fn a_session_with_buttons() {
     let mut motion = Motion::default();
     console.command("scene wireframe").unwrap();
     let stats = console.command("render").unwrap();
-    for line in [
-        "backend cpu",
-        "fallback wireframe: this gateware has no line engine",
-        "segments 12",
-        "lines 12",
-    ] {
-        assert!(stats.iter().any(|found| found == line), "{line}: {stats:?}");
-    }
     let start = picture(&program, &motion);
     assert!(shown(&mut console)[0] == start);
+    for line in ["backend gateware", "segments 12", "lines 12"] {
+        assert!(stats.iter().any(|found| found == line), "{line}: {stats:?}");
+    }
+    let by_gateware = count(&stats, "line_pixels");
+    console.command("backend cpu").unwrap();
+    let stats = console.command("render").unwrap();
+    assert_eq!(count(&stats, "line_pixels"), by_gateware);
+    assert!(shown(&mut console)[0] == start);
+    console.command("backend gateware").unwrap();
+    console.command("render").unwrap();
 
     // One press that bounces at both ends is one step: of one frame.
     let bounces = [
