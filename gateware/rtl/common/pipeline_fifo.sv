@@ -18,7 +18,9 @@
 module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
-    parameter int unsigned FLIGHT = 4
+    parameter int unsigned FLIGHT = 4,
+    // As in fifo.
+    parameter bit          BULK   = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -50,7 +52,7 @@ module pipeline_fifo #(
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BULK(BULK)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

@@ -260,7 +260,7 @@ module cull #(
     end
 
     // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
-    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2)) queue (
+    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BULK(1'b1)) queue (
         .clk, .rst, .idle(queue_idle), .room, .in_valid(verdict && !drop), .in_data({lit, oriented}),
         .out_valid, .out_ready, .out_data({out_lit, out_triangle})
     );
