@@ -1,6 +1,6 @@
 // Proof of the control of the stage `cull`, with a FIFO of 8 places at its end, for any triangles in any order. The limits count
 // only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 10 such clocks.
-// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 11 such clocks. The FIFO does not
+// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 12 such clocks. The FIFO does not
 // overflow.
 
 `default_nettype none
@@ -54,7 +54,7 @@ module cull_proof (
         if (culled) culled_before <= 1'b1;
 
         taken_in_time:     assert (waited <= 4'd10);
-        leaves_in_time:    assert (stood <= 4'd11);
+        leaves_in_time:    assert (stood <= 4'd12);
         nothing_too_many:  assert (inside <= 4'd7);
         nothing_made_up:   assert (!leaves || inside != '0);
         busy_while_inside: assert (busy == (inside != '0));

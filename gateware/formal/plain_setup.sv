@@ -49,8 +49,8 @@ module cull #(
         out_triangle.group_left  = {4'd4, number};
         out_triangle.group_right = {4'd5, number};
         out_triangle.group_start = {4'd6, number};
-        out_triangle.w10         = {21'd7, number};
-        out_triangle.w20         = {21'd8, number};
+        out_triangle.not_w10     = ~{21'd7, number};
+        out_triangle.not_w20     = ~{21'd8, number};
         out_triangle.x10         = {17'd1, number};
         out_triangle.y01         = {17'd2, number};
         out_triangle.x02         = {17'd3, number};

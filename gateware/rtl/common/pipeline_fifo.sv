@@ -10,7 +10,7 @@
 // item may also be dropped on the way. `room` comes from a register. Between the count of an item and its effect on `room` are
 // two clocks, so `room` falls while FLIGHT + 2 places are still free.
 //
-// Latency 2 clocks, throughput one item a clock. DEPTH is a power of two; more than 2 * (FLIGHT + 2) places keep the output
+// Latency 2 clocks, or 3 with BLOCK, throughput one item a clock. DEPTH is a power of two; more than 2 * (FLIGHT + 2) places keep the output
 // busy while `room` comes back. `idle` is high while the FIFO is empty; it knows nothing of items on the way.
 
 `default_nettype none
@@ -19,8 +19,8 @@ module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
-    // As in fifo.
-    parameter bit          BULK   = 1'b0
+    // The FIFO is in block RAM.
+    parameter bit          BLOCK  = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -32,10 +32,10 @@ module pipeline_fifo #(
     input  wire              out_ready,
     output logic [WIDTH-1:0] out_data
 );
-    localparam int unsigned LEVEL_BITS = $clog2(DEPTH + 2);
+    localparam int unsigned LEVEL_BITS = $clog2(DEPTH + 3);
     localparam int unsigned MOST       = DEPTH - FLIGHT - 2;
 
-    // Number of items in the FIFO, with that in its output register.
+    // Number of items in the FIFO, with those in its registers.
     logic [LEVEL_BITS-1:0] level;
     logic                  gone, in_ready;
 
@@ -52,7 +52,7 @@ module pipeline_fifo #(
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BULK(BULK)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

@@ -3,7 +3,7 @@
 // face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
 // picture are empty.
 //
-// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 8 or 11. Two triangles are inside, in
+// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 9 or 12. Two triangles are inside, in
 // different stages; `phase` counts the 3 clocks of a stage:
 //
 //   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─▶ FIFO ─▶ out
@@ -164,7 +164,7 @@ module cull #(
 
     // The reasons to cull the triangle, and the values that depend on its facing, registered for phase 2.
     logic        front, no_area, no_column, no_row;
-    logic [39:0] flipped_area;
+    logic [39:0] magnitude;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
     logic [1:0]  topmost;
@@ -201,7 +201,7 @@ module cull #(
                 no_area      <= area == '0;
                 no_column    <= left >= right;
                 no_row       <= top >= bottom;
-                flipped_area <= area[39:0] ^ {40{area[43]}};
+                magnitude    <= (area[39:0] ^ {40{area[43]}}) + 40'(area[43]);
                 group_top    <= topmost[1] ? last.v2.x[20:11] : topmost[0] ? last.v1.x[20:11] : last.v0.x[20:11];
                 group_left   <= left[10:3];
                 group_right  <= right_last[10:3];
@@ -222,9 +222,11 @@ module cull #(
         oriented.group_right = group_right;
         oriented.group_start = $signed(group_top) < $signed({2'b0, group_left})  ? group_left
                              : $signed(group_top) > $signed({2'b0, group_right}) ? group_right : group_top[7:0];
-        oriented.area        = flipped_area + 40'(front);
-        oriented.w10         = {1'b0, front ? last.v2.w : last.v1.w} - {1'b0, last.v0.w};
-        oriented.w20         = {1'b0, front ? last.v1.w : last.v2.w} - {1'b0, last.v0.w};
+        oriented.area        = magnitude;
+        // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but gives that of a minuend LUTs of
+        // its own.
+        oriented.not_w10     = {1'b0, last.v0.w} + ~{1'b0, front ? last.v2.w : last.v1.w};
+        oriented.not_w20     = {1'b0, last.v0.w} + ~{1'b0, front ? last.v1.w : last.v2.w};
         oriented.x10         = front ? last.x20 : last.x10;
         oriented.x02         = -(front ? last.x10 : last.x20);
         oriented.y01         = (front ? ~last.y20 : last.y01) + 21'(front);
@@ -260,7 +262,7 @@ module cull #(
     end
 
     // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
-    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BULK(1'b1)) queue (
+    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
         .clk, .rst, .idle(queue_idle), .room, .in_valid(verdict && !drop), .in_data({lit, oriented}),
         .out_valid, .out_ready, .out_data({out_lit, out_triangle})
     );

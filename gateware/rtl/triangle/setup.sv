@@ -151,7 +151,7 @@ module setup #(
         .bias0(bias_0), .bias2(bias_2), .e0, .e2
     );
     setup_normal normal (
-        .clk, .enable, .count, .w10(t.w10), .w20(t.w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
+        .clk, .enable, .count, .w10(~t.not_w10), .w20(~t.not_w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
     );
     flat_shade shade (
         .clk, .enable, .count, .row_light, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
@@ -283,7 +283,7 @@ module setup #(
 
         always_ff @(posedge clk) if (beat) lit_1 <= first_lit;
 
-        setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(t.w10), .w20(t.w20), .lit(lit_1), .p0, .p10, .p20);
+        setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(~t.not_w10), .w20(~t.not_w20), .lit(lit_1), .p0, .p10, .p20);
 
         // The channel whose normal this round computes.
         logic [24:0] w10, w20;

@@ -16,8 +16,8 @@ package setup_pkg;
         logic [7:0]       group_right;
         logic [7:0]       group_start;
         logic [39:0]      area;        // twice the area, a in docs/formats.md
-        logic [24:0]      w20;
-        logic [24:0]      w10;
+        logic [24:0]      not_w20;     // all bits of w20 inverted
+        logic [24:0]      not_w10;
         logic [20:0]      y20;
         logic [20:0]      x02;
         logic [20:0]      y01;
