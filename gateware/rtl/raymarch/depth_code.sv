@@ -22,19 +22,19 @@ module depth_code (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // By clock (the suffix of a name): 3 the mantissa m of the depth, 4 its seed y0.
-    logic [23:0] m_3, m_4, m_10;
+    // By clock (the suffix of a name): 3 the mantissa m of the depth, 4 its seed y0. Only ~m is used from then on.
+    logic [23:0] m_3, not_m_4, not_m_10;
     logic [5:0]  lead_3;
     logic [9:0]  y0_4, y0_6, y0_7, y0_9;
 
     normalise leading (.clk, .in(depth), .m(m_3), .lead(lead_3));
 
     always_ff @(posedge clk) begin
-        m_4  <= m_3;
-        y0_4 <= seeds[m_3[22:15]];
+        not_m_4 <= ~m_3;
+        y0_4    <= seeds[m_3[22:15]];
     end
 
-    delay #(.WIDTH(24), .CLOCKS(6)) m_waits (.clk, .enable(1'b1), .in(m_4), .out(m_10));
+    delay #(.WIDTH(24), .CLOCKS(6)) m_waits (.clk, .enable(1'b1), .in(not_m_4), .out(not_m_10));
     delay #(.WIDTH(10), .CLOCKS(2)) y0_for_sum (.clk, .enable(1'b1), .in(y0_4), .out(y0_6));
     delay #(.WIDTH(10), .CLOCKS(1)) y0_for_step (.clk, .enable(1'b1), .in(y0_6), .out(y0_7));
     delay #(.WIDTH(10), .CLOCKS(2)) y0_for_y1 (.clk, .enable(1'b1), .in(y0_7), .out(y0_9));
@@ -46,12 +46,12 @@ module depth_code (
     logic [24:0]        sum;
     logic [23:0]        y_17;
 
-    multiply_add #(.BITS(37)) residue_0 (.clk, .enable(1'b1), .a({1'b1, ~m_4}), .b({8'b0, y0_4}), .c({27'b0, y0_6}), .p(e0_7));
+    multiply_add #(.BITS(37)) residue_0 (.clk, .enable(1'b1), .a({1'b1, not_m_4}), .b({8'b0, y0_4}), .c({27'b0, y0_6}), .p(e0_7));
     multiply_add #(.BITS(37)) newton_0 (
         .clk, .enable(1'b1), .a(25'($signed(e0_7[25:8]))), .b({8'b0, y0_7}), .c({2'b0, y0_9, 25'b0}), .p(sum_10)
     );
     assign y1_10 = sum_10[35] ? '1 : sum_10[34:18];
-    multiply_add #(.BITS(37)) residue_1 (.clk, .enable(1'b1), .a({1'b1, ~m_10}), .b({1'b0, y1_10}), .c({20'b0, y1_12}), .p(e1_13));
+    multiply_add #(.BITS(37)) residue_1 (.clk, .enable(1'b1), .a({1'b1, not_m_10}), .b({1'b0, y1_10}), .c({20'b0, y1_12}), .p(e1_13));
     multiply_add #(.BITS(37)) newton_1 (
         .clk, .enable(1'b1), .a(25'($signed(e1_13[25:8]))), .b({1'b0, y1_13}), .c(37'd1 << 24), .p(step_16)
     );

@@ -33,8 +33,10 @@ module field_box (
     logic [2:0]         negative_1, negative_2;
     logic               z_over_x, z_over_y, x_over_y, big_is_z, big_is_x;
 
-    function automatic logic signed [22:0] over(input logic [21:0] k, input logic [21:0] side, input logic there);
-        over = there ? $signed({2'b0, k[20:0] ^ {21{k[21]}}}) - $signed({1'b0, side}) : {1'b1, 22'b0};
+    // How far a coordinate is inside of the box along its axis, less 1: side − |k| − 1, the complement of the distance |k| − side.
+    // Yosys puts the absolute value into the LUTs of this sum, but gives that of a minuend LUTs of its own.
+    function automatic logic signed [22:0] depth_within(input logic [21:0] k, input logic [21:0] side, input logic there);
+        depth_within = there ? $signed({1'b0, side}) + $signed(~{2'b0, k[20:0] ^ {21{k[21]}}}) : {1'b0, {22{1'b1}}};
     endfunction
 
     assign big_is_z = z_over_x && z_over_y;
@@ -42,18 +44,18 @@ module field_box (
     assign big      = big_is_z ? z_2 : big_is_x ? x_2 : y_2;
 
     always_ff @(posedge clk) begin
-        x_1 <= over(place[0], half[0], has[0]);
-        y_1 <= over(place[1], half[1], has[1]);
-        z_1 <= over(place[2], half[2], has[2]);
+        x_1 <= depth_within(place[0], half[0], has[0]);
+        y_1 <= depth_within(place[1], half[1], has[1]);
+        z_1 <= depth_within(place[2], half[2], has[2]);
         negative_1 <= {place[2][21], place[1][21], place[0][21]};
 
         {x_2, y_2, z_2} <= {x_1, y_1, z_1};
         negative_2 <= negative_1;
-        z_over_x   <= z_1 > x_1;
-        z_over_y   <= z_1 > y_1;
-        x_over_y   <= x_1 > y_1;
+        z_over_x   <= z_1 < x_1;
+        z_over_y   <= z_1 < y_1;
+        x_over_y   <= x_1 < y_1;
 
-        distance <= big[21:0] ^ {22{room}};
+        distance <= big[21:0] ^ {22{!room}};
         if (big_is_z)      surface <= {2'd2, !negative_2[2] ^ room};
         else if (big_is_x) surface <= {2'd0, !negative_2[0] ^ room};
         else               surface <= {2'd1, !negative_2[1] ^ room};

@@ -108,7 +108,7 @@ module band_entry #(
     always_comb begin
         falls = step[20];
         rises = !falls && step != '0;
-        slope = falls ? 20'(-step) : step[19:0];
+        slope = (step[19:0] ^ {20{falls}}) + 20'(falls);
     end
 
     // Operands of a pass. `c` is selected one clock after `a` and `b`; the results `sum` and `beside` come two

@@ -38,18 +38,20 @@ module mesh_walk #(
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
-    // Bits of sums of addresses and counts. Values from memory may be arbitrary, and this is wide enough that their sums do not
-    // wrap around.
-    localparam int unsigned SUM_BITS = 34;
+    // Bits of counts, and of sums of an address and two counts. Values from memory may be arbitrary: a larger count is `wild`, and
+    // the sums of others do not wrap around.
+    localparam int unsigned COUNT_BITS = ADDRESS_BITS + 1;
+    localparam int unsigned SUM_BITS   = ADDRESS_BITS + 3;
 
     typedef enum logic [2:0] {IDLE, ASK, HEADER, LOCATE, SUM, CHECK, TRIANGLES, DRAIN} state_t;
     state_t state;
 
     logic [ADDRESS_BITS-1:0] header;
-    logic [31:0]             vertices, triangles;
+    logic [COUNT_BITS-1:0]   vertices, triangles;
     logic [SUM_BITS-1:0]     triangles_base, end_base;
-    logic [31:0]             to_ask, to_give;
-    logic                    asked, more, wild;
+    // The complements of the numbers of triangles that are still to be asked for and to be sent: counting up takes fewer LUTs.
+    logic [COUNT_BITS-1:0]   asks_left, gives_left;
+    logic                    asked, more, wild, too_many;
 
     assign busy         = state != IDLE;
     assign ask_valid    = state == ASK || state == TRIANGLES && more;
@@ -57,11 +59,11 @@ module mesh_walk #(
     assign out_triangle = data;
     assign out_valid    = state == TRIANGLES && data_valid;
     assign data_ready   = state == HEADER || state == TRIANGLES && out_ready;
-    assign wild         = vertices == '0 || end_base > SUM_BITS'(past);
+    assign wild         = too_many || vertices == '0 || end_base > SUM_BITS'(past);
 
     always_ff @(posedge clk) begin
         // Whether the next clock has an address to ask for.
-        more  <= asked ? to_ask > 32'd1 : to_ask != '0;
+        more  <= asks_left < (asked ? COUNT_BITS'(-2) : '1);
         chunk <= 1'b0;
 
         case (state)
@@ -75,8 +77,9 @@ module mesh_walk #(
             end
             ASK: if (asked) state <= HEADER;
             HEADER: begin
-                vertices  <= data[31:0];
-                triangles <= data[63:32];
+                vertices  <= data[0 +: COUNT_BITS];
+                triangles <= data[32 +: COUNT_BITS];
+                too_many  <= data[31:COUNT_BITS] != '0 || data[63:32+COUNT_BITS] != '0;
                 if (data_valid) state <= LOCATE;
             end
             LOCATE: begin
@@ -85,12 +88,12 @@ module mesh_walk #(
                 state          <= SUM;
             end
             SUM: begin
-                end_base <= triangles_base + SUM_BITS'(triangles);
-                ask_addr <= triangles_base[ADDRESS_BITS-1:0];
-                to_ask   <= triangles;
-                to_give  <= triangles;
-                chunk    <= 1'b1;
-                state    <= CHECK;
+                end_base   <= triangles_base + SUM_BITS'(triangles);
+                ask_addr   <= triangles_base[ADDRESS_BITS-1:0];
+                asks_left  <= ~triangles;
+                gives_left <= ~triangles;
+                chunk      <= 1'b1;
+                state      <= CHECK;
             end
             CHECK: begin
                 error <= wild;
@@ -98,11 +101,11 @@ module mesh_walk #(
             end
             TRIANGLES: begin
                 if (asked) begin
-                    to_ask   <= to_ask - 1'b1;
-                    ask_addr <= ask_addr + 1'b1;
+                    asks_left <= asks_left + 1'b1;
+                    ask_addr  <= ask_addr + 1'b1;
                 end
-                if (out_valid && out_ready) to_give <= to_give - 1'b1;
-                if (to_give == '0) state <= DRAIN;
+                if (out_valid && out_ready) gives_left <= gives_left + 1'b1;
+                if (gives_left == '1) state <= DRAIN;
             end
             default: begin
                 header   <= end_base[ADDRESS_BITS-1:0];
