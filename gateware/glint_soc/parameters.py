@@ -11,6 +11,10 @@ from migen import READ_FIRST, Case, If, Memory, Signal
 from .register_map import CSR_PAGING
 
 
+_LOADS = 128
+"""Most flip-flops that one enable controls."""
+
+
 class Parameter(CSRStorage):
     """A register of up to 32 bits that the CPU writes and that reads as 0.
 
@@ -52,7 +56,8 @@ class PassParameters(LiteXModule):
     in each, and `storage` in the first.
 
     The registers are words of a block RAM as large as the block's window of the bus. The copies of a pass are a chain, so one enable
-    controls all of them. The widest is next to the memory: then each flip-flop of the chain is a bit of a copy.
+    would do for all of them; each `_LOADS` flip-flops have one. The widest copy is next to the memory: then each flip-flop of the
+    chain is a bit of a copy.
 
         bus ─▶ words ─▶ widest copy ─▶ … ─▶ narrowest copy
     """
@@ -85,8 +90,14 @@ class PassParameters(LiteXModule):
         self.comb += self.loading.eq(waiting | reading | moving)
         self.sync += [waiting.eq(waiting | self.load), step, moving.eq(reading)]
         for k, copies in enumerate(self.copies):
-            chain = [*copies.values(), self._read.dat_r]
-            self.sync += If(moving[k], *(copy.eq(wider) for copy, wider in pairwise(chain)))
+            loads = _LOADS
+            for copy, wider in pairwise([*copies.values(), self._read.dat_r]):
+                if loads + len(copy) > _LOADS:
+                    # Another `moving[k]`. It depends on itself, because synthesis would merge flip-flops with the same input.
+                    moves, loads = Signal(name=f"moves_{k}", reset_less=True, attr={"keep"}), 0
+                    self.sync += moves.eq(reading[k] & (moves | ~moving[k]))
+                loads += len(copy)
+                self.sync += If(moves, copy.eq(wider))
 
     def connect(self, bank, window):
         """Returns the statements that connect the memory with the block's register bank, which LiteX puts into the window of this

@@ -77,28 +77,38 @@ module cull #(
         fits = highest == '0 || highest == '1;
     endfunction
 
+    // The next triangle. `takes` is high a clock before it moves in.
+    triangle_t taken;
+    logic      takes;
+
+    assign takes = phase == 2'd1 && room && !again;
+
+    always_comb begin
+        taken.v0     = v0;
+        taken.v1     = v1;
+        taken.v2     = v2;
+        taken.colour = in_colour;
+        taken.normal = in_normal;
+        taken.x10    = v1.x - v0.x;
+        taken.x20    = v2.x - v0.x;
+        taken.y01    = v0.y - v1.y;
+        taken.y20    = v2.y - v0.y;
+        taken.y_21   = precedes(v2.y, v1.y);
+        taken.y_same = v1.y == v2.y;
+    end
+
+    wide_register #(.WIDTH($bits(taken) + 1)) first_stage (
+        .clk, .next(takes), .in({taken, precedes(v2.x, v1.x)}), .out({first, first_x_21})
+    );
+    wide_register #(.WIDTH($bits(taken))) last_stage (.clk, .next(phase == 2'd1), .in(first), .out(last));
+
     always_ff @(posedge clk) begin
         phase    <= phase == 2'd2 ? 2'd0 : phase + 2'd1;
-        in_ready <= phase == 2'd1 && room && !again;
-        if (in_ready) begin
-            first.v0     <= v0;
-            first.v1     <= v1;
-            first.v2     <= v2;
-            first.colour <= in_colour;
-            first.normal <= in_normal;
-            first.x10    <= v1.x - v0.x;
-            first.x20    <= v2.x - v0.x;
-            first.y01    <= v0.y - v1.y;
-            first.y20    <= v2.y - v0.y;
-            first_x_21   <= precedes(v2.x, v1.x);
-            first.y_21   <= precedes(v2.y, v1.y);
-            first.y_same <= v1.y == v2.y;
-        end
+        in_ready <= takes;
         if (phase == 2'd2) begin
             first_valid <= again || in_valid && in_ready;
             second      <= again;
             last_valid  <= first_valid && !again;
-            last        <= first;
         end
         if (rst) begin
             phase       <= '0;

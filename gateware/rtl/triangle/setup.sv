@@ -5,13 +5,13 @@
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 75 clocks, or 185. A
-// beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the last
-// clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the last
-// clock of a beat, also empty ones, so a single triangle gets through. A culled triangle
-// leaves before stage 1. It waits for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each triangle,
-// `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`, `smooth`)
-// must hold while `busy` and when a triangle comes.
+// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 76 clocks, or 186. A
+// beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the
+// last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
+// last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
+// for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
+// triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`,
+// `smooth`) must hold while `busy` and when a triangle comes.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
@@ -73,8 +73,8 @@ module setup #(
     } origin_t;
 
     // `beat` is high in the last clock of a beat, `enable` is low while the last clock is repeated. Both are registers, decided a
-    // clock ahead: `ending` is high if the next clock has the last count, `light_ends` if the light is ready then as well. They
-    // drive hundreds of flip-flops.
+    // clock ahead: `ending` is high if the next clock has the last count, `light_ends` if the light is ready then as well. The
+    // registers of a stage have copies of `beat`.
     logic [3:0] count;
     logic       enable, beat, ending, light_ends, beat_comes, waits;
     logic [4:1] valid;
@@ -128,15 +128,19 @@ module setup #(
     logic                 reciprocal_ready, reciprocal_done;
     passed_t              passed_1;
 
+    origin_t first_origin;
+
+    assign first_origin.w0 = first.w0;
+    assign first_origin.px = {2'b0, first.group_start, 11'h080} - first.x0;
+    assign first_origin.py = {3'b0, first.top, 8'h80} - first.y0;
+
+    wide_register #(.WIDTH($bits(t) + $bits(origin_1) + 2)) stage_1 (
+        .clk, .next(beat_comes),
+        .in({first, first_origin, bias(first.y01, first.x10[20]), bias(first.y20, first.x02[20])}),
+        .out({t, origin_1, bias_0, bias_2})
+    );
+
     always_ff @(posedge clk) begin
-        if (beat) begin
-            t           <= first;
-            origin_1.w0 <= first.w0;
-            origin_1.px <= {2'b0, first.group_start, 11'h080} - first.x0;
-            origin_1.py <= {3'b0, first.top, 8'h80} - first.y0;
-            bias_0      <= bias(first.y01, first.x10[20]);
-            bias_2      <= bias(first.y20, first.x02[20]);
-        end
         // The steps of the three edges add up to 0, so these sums are the negated steps of edge 1. They are constant from the
         // second clock of a beat on.
         sum_x <= t.y01 + t.y20;
@@ -165,10 +169,9 @@ module setup #(
     );
 
     // Stage 2 computes (E1 − bias)/2^8 with E1 − bias = a − (E0 − bias) − (E2 − bias) − the sum of the three biases: of the
-    // lowest 8 bits only the carry is kept. Values that only pass through stay in flip-flops (`keep`), since shift registers
-    // would take LUTs.
-    (* keep *) passed_t passed_2;
-    (* keep *) origin_t origin_2;
+    // lowest 8 bits only the carry is kept.
+    passed_t            passed_2;
+    origin_t            origin_2;
     logic        [45:0] nx_2, ny_2;
     logic        [5:0]  lead_2;
     logic        [23:0] y_2;
@@ -191,61 +194,44 @@ module setup #(
             default: addend <= 34'($signed(carry));
         endcase
         if (count == 4'd8) y_2 <= y;
-        if (beat) begin
-            passed_2 <= passed_1;
-            origin_2 <= origin_1;
-            nx_2     <= nx;
-            ny_2     <= ny;
-            lead_2   <= lead;
-            lit_2    <= lit;
-            e0_2     <= e0;
-            e2_2     <= e2;
-            area_low <= t.area[7:0];
-            biases   <= {1'b0, bias_0} + {1'b0, bias_1} + {1'b0, bias_2};
-            e1       <= {2'b0, t.area[39:8]};
-        end else if (count == 4'd1 || count == 4'd2 || count == 4'd3) begin
+        if (beat) e1 <= {2'b0, t.area[39:8]};
+        else if (count == 4'd1 || count == 4'd2 || count == 4'd3)
             e1 <= e1 + addend;
-        end
     end
 
+    wide_register #(.WIDTH($bits(passed_1) + $bits(origin_1) + 2 * 46 + 6 + 16 + 2 * 42 + 8 + 2)) stage_2 (
+        .clk, .next(beat_comes),
+        .in({passed_1, origin_1, nx, ny, lead, lit, e0, e2, t.area[7:0], {1'b0, bias_0} + {1'b0, bias_1} + {1'b0, bias_2}}),
+        .out({passed_2, origin_2, nx_2, ny_2, lead_2, lit_2, e0_2, e2_2, area_low, biases})
+    );
+
     // Stage 3.
-    (* keep *) passed_t passed_3;
-    (* keep *) origin_t origin_3;
+    passed_t            passed_3;
+    origin_t            origin_3;
     logic        [5:0]  lead_3;
     logic        [23:0] y_3;
     logic        [15:0] lit_3;
     logic [2:0][33:0]   start_3;
 
-    always_ff @(posedge clk) begin
-        if (beat) begin
-            passed_3 <= passed_2;
-            origin_3 <= origin_2;
-            lead_3   <= lead_2;
-            y_3      <= y_2;
-            lit_3    <= lit_2;
-            start_3  <= {e2_2[41:8], e1, e0_2[41:8]};
-        end
-    end
+    wide_register #(.WIDTH($bits(passed_1) + $bits(origin_1) + 6 + 24 + 16 + 3 * 34)) stage_3 (
+        .clk, .next(beat_comes), .in({passed_2, origin_2, lead_2, y_2, lit_2, e2_2[41:8], e1, e0_2[41:8]}),
+        .out({passed_3, origin_3, lead_3, y_3, lit_3, start_3})
+    );
 
     // Stage 4.
-    (* keep *) passed_t passed_4;
-    (* keep *) origin_t origin_4;
+    passed_t            passed_4;
+    origin_t            origin_4;
     logic        [31:0] step_x, step_y;
     logic        [15:0] lit_4;
     logic [2:0][33:0]   start_4;
     logic        [31:0] depth_start;
 
-    always_ff @(posedge clk) begin
-        if (beat) begin
-            passed_4   <= passed_3;
-            origin_4   <= origin_3;
-            lit_4      <= lit_3;
-            start_4    <= start_3;
-        end
-    end
+    wide_register #(.WIDTH($bits(passed_1) + $bits(origin_1) + 16 + 3 * 34)) stage_4 (
+        .clk, .next(beat_comes), .in({passed_3, origin_3, lit_3, start_3}), .out({passed_4, origin_4, lit_4, start_4})
+    );
 
     setup_plane depth (
-        .clk, .beat, .count, .nx(nx_2), .ny(ny_2), .y(y_3), .lead(lead_3),
+        .clk, .next(beat_comes), .count, .nx(nx_2), .ny(ny_2), .y(y_3), .lead(lead_3),
         .px(origin_4.px), .py(origin_4.py), .value(origin_4.w0), .step_x, .step_y, .start(depth_start)
     );
 
@@ -259,14 +245,15 @@ module setup #(
         logic [3*96-1:0]       planes, planes_4;
         logic [3:0]            light_count;
         logic [1:0]            round;
-        logic                  light_enable, round_ends, last_round;
+        logic                  light_enable, round_ends, round_comes, last_round;
 
-        assign last_round = round == 2'd2 || !smooth;
-        assign light_ends = last_round && (light_count == LAST || light_count == LAST - 1'b1);
+        assign last_round  = round == 2'd2 || !smooth;
+        assign round_comes = light_count == LAST - 1'b1 && !last_round || beat_comes;
+        assign light_ends  = last_round && (light_count == LAST || light_count == LAST - 1'b1);
 
         always_ff @(posedge clk) begin
             light_enable <= !(ending && light_ends) || beat_comes;
-            round_ends   <= light_count == LAST - 1'b1 && !last_round || beat_comes;
+            round_ends   <= round_comes;
             if (beat || round_ends) begin
                 light_count <= '0;
                 round       <= beat ? '0 : round + 1'b1;
@@ -281,7 +268,7 @@ module setup #(
             end
         end
 
-        always_ff @(posedge clk) if (beat) lit_1 <= first_lit;
+        wide_register #(.WIDTH(3 * LIT_BITS)) lit_stage (.clk, .next(beat_comes), .in(first_lit), .out(lit_1));
 
         setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(~t.not_w10), .w20(~t.not_w20), .lit(lit_1), .p0, .p10, .p20);
 
@@ -313,16 +300,19 @@ module setup #(
             end
             if (round_ends && round == 2'd0) {light_y, light_lead} <= {y_2, lead_2};
             if (round_ends && round == 2'd1) {px, py} <= {origin_2.px, origin_2.py};
-            if (beat) planes_4 <= planes;
-            if (beat && valid[4]) out_planes <= {smooth, planes_4};
         end
+
+        wide_register #(.WIDTH(3 * 96)) planes_stage (.clk, .next(beat_comes), .in(planes), .out(planes_4));
+        wide_register #(.WIDTH(PLANES_BITS)) planes_result (
+            .clk, .next(beat_comes && valid[4]), .in({smooth, planes_4}), .out(out_planes)
+        );
 
         setup_normal light_normal (
             .clk, .enable(light_enable), .count(light_count), .w10, .w20,
             .x10(passed_2.x10), .y01(passed_2.y01), .x02(passed_2.x02), .y20(passed_2.y20), .nx(light_nx), .ny(light_ny)
         );
         setup_plane plane (
-            .clk, .beat(round_ends), .count(light_count), .nx(light_nx), .ny(light_ny), .y(light_y), .lead(light_lead),
+            .clk, .next(round_comes), .count(light_count), .nx(light_nx), .ny(light_ny), .y(light_y), .lead(light_lead),
             .px, .py, .value(value_4), .step_x(light_step_x), .step_y(light_step_y), .start(light_start)
         );
     end else begin : flat
@@ -332,23 +322,31 @@ module setup #(
         wire _unused = &{1'b0, smooth, first_lit};
     end
 
+    triangle_pkg::descriptor_t descriptor;
+
+    always_comb begin
+        descriptor              = '0;
+        descriptor.colour       = lit_4;
+        descriptor.group_start  = passed_4.group_start;
+        descriptor.group_right  = passed_4.group_right;
+        descriptor.group_left   = passed_4.group_left;
+        descriptor.bottom       = passed_4.bottom;
+        descriptor.top          = passed_4.top;
+        descriptor.steps        = {passed_4.x02, passed_4.y20, passed_4.x21, passed_4.y12, passed_4.x10, passed_4.y01};
+        descriptor.depth_step_y = step_y;
+        descriptor.depth_step_x = step_x;
+        descriptor.depth_start  = depth_start;
+        descriptor.start        = start_4;
+    end
+
+    wide_register #(.WIDTH($bits(descriptor))) result (
+        .clk, .next(beat_comes && valid[4]), .in(descriptor), .out(out_descriptor)
+    );
+
     always_ff @(posedge clk) begin
         drawn <= beat && valid[4];
         if (out_ready) out_valid <= 1'b0;
-        if (beat && valid[4]) begin
-            out_valid                   <= 1'b1;
-            out_descriptor.colour       <= lit_4;
-            out_descriptor.group_start  <= passed_4.group_start;
-            out_descriptor.group_right  <= passed_4.group_right;
-            out_descriptor.group_left   <= passed_4.group_left;
-            out_descriptor.bottom       <= passed_4.bottom;
-            out_descriptor.top          <= passed_4.top;
-            out_descriptor.steps        <= {passed_4.x02, passed_4.y20, passed_4.x21, passed_4.y12, passed_4.x10, passed_4.y01};
-            out_descriptor.depth_step_y <= step_y;
-            out_descriptor.depth_step_x <= step_x;
-            out_descriptor.depth_start  <= depth_start;
-            out_descriptor.start        <= start_4;
-        end
+        if (beat && valid[4]) out_valid <= 1'b1;
         if (rst) begin
             out_valid <= 1'b0;
             drawn     <= 1'b0;

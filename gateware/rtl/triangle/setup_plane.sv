@@ -2,14 +2,15 @@
 // normal (Nx, Ny) of the plane. A plane is a value that is linear on the screen: the depth, or one channel of light.
 //
 // The module `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, or of a
-// channel of its light, 11 clocks or more), and `beat`, which is high in the last clock of a beat. The normal is valid at the end of a beat. The reciprocal
-// must hold in the next beat, and the inputs for vertex 0 in the beat after that, at the end of which all outputs are valid.
+// channel of its light, 11 clocks or more), and `next`, which is high a clock before the last clock of a beat. The normal is valid
+// at the end of a beat. The reciprocal must hold in the next beat, and the inputs for vertex 0 in the beat after that, at the end
+// of which all outputs are valid.
 
 `default_nettype none
 
 module setup_plane (
     input  wire         clk,
-    input  wire         beat,
+    input  wire         next,
     input  wire  [3:0]  count,
     input  wire  [45:0] nx,
     input  wire  [45:0] ny,
@@ -32,14 +33,12 @@ module setup_plane (
     assign step_x = gx[31:0];
     assign step_y = gy[31:0];
 
+    wide_register #(.WIDTH(2 * 46 + 2 * 41)) stages (
+        .clk, .next, .in({nx, ny, twice_gx, twice_gy}), .out({nx_3, ny_3, twice_gx_4, twice_gy_4})
+    );
+
     // Stage 4 begins one clock after the beginning of its beat, because the gradients are rounded in this clock.
     always_ff @(posedge clk) begin
-        if (beat) begin
-            nx_3       <= nx;
-            ny_3       <= ny;
-            twice_gx_4 <= twice_gx;
-            twice_gy_4 <= twice_gy;
-        end
         gx <= twice_gx_4[40:1] + 40'(twice_gx_4[0]);
         gy <= twice_gy_4[40:1] + 40'(twice_gy_4[0]);
         count_4 <= count;

@@ -1,0 +1,32 @@
+// A register of many bits with an enable that is known a clock ahead. For every LOADS flip-flops the enable has a copy, so that
+// none drives more than LOADS.
+//
+//   next ─▶ copies of the enable ─┬─┬─┬─▶
+//   in ──────────────────────────▶ register ──▶ out
+//
+// `next` is high in the clock before the register takes `in`, and never in two successive clocks. Each copy of the enable depends
+// on itself for this reason: synthesis would merge flip-flops with the same input into one.
+
+`default_nettype none
+
+module wide_register #(
+    parameter int unsigned WIDTH = 256,
+    parameter int unsigned LOADS = 128
+) (
+    input  wire              clk,
+    input  wire              next,
+    input  wire  [WIDTH-1:0] in,
+    output logic [WIDTH-1:0] out
+);
+    localparam int unsigned COPIES = (WIDTH + LOADS - 1) / LOADS;
+
+    (* keep *) logic [COPIES-1:0] enables;
+
+    always_ff @(posedge clk) begin
+        for (int i = 0; i < COPIES; i++) enables[i] <= next && !enables[i];
+        for (int i = 0; i < WIDTH; i++)
+            if (enables[i / LOADS]) out[i] <= in[i];
+    end
+endmodule
+
+`default_nettype wire
