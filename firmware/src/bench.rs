@@ -5,6 +5,8 @@ use glint_core::trig::{sin_cos_q14, sin_cos_q30};
 
 #[cfg(feature = "peers")]
 mod attitude;
+#[cfg(feature = "peers")]
+mod geometry;
 mod measure;
 mod object;
 #[cfg(feature = "peers")]
@@ -12,6 +14,8 @@ mod peers;
 
 #[cfg(feature = "peers")]
 pub use attitude::attitude;
+#[cfg(feature = "peers")]
+pub use geometry::geometry;
 pub use measure::{Cycles, Report};
 pub use object::object;
 

@@ -10,7 +10,9 @@ use crate::machine::Machine;
 const KERNELS: &[&str] = &["sine", "object", "triangle", "field"];
 /// Names of the kernels that `bench` accepts in a build with the feature `peers`.
 #[cfg(feature = "peers")]
-const KERNELS: &[&str] = &["sine", "object", "attitude", "triangle", "field"];
+const KERNELS: &[&str] = &[
+    "sine", "object", "attitude", "geometry", "triangle", "field",
+];
 
 /// Number of frames that the gateware draws back to back for a measurement.
 const FRAMES: u32 = 8;
@@ -39,6 +41,8 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
         Some("object") => bench::object(&mut print),
         #[cfg(feature = "peers")]
         Some("attitude") => bench::attitude(&mut print),
+        #[cfg(feature = "peers")]
+        Some("geometry") => bench::geometry(&mut print),
         Some("triangle" | "field") if !has_engine => return Err(CommandError::NoEngine),
         Some("triangle") if machine.scene.field().is_some() => {
             return Err(CommandError::FieldShown);

@@ -14,6 +14,8 @@ use glint_reference::imu::motion::Motion;
 use glint_reference::raymarch::raymarched::{Measured, others, picture, rounds, sponges};
 use glint_reference::raymarch::verilated::Raymarcher;
 use glint_reference::raymarch::views;
+use glint_reference::report::cycles::Cycles;
+use glint_reference::report::experiments::geometry::precision;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
 use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
 use glint_reference::report::experiments::sine;
@@ -153,6 +155,20 @@ fn the_committed_errors_of_sines_hold() {
         recomputed += 1;
     }
     assert!(recomputed >= 2);
+}
+
+/// Measures the rows of geometry-precision.csv again, and compares the errors with the committed ones.
+#[test]
+fn the_committed_errors_of_geometry_hold() {
+    let rows: Vec<precision::Row> = committed("geometry-precision.csv");
+    let now = precision::measure(&Cycles::new());
+    assert_eq!(rows.len(), now.len(), "kernels have come or gone");
+    for (row, now) in rows.iter().zip(now) {
+        assert_eq!((&row.kernel, row.samples), (&now.kernel, now.samples));
+        let name = |column| format!("geometry-precision.csv: {} of {}", column, row.kernel);
+        assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
+        assert_close(row.rms, now.rms, 1e-6, &name("rms"));
+    }
 }
 
 /// Counts the distance evaluations of the sponge's small frames in raymarch-rates.csv again, and compares them with the committed

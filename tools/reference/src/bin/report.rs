@@ -61,10 +61,10 @@ enum Page {
         #[command(flatten)]
         output: Output,
     },
-    /// Drift of the wireframe simulator's rotation, compared with f64
+    /// Matrices, normals and projection with several word lengths: errors and cycles; drift of the wireframe simulator's rotation
     Geometry {
         #[command(flatten)]
-        output: Output,
+        bench: Bench,
     },
     /// Attitudes from gyroscope and accelerometer, compared with f64 and with the true attitude
     Imu {
@@ -145,7 +145,7 @@ fn main() -> Result<()> {
             ..
         } => measure_studies(Some(&study), &output),
         Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
-        Page::Geometry { output } => measure_geometry(&output),
+        Page::Geometry { bench } => measure_geometry(&bench),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
@@ -219,11 +219,15 @@ fn measure_gouraud(quick: bool, output: &Output) -> Result<()> {
     written("gouraud", &folder, pages::gouraud::rebuild)
 }
 
-fn measure_geometry(output: &Output) -> Result<()> {
-    let rows = geometry::measure();
-    output.print(&rows, pages::geometry::table)?;
+fn measure_geometry(bench: &Bench) -> Result<()> {
+    let output = &bench.output;
+    let cycles = bench.cycles.measure("geometry")?;
+    let kernels = geometry::precision::measure(&cycles);
+    output.print(&kernels, |rows| pages::geometry::kernel_table(rows))?;
     let folder = output.folder(false)?;
-    write_csv(&rows, &folder.join("geometry-drift.csv"))?;
+    write_csv(&kernels, &folder.join("geometry-precision.csv"))?;
+    let drift = geometry::drift::measure();
+    write_csv(&drift, &folder.join("geometry-drift.csv"))?;
     written("geometry", &folder, pages::geometry::rebuild)
 }
 

@@ -5,27 +5,63 @@ use std::path::Path;
 use anyhow::Result;
 
 use super::template::{fill, made, write};
-use crate::report::experiments::geometry::Row;
-use crate::report::table::{Table, read_csv};
+use crate::report::experiments::geometry::{drift, precision};
+use crate::report::table::{Table, bold, read_csv};
 
-/// Rebuilds the page from the CSV file in `folder`.
+/// Rebuilds the page from the CSV files in `folder`.
 ///
 /// # Errors
-/// When the table is missing or a file cannot be written.
+/// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_csv(&folder.join("geometry-drift.csv"))?;
-    let made = rows
+    let kernels: Vec<precision::Row> = read_csv(&folder.join("geometry-precision.csv"))?;
+    let rows: Vec<drift::Row> = read_csv(&folder.join("geometry-drift.csv"))?;
+    let of = |family: &str| {
+        let rows = kernels.iter().filter(|row| row.family == family);
+        kernel_table(rows)
+    };
+    let made = kernels
         .first()
         .map_or_else(String::new, |row| made(&row.commit, &row.tools));
     let page = fill(
         include_str!("geometry.md"),
-        &[("table", table(&rows)), ("made", made)],
+        &[
+            ("matrices", of("matrix")),
+            ("normals", of("normal")),
+            ("projections", of("projection")),
+            ("drift", table(&rows)),
+            ("made", made),
+        ],
     )?;
     write(&page, &folder.join("geometry.md"))
 }
 
-/// Formats the table of the errors as Markdown: a line for each session and form, with the errors after each number of steps.
-pub fn table(rows: &[Row]) -> String {
+/// Formats the errors and cycles of kernels as Markdown.
+pub fn kernel_table<'r>(rows: impl IntoIterator<Item = &'r precision::Row>) -> String {
+    let mut table = Table::new([
+        "word length, method",
+        "largest error:",
+        "RMS:",
+        "cycles, median:",
+        "least to most:",
+    ]);
+    for row in rows {
+        let cycles = row.cycles_median.map(|cycles| cycles.to_string());
+        let range = row.cycles_min.zip(row.cycles_max);
+        let range = range.map(|(least, most)| format!("{least} to {most}"));
+        let missing = || "not measured".to_owned();
+        table.row([
+            bold(&row.config, row.shipped),
+            format!("{:.2e}", row.max_err),
+            format!("{:.2e}", row.rms),
+            cycles.unwrap_or_else(missing),
+            range.unwrap_or_else(missing),
+        ]);
+    }
+    table.finish()
+}
+
+/// Formats the table of the drift as Markdown: a line for each session and form, with the errors after each number of steps.
+pub fn table(rows: &[drift::Row]) -> String {
     let mut table = Table::new([
         "rotations",
         "motion",

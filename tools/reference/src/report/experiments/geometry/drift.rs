@@ -1,4 +1,4 @@
-//! Experiment: errors of the geometry before rasterization. So far the drift of the wireframe simulator's rotation.
+//! Drift of the wireframe simulator's rotations.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,4 @@
+//! Experiments on the geometry before rasterization.
+
+pub mod drift;
+pub mod precision;

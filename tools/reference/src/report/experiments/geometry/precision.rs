@@ -1,0 +1,285 @@
+//! Errors and cycles of matrices, normals and projection with several word lengths.
+
+use glint_core::fixed::{Q8_24, Turns};
+use glint_core::matrix::{Axis, Matrix};
+use glint_variants::matrix::{Rows, product_32, product_64, product_128};
+use glint_variants::normal::{cofactors, turned};
+use glint_variants::reciprocal::reciprocal;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
+
+use crate::report::cycles::Cycles;
+use crate::report::provenance::Provenance;
+
+/// Error and cycles of a kernel: a line of `geometry-precision.csv`.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Row {
+    /// What the kernel computes: `matrix`, `normal` or `projection`.
+    pub family: String,
+    /// Name of the kernel in the firmware's `bench`.
+    pub kernel: String,
+    /// Word length and method.
+    pub config: String,
+    /// Whether it is the method in use.
+    pub shipped: bool,
+    /// Largest error: of an entry of a matrix, of a component of a normal, or of a position in 1/256 pixel.
+    pub max_err: f64,
+    /// Root of the mean of the squared errors.
+    pub rms: f64,
+    /// Number of errors.
+    pub samples: u64,
+    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    pub cycles_min: Option<u64>,
+    /// Median of the cycles of the calls on the soft core.
+    pub cycles_median: Option<u64>,
+    /// Cycles of the slowest call on the soft core.
+    pub cycles_max: Option<u64>,
+    /// Commit with which the row was measured.
+    pub commit: String,
+    /// Versions of the tools with which the row was measured.
+    pub tools: String,
+}
+
+/// Number of chains of matrices, and of turned normals.
+const ROUNDS: u32 = 20_000;
+/// Number of rotations of a chain.
+const CHAIN: u32 = 8;
+/// Half the width of the largest picture, in pixels.
+const HALF_WIDTH: f64 = 640.0;
+
+/// Statistics of errors.
+#[derive(Default)]
+struct Errors {
+    largest: f64,
+    squares: f64,
+    count: u64,
+}
+
+impl Errors {
+    fn add(&mut self, error: f64) {
+        self.largest = self.largest.max(error.abs());
+        self.squares += error * error;
+        self.count += 1;
+    }
+}
+
+/// Measures the errors of all kernels. `cycles` is the result of the console command `bench geometry`.
+pub fn measure(cycles: &Cycles) -> Vec<Row> {
+    let provenance = Provenance::find();
+    let kernels = [
+        (
+            "matrix_10",
+            "10 fraction bits, products of 32 bits",
+            false,
+            chains(10, product_32::<10>),
+        ),
+        (
+            "matrix_16",
+            "16 fraction bits, products of 64 bits",
+            false,
+            chains(16, product_64::<16>),
+        ),
+        (
+            "matrix_20",
+            "20 fraction bits, products of 64 bits",
+            false,
+            chains(20, product_64::<20>),
+        ),
+        (
+            "matrix_24",
+            "24 fraction bits, products of 64 bits",
+            true,
+            chains(24, product_64::<24>),
+        ),
+        (
+            "matrix_32",
+            "32 fraction bits, products of 128 bits",
+            false,
+            chains(32, product_128::<32>),
+        ),
+        (
+            "normal_8",
+            "8 fraction bits, in 32 bits",
+            false,
+            normals(8, |matrix, normal| {
+                turned::<8>(&cofactors(&bits(matrix)), normal)
+            }),
+        ),
+        (
+            "normal_14_in_32",
+            "14 fraction bits, in 32 bits",
+            false,
+            normals(14, |matrix, normal| {
+                turned::<14>(&cofactors(&bits(matrix)), normal)
+            }),
+        ),
+        (
+            "normal_14_in_64",
+            "14 fraction bits, in 64 bits",
+            true,
+            normals(14, |matrix, normal| matrix.normals().apply(normal)),
+        ),
+        (
+            "reciprocal_0",
+            "table of 256 reciprocals",
+            false,
+            positions(reciprocal::<0>),
+        ),
+        (
+            "reciprocal_1",
+            "table, one Newton step",
+            false,
+            positions(reciprocal::<1>),
+        ),
+        (
+            "reciprocal_2",
+            "table, two Newton steps",
+            true,
+            positions(reciprocal::<2>),
+        ),
+    ];
+    let row = |(kernel, config, shipped, errors): (&str, &str, bool, Errors)| {
+        let family = match kernel.split_once('_') {
+            Some(("reciprocal", _)) => "projection",
+            Some((family, _)) => family,
+            None => kernel,
+        };
+        let cycles = cycles.get(kernel);
+        Row {
+            family: family.to_owned(),
+            kernel: kernel.to_owned(),
+            config: config.to_owned(),
+            shipped,
+            max_err: errors.largest,
+            rms: (errors.squares / errors.count as f64).sqrt(),
+            samples: errors.count,
+            cycles_min: cycles.map(|cycles| cycles.min),
+            cycles_median: cycles.map(|cycles| cycles.median),
+            cycles_max: cycles.map(|cycles| cycles.max),
+            commit: provenance.commit.clone(),
+            tools: provenance.tools.clone(),
+        }
+    };
+    kernels.into_iter().map(row).collect()
+}
+
+fn bits(matrix: &Matrix) -> Rows<i32> {
+    matrix.linear().map(|row| row.map(Q8_24::to_bits))
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// A number of a matrix with some fraction bits.
+trait Entry: Copy {
+    fn rounded(x: f64) -> Self;
+    fn value(self) -> f64;
+}
+
+impl Entry for i32 {
+    fn rounded(x: f64) -> Self {
+        x.round() as Self
+    }
+    fn value(self) -> f64 {
+        self.into()
+    }
+}
+
+impl Entry for i64 {
+    fn rounded(x: f64) -> Self {
+        x.round() as Self
+    }
+    fn value(self) -> f64 {
+        self as f64
+    }
+}
+
+/// Errors of the entries of chains of rotations about random axes, from the first rotation to the last product.
+fn chains<T: Entry>(bits: i32, product: fn(&Rows<T>, &Rows<T>) -> Rows<T>) -> Errors {
+    let unit = 2f64.powi(bits);
+    let mut random = Pcg64Mcg::seed_from_u64(1);
+    let mut errors = Errors::default();
+    for _ in 0..ROUNDS {
+        let mut rotations = (0..CHAIN).map(|_| {
+            let angle = random.random_range(0.0..std::f64::consts::TAU);
+            rotation(random.random_range(0..3), angle)
+        });
+        let rounded = |rows: Rows<f64>| rows.map(|row| row.map(|x| T::rounded(x * unit)));
+        let Some(first) = rotations.next() else {
+            continue;
+        };
+        let (mut exact, mut found) = (first, rounded(first));
+        for next in rotations {
+            let columns = [0, 1, 2].map(|j| [exact[0][j], exact[1][j], exact[2][j]]);
+            exact = next.map(|row| columns.map(|column| dot(row, column)));
+            found = product(&rounded(next), &found);
+        }
+        for (found, exact) in found.as_flattened().iter().zip(exact.as_flattened()) {
+            errors.add(found.value() / unit - exact);
+        }
+    }
+    errors
+}
+
+fn rotation(axis: usize, angle: f64) -> Rows<f64> {
+    let (sin, cos) = angle.sin_cos();
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut rows = [[0.0; 3]; 3];
+    rows[axis][axis] = 1.0;
+    (rows[i][i], rows[j][j]) = (cos, cos);
+    (rows[i][j], rows[j][i]) = (-sin, sin);
+    rows
+}
+
+/// Errors of the components of normals of length 1, from a normal in f64 to the one that is turned by a model matrix, with scales
+/// of 0.5 to 2 along three axes.
+fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
+    let unit = 2f64.powi(bits);
+    let mut random = Pcg64Mcg::seed_from_u64(2);
+    let mut errors = Errors::default();
+    while errors.count < 3 * u64::from(ROUNDS) {
+        let scales = [0; 3].map(|_| Q8_24::from_num(random.random_range(-1.0..1.0f64).exp2()));
+        let [a, b, c] = [0; 3].map(|_| Turns(random.random()));
+        let matrix = Matrix::rotation(Axis::X, a)
+            .then(&Matrix::rotation(Axis::Y, b))
+            .and_then(|matrix| matrix.then(&Matrix::scale(scales)?))
+            .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, c)));
+        let Ok(matrix) = matrix else { continue };
+        let direction = [0; 3].map(|_| random.random_range(-1.0..1.0f64));
+        let length = dot(direction, direction).sqrt();
+        if !(0.1..1.0).contains(&length) {
+            continue;
+        }
+        let normal = direction.map(|x| x / length);
+        let rows = matrix.linear().map(|row| row.map(Q8_24::to_num::<f64>));
+        let at = |i: usize, j: usize| rows[i % 3][j % 3];
+        let exact = [0, 1, 2].map(|i| {
+            let row = [0, 1, 2]
+                .map(|j| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1));
+            dot(row, normal)
+        });
+        let length = dot(exact, exact).sqrt();
+        let found = turn(&matrix, normal.map(|x| (x * unit).round() as i16));
+        for (found, exact) in found.into_iter().zip(exact) {
+            errors.add(f64::from(found) / unit - exact / length);
+        }
+    }
+    errors
+}
+
+/// Errors of positions on the screen in 1/256 pixel, up to half a picture of 1280 pixels from its middle, for all mantissas of the
+/// depth: step 7 of the vertex stage (docs/formats.md), with its rounding.
+fn positions(reciprocal: fn(u32) -> u32) -> Errors {
+    let mut random = Pcg64Mcg::seed_from_u64(3);
+    let mut errors = Errors::default();
+    for m in 1 << 23..1 << 24 {
+        let pixels = random.random_range(-HALF_WIDTH..HALF_WIDTH);
+        // X' has 11 fraction bits at the mantissa 2^23.
+        let x = (pixels * f64::from(m) / 4096.0).round() as i64;
+        let found = (x * i64::from(reciprocal(m)) + (1 << 26)) >> 27;
+        errors.add(found as f64 - x as f64 * 2f64.powi(20) / f64::from(m));
+    }
+    errors
+}
