@@ -7,7 +7,7 @@ use glint_model::{MeshSetup, Projected, SIZES};
 use glint_vectors::Camera;
 use glint_vectors::math::world;
 
-use crate::{Case, refused};
+use crate::case::{Case, refused};
 
 pub const CASES: &[Case] = &[
     ("gaze parallel to up", parallel_to_up),

@@ -4,7 +4,7 @@ use glint_model::line::Line;
 use glint_model::triangle::setup::Bounds;
 use glint_vectors::triangles::at;
 
-use crate::Case;
+use crate::case::Case;
 
 pub const CASES: &[Case] = &[
     ("horizontal segment", || {

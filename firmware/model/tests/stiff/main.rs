@@ -1,6 +1,7 @@
 //! The stiff cases: each row of the tables in docs/stiff.md has a function here that computes its outcome.
 
 mod cameras;
+mod case;
 mod lines;
 mod objects;
 mod volume;
@@ -8,15 +9,9 @@ mod wireframes;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use glint_core::fixed::{Q8_24, U8_28};
-use glint_core::matrix::Matrix;
-use glint_core::mesh::Mesh;
-use glint_model::{Clip, MeshSubject, Object, Placement};
+use case::Case;
 
 const PAGE: &str = include_str!("../../../../docs/stiff.md");
-
-/// The case as the page names it, and the function that checks it and states its outcome in the words of the page.
-type Case = (&'static str, fn() -> String);
 
 /// The cases of all tables.
 const CASES: [&[Case]; 5] = [
@@ -55,29 +50,4 @@ fn each_row_has_a_case_with_its_outcome() {
         differing, 0,
         "rows of docs/stiff.md that differ from the computed outcome"
     );
-}
-
-/// The outcome of a refused input: its error text.
-fn refused<T>(result: Result<T, impl ToString>) -> String {
-    let error = result.err().expect("an error").to_string();
-    format!("refused: `{error}`")
-}
-
-fn number(x: f64) -> Q8_24 {
-    Q8_24::from_num(x)
-}
-
-fn view_volume(far: f64) -> Clip {
-    Clip::View {
-        far: U8_28::from_num(far),
-    }
-}
-
-/// An object without a colour of its own.
-fn object(bytes: &[u8], matrix: Matrix) -> Object<'_> {
-    Object {
-        subject: MeshSubject::new(Mesh::new_checked(bytes).unwrap()),
-        placement: Placement::new(matrix),
-        colour: None,
-    }
 }

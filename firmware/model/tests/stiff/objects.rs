@@ -7,7 +7,7 @@ use glint_core::picture::Size;
 use glint_model::{Frame, Subject};
 use glint_vectors::{Camera, Model, Picture, Random};
 
-use crate::{Case, number, object, refused};
+use crate::case::{Case, number, object, refused};
 
 pub const CASES: &[Case] = &[
     ("model matrix with two parallel rows", || {

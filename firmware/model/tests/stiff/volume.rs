@@ -13,7 +13,7 @@ use glint_model::{
 };
 use glint_vectors::{Camera, Model, Picture};
 
-use crate::{Case, number, object, refused, view_volume};
+use crate::case::{Case, number, object, refused, view_volume};
 
 pub const CASES: &[Case] = &[
     ("near = far", || refused(mesh_with_far("0.1"))),

@@ -8,7 +8,7 @@ use glint_model::wireframe::render_wireframe;
 use glint_model::{WireframeStats, WireframeSubject};
 use glint_vectors::Picture;
 
-use crate::{Case, refused};
+use crate::case::{Case, refused};
 
 pub const CASES: &[Case] = &[
     ("segment in the view plane", || {
