@@ -267,8 +267,8 @@ MUTATIONS = {
         _cull("verdict && !drop)", "verdict)", "nothing_made_up"),
         _cull("room && !again;", "room;", "leaves_in_time"),
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
-        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
-        _fifo("!read_valid || read_ready;", "1'b1;", "shown.payload_stable"),
+        _fifo("(read_valid || out_valid && !out_ready)", "read_valid", "shown.valid_stays"),
+        _fifo("read_ready = !out_valid || out_ready", "read_ready = 1'b1", "shown.payload_stable"),
     ],
     "classify": [
         _classify("known        <= held && !leaves;", "known        <= held && !known;", "exception.valid_stays"),
