@@ -1,5 +1,7 @@
 //! The vertex stage: snapped positions and depths of vertices, compared with a projection in f64.
 
+use std::collections::BTreeSet;
+
 use glint_model::triangle::reciprocal::Reciprocal;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
@@ -7,6 +9,9 @@ use glint_vectors::{Camera, Random, math::world};
 
 /// Radius of a mesh that fills a box of 1×1×1 world units, and of a mesh with vertices at ±2; 14 fraction bits.
 const RADII: [u32; 2] = [14_190, 56_756];
+
+/// The smallest and the largest half width of a camera.
+const HALF_WIDTHS: [f64; 2] = [0.0087, 115.0];
 
 /// Largest errors of positions in 1/256 pixel, and a count of positions.
 #[derive(Clone, Copy, Default)]
@@ -293,9 +298,11 @@ fn steps_as_written() {
     let nearest = |x: i128, shift: i32| (x + (1 << (shift - 1))) >> shift;
     for round in 0..100_000 {
         let (width, height) = SIZES[round % 3];
-        let half_width = random.logarithmic(0.05, 4.0);
+        let half_width = random.logarithmic(HALF_WIDTHS[0], HALF_WIDTHS[1]);
         let (camera, point, _) = aimed(&mut random, (width, height), half_width, 2.0);
-        let view = camera.rounded();
+        // The nearest near plane that every half width allows.
+        let near = camera.near.max(0.0625);
+        let view = Camera { near, ..camera }.rounded();
         let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();
         let f = frame.scale_shift as i32;
 
@@ -353,17 +360,20 @@ fn steps_as_written() {
 }
 
 /// The scale shift is the largest for which the components of the scaled camera axes `u` and `v` fit 25 bits. This is
-/// tested with the longest axes that a camera may have.
+/// tested with the longest axes that a camera may have, over the whole range of half widths.
 #[test]
 fn rows_fill_their_width() {
     let mut random = Random(5);
+    let [narrowest, widest] = HALF_WIDTHS;
+    let mut shifts = BTreeSet::new();
     for round in 0..20_000 {
         let (width, height) = SIZES[round % 3];
         // For half of the cameras the scale s is slightly below a power of two, where the scale shift changes.
-        let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(5, 14) as i32);
+        let power = f64::from(width) / 2.0 / 2f64.powi(random.integer(1, 16) as i32);
         let half_width = match power * (1.0 + random.real(0.0, 3e-4)) {
-            near_power if round % 2 == 0 && (0.05..4.0).contains(&near_power) => near_power,
-            _ => random.logarithmic(0.05, 4.0),
+            _ if round < 6 => HALF_WIDTHS[round / 3],
+            near_power if round % 2 == 0 && (narrowest..widest).contains(&near_power) => near_power,
+            _ => random.logarithmic(narrowest, widest),
         };
         let length = 1.000_099;
         let camera = Camera {
@@ -376,14 +386,15 @@ fn rows_fill_their_width() {
         };
         let view = camera.rounded();
         let frame = MeshSetup::new(&view, width, height, 0).unwrap();
+        shifts.insert(frame.scale_shift);
         assert!(
             frame.u[0] < 1 << 24 && frame.v[2] > -1 << 24,
             "{half_width}"
         );
         let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
-        // The camera's half width is at most 4, so the shift does not reach its largest value of 18.
         let fits = |f: i32| (scale * 2f64.powi(f)).ceil() * (1.0 + 2f64.powi(-12)) < 2f64.powi(24);
         let f = frame.scale_shift as i32;
-        assert!(fits(f) && !fits(f + 1), "{f} for {half_width}");
+        assert!(fits(f) && (f == 18 || !fits(f + 1)), "{f} for {half_width}");
     }
+    assert!(shifts.into_iter().eq(7..=18));
 }
