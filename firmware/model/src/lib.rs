@@ -3,7 +3,7 @@
 //! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats.md` in integers. It is the renderer of
 //! the CPU backend, and the reference of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`]
 //! draws it: the mesh of the picture by [`triangle`], the rays of its distance field by [`raymarch`];
-//! [`line`](mod@line) draws segments, and [`wireframe`] the programs of the wireframe simulator.
+//! [`line`](mod@line) draws segments, [`edges`] makes those of a mesh, and [`wireframe`] the programs of the wireframe simulator.
 //!
 //! The crate uses no floating point and no allocation, and 128-bit integers only for the fog's table. Every sum and
 //! product fits its type for every camera that [`glint_core::camera::View`] accepts and for every mesh; comments at
@@ -12,6 +12,7 @@
 #![forbid(unsafe_code)]
 
 mod depth;
+pub mod edges;
 mod error;
 mod frame;
 mod frame_buffer;

@@ -196,6 +196,24 @@ pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
     polygon
 }
 
+/// Clips an edge to the volume of the frame; `None` if nothing remains. Where it is cut, it has the vertices that the triangles at
+/// the edge get.
+pub fn clip_edge(
+    frame: &MeshSetup,
+    [mut a, mut b]: [CameraVertex; 2],
+) -> Option<[CameraVertex; 2]> {
+    for plane in planes(frame.volume) {
+        let [da, db] = [&a, &b].map(|vertex| plane.distance(frame, vertex));
+        match (da >= 0, db >= 0) {
+            (true, true) => {}
+            (true, false) => b = plane.intersection(frame, &a, da, &b, db),
+            (false, true) => a = plane.intersection(frame, &b, db, &a, da),
+            (false, false) => return None,
+        }
+    }
+    Some([a, b])
+}
+
 /// Computes x·part/whole to nearest, ties up, for part ≤ whole < 2^61 and whole > 0.
 ///
 /// Long division: the product may have 100 bits, but the quotient is at most x.

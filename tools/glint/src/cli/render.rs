@@ -12,9 +12,10 @@ use glint::console::Console;
 use glint::error::FormatError;
 use glint::model::Model;
 use glint::object::Description;
+use glint::picture::Image;
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
-    Renderer, Route, Stats, Subject,
+    Renderer, Route, Stats, Subject, Wireframe, draw_edges, edges,
 };
 use glint::transfer::Progress;
 use glint::view;
@@ -98,6 +99,10 @@ pub struct RenderArguments {
     /// upper left vertex: all triangles are seen, and none is culled).
     #[arg(long, value_parser = named(Winding::ALL, Winding::name), default_value_t, requires = "model")]
     winding: Winding,
+    /// Draw the edges of the model, white, each once: `hidden` (edges alone, without those that faces hide), or `over` (over the shaded
+    /// faces).
+    #[arg(long, value_enum, requires = "model", conflicts_with_all = ["field", "object"])]
+    wireframe: Option<Wireframe>,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
@@ -186,7 +191,10 @@ impl RenderArguments {
             (None, None) => anyhow::bail!("expected a model, a --field or both, found neither"),
         };
         let frame = Frame::new(subject, view, size);
-        let Rendered { image, stats } = self.render(&frame)?;
+        let Rendered { mut image, stats } = self.render(&frame)?;
+        if let Some(wireframe) = self.wireframe {
+            draw_wireframe(wireframe, &frame, &mut image)?;
+        }
         write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.depth {
             let scale = frame.constants()?.depth_scale();
@@ -292,6 +300,11 @@ impl RenderArguments {
             "--capture monitor: expected the virtual board, found --board {}",
             self.board
         );
+        anyhow::ensure!(
+            self.wireframe.is_none() || self.board == ModelOrBoard::Model,
+            "--wireframe: expected --board model, found --board {}",
+            self.board
+        );
         match &self.board {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
@@ -343,6 +356,16 @@ impl RenderArguments {
 }
 
 /// Captures the frame on the virtual board's monitor, scaled back to the frame's own size.
+/// Draws the edges of a frame's mesh into its picture.
+fn draw_wireframe(wireframe: Wireframe, frame: &Frame, image: &mut Image) -> anyhow::Result<()> {
+    let constants = frame.constants()?;
+    let mesh = frame.subject.mesh_part().zip(constants.mesh());
+    let (subject, setup) = mesh.context("expected a frame with a mesh")?;
+    let edges = edges(&subject.mesh, setup, subject.cull);
+    draw_edges(image, wireframe, frame.clear, &edges, setup);
+    Ok(())
+}
+
 fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u16>> {
     let spinner = spinner("capturing a frame of the monitor");
     let picture = board.inner().capture()?;

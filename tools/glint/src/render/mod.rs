@@ -5,6 +5,7 @@
 
 mod board;
 mod commands;
+mod edges;
 mod model;
 mod renderer;
 mod stats;
@@ -12,6 +13,7 @@ mod stats;
 pub use crate::transfer::Route;
 pub use board::BoardRenderer;
 pub use commands::{field_commands, mesh_commands, size_command, view_command};
+pub use edges::{EdgeCounts, Wireframe, draw_edges, edges};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 pub use model::{ModelRenderer, on_model};
 pub use renderer::{Error, Parts, Rendered, Renderer};
