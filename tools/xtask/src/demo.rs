@@ -20,13 +20,12 @@ pub fn demo(arguments: &[String]) -> Result<()> {
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. For the page `raymarch` it also
 /// builds the SoC whose raymarcher evaluates the field four times a clock, and the raymarcher without a SoC. With `pages` as name
-/// it writes all pages from the tables of earlier measurements. For this and for `geometry`, which needs no board, it builds only
-/// the report program.
+/// it writes all pages from the tables of earlier measurements. For this it builds only the report program.
 ///
 /// # Errors
 /// A build or a measurement fails.
 pub fn report(name: &str, arguments: &[String]) -> Result<()> {
-    if ["pages", "geometry"].contains(&name) {
+    if name == "pages" {
         return tool("glint-reference", "report", name, arguments);
     }
     bootstrap::bootstrap()?;
