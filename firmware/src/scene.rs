@@ -152,7 +152,10 @@ impl Scene {
                 }
             }
         };
-        Frame::new(subject, self.view, self.size)
+        Frame {
+            lighting: self.appearance.mesh_lighting(),
+            ..Frame::new(subject, self.view, self.size)
+        }
     }
 
     /// Whether the wireframe is shown.
@@ -194,6 +197,11 @@ impl Scene {
         self.field.as_ref()
     }
 
+    /// Whether the field is shown, alone or with the mesh in it.
+    pub const fn shows_field(&self) -> bool {
+        self.field.is_some() && self.wireframe.is_none() && !self.objects
+    }
+
     /// Shows a field, or the mesh alone for `None`, in place of wireframe or objects if they are shown.
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.wireframe.take().is_some() || self.objects || self.field != field;
@@ -212,14 +220,18 @@ impl Scene {
         self.with_mesh = with_mesh;
     }
 
-    /// The appearance of a field.
+    /// The appearance of a field, with the lights of meshes.
     pub const fn appearance(&self) -> &Appearance {
         &self.appearance
     }
 
-    /// Sets the appearance of a field.
+    /// Sets the appearance of a field, with the lights of meshes.
     pub fn set_appearance(&mut self, appearance: Appearance) {
-        self.changed |= self.field.is_some() && self.appearance != appearance;
+        self.changed |= if self.shows_field() {
+            self.appearance != appearance
+        } else {
+            self.appearance.mesh_lighting() != appearance.mesh_lighting()
+        };
         self.appearance = appearance;
     }
 

@@ -100,6 +100,8 @@ module flat_shade (
     input  wire              enable,
     input  wire  [3:0]       count,
     input  wire  [2:0][24:0] row_light,
+    input  wire  [2:0][8:0]  light_colour,
+    input  wire  [2:0][8:0]  ambient,
     input  wire              front,
     input  wire  [2:0][15:0] normal,
     input  wire  [15:0]      colour,

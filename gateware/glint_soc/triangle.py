@@ -197,6 +197,10 @@ class TriangleEngine(LiteXModule):
                  for i, axis in enumerate("xyz")]
         for i, register in enumerate(light):
             setattr(self, f"_light_{i}", register)
+        self._light_colour = Parameter(27, name="light_colour", description="Colour of the light, u1.8 of each channel, at most 1: red "
+                                       "in bits 0 to 8, green, blue.")
+        self._ambient = Parameter(27, name="ambient", description="Ambient light, in the format of `light_colour`. It must be 0 with "
+                                  "`smooth` and without `cull`.")
 
         # # #
 
@@ -216,7 +220,7 @@ class TriangleEngine(LiteXModule):
         self.parameters = PassParameters(
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
-             self._near_low, self._near_high, self._depth_scale, *light],
+             self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
         # A raymarcher copies its parameters at the same time as the raster pass, which waits for both.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -242,6 +246,8 @@ class TriangleEngine(LiteXModule):
             "list_shift": self._list_shift.storage,
             "exceptions": self._exceptions.storage,
             "exception_limit": self._exception_limit.storage,
+            **{name: [register.storage[9*i:9*i + 9] for i in range(3)]
+               for name, register in (("light_colour", self._light_colour), ("ambient", self._ambient))},
         })
         view = Struct("view_t", "Camera and light of the geometry pass: docs/formats.md, \"Frame constants\".", {
             "scale_shift": self._scale_shift.storage,

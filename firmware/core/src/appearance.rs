@@ -1,9 +1,9 @@
-//! The appearance of a distance field.
+//! The appearance of a distance field, and the lighting of meshes.
 
 use heapless::Vec;
 
 use crate::fixed::U4_28;
-use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, Rgb};
+use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb};
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
 /// normal, and the background is white.
@@ -36,6 +36,22 @@ impl Appearance {
             }
         };
         Lighting {
+            ambient: self.ambient.unwrap_or(lighting.ambient),
+            ..lighting
+        }
+    }
+
+    /// Returns the lighting of meshes: the first light, or white light at the camera if the list is empty. The default ambient light
+    /// is that of fields with a light, and black without one.
+    pub fn mesh_lighting(&self) -> MeshLighting {
+        let lighting = match self.lights.first() {
+            Some(&light) => MeshLighting {
+                ambient: Lighting::AMBIENT,
+                light,
+            },
+            None => MeshLighting::CAMERA,
+        };
+        MeshLighting {
             ambient: self.ambient.unwrap_or(lighting.ambient),
             ..lighting
         }

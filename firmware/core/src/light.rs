@@ -1,13 +1,14 @@
 //! Lights, and the lit colours of distance fields.
 //!
 //! Faces perpendicular to the axes have only six directions, so their six lit colours are computed once per frame, and no
-//! lighting is computed per pixel. Spheres are lit per pixel, in `glint-model` and in the gateware. Light depends only on the
-//! angle between the normal and the direction to the light; there are no shadows.
+//! lighting is computed per pixel. Spheres are lit per pixel, and meshes per triangle or vertex, in `glint-model` and in the
+//! gateware. Light depends only on the angle between the normal and the direction to the light; there are no shadows.
 
 use core::fmt;
 
 use heapless::Vec;
 
+use crate::camera::View;
 use crate::choice::choices;
 use crate::field::MAX_SPHERES;
 use crate::fixed::Q32_32;
@@ -20,17 +21,21 @@ pub type Rgb = [u8; 3];
 pub const MAX_LIGHTS: usize = 4;
 
 /// Text form of a light.
-pub const FORM: &str = "X,Y,Z[,RRGGBB]";
+pub const FORM: &str = "X,Y,Z[,RRGGBB] or camera[,RRGGBB]";
+
+/// The first word of the text form of a light at the camera.
+const CAMERA: &str = "camera";
 
 /// The number 1 in the format of a direction, s1.14.
 const ONE: i32 = 1 << 14;
 
-/// A light at infinite distance.
+/// A light at infinite distance, in a fixed direction or behind the camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Light {
-    /// Direction to the light as entered, of any length.
-    towards: [Q32_32; 3],
-    /// Direction to the light, scaled to length 1: s1.14, rounded to nearest.
+    /// Direction to the light as entered, of any length; `None` for a light at the camera.
+    towards: Option<[Q32_32; 3]>,
+    /// Direction to the light, scaled to length 1: s1.14, rounded to nearest. It is 0 for a light at the camera before
+    /// [`seen_from`](Self::seen_from).
     direction: [i16; 3],
     colour: Rgb,
 }
@@ -43,14 +48,47 @@ impl Light {
     pub fn new(towards: [Q32_32; 3], colour: Rgb) -> Result<Self, LightError<'static>> {
         let direction = unit::<14>(towards.map(Q32_32::to_bits)).ok_or(LightError::Nowhere)?;
         Ok(Self {
-            towards,
+            towards: Some(towards),
             // A component is at most 2^14 in magnitude.
             direction: direction.map(|x| x as i16),
             colour,
         })
     }
 
-    /// The direction to the light as a vector of length 1, s1.14.
+    /// Makes a light at the camera: the direction to it is opposite to the camera's forward axis.
+    pub const fn at_camera(colour: Rgb) -> Self {
+        Self {
+            towards: None,
+            direction: [0; 3],
+            colour,
+        }
+    }
+
+    /// Whether the light is at the camera.
+    pub const fn is_at_camera(&self) -> bool {
+        self.towards.is_none()
+    }
+
+    /// Returns the light with the direction that it has for a camera: a light at the camera has none before.
+    #[must_use]
+    pub fn seen_from(self, view: &View) -> Self {
+        let back = view.n().map(|x| {
+            let x = (-x.to_bits() + (1 << 8)) >> 9;
+            // The axis may be 10^−4 longer than 1.
+            x.clamp(-ONE, ONE) as i16
+        });
+        Self {
+            direction: if self.is_at_camera() {
+                back
+            } else {
+                self.direction
+            },
+            ..self
+        }
+    }
+
+    /// The direction to the light as a vector of length 1, s1.14; 0 for a light at the camera before
+    /// [`seen_from`](Self::seen_from).
     pub const fn direction(&self) -> [i16; 3] {
         self.direction
     }
@@ -60,8 +98,8 @@ impl Light {
         self.colour
     }
 
-    /// Parses the text form, such as `1,-2,3` or `0,0,1,ffc080`: the direction to the light, of any length, and the
-    /// colour, white by default.
+    /// Parses the text form, such as `1,-2,3`, `0,0,1,ffc080` or `camera`: the direction to the light, of any length, or the camera,
+    /// and the colour, white by default.
     ///
     /// # Errors
     /// The text has another form, or the direction is 0.
@@ -69,9 +107,14 @@ impl Light {
         let form = LightError::Form { text };
         let mut words = text.split(',');
         let mut direction = [Q32_32::ZERO; 3];
-        for number in &mut direction {
-            let word = words.next().ok_or(form)?;
-            *number = Q32_32::from_str(word).map_err(|_| form)?;
+        let is_at_camera = words.clone().next() == Some(CAMERA);
+        if is_at_camera {
+            words.next();
+        } else {
+            for number in &mut direction {
+                let word = words.next().ok_or(form)?;
+                *number = Q32_32::from_str(word).map_err(|_| form)?;
+            }
         }
         let colour = match words.next() {
             Some(word) => parse_rgb(word).ok_or(form)?,
@@ -79,6 +122,7 @@ impl Light {
         };
         match words.next() {
             Some(_) => Err(form),
+            None if is_at_camera => Ok(Self::at_camera(colour)),
             None => Self::new(direction, colour),
         }
     }
@@ -87,9 +131,17 @@ impl Light {
 /// Writes the text form, with the colour.
 impl fmt::Display for Light {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [x, y, z] = self.towards;
-        write!(f, "{x},{y},{z},{}", Hexadecimal(self.colour))
+        match self.towards {
+            Some([x, y, z]) => write!(f, "{x},{y},{z}")?,
+            None => f.write_str(CAMERA)?,
+        }
+        write!(f, ",{}", Hexadecimal(self.colour))
     }
+}
+
+/// Converts a share in 255ths to a share in 256ths: 255, the whole, becomes 256, which is a power of two.
+pub const fn whole(part: u8) -> i32 {
+    part as i32 + (part >> 7) as i32
 }
 
 /// Displays a colour as the six hexadecimal digits that [`parse_rgb`] reads.
@@ -158,12 +210,12 @@ impl Lighting {
     /// faces different brightness.
     pub fn day() -> Self {
         let sun = Light {
-            towards: [3, -5, 8].map(Q32_32::from_num),
+            towards: Some([3, -5, 8].map(Q32_32::from_num)),
             direction: [4_965, -8_275, 13_240],
             colour: [0xFF, 0xF4, 0xE0],
         };
         let sky = Light {
-            towards: [-2, 1, 2].map(Q32_32::from_num),
+            towards: Some([-2, 1, 2].map(Q32_32::from_num)),
             direction: [-10_923, 5_461, 10_923],
             colour: [0x30, 0x38, 0x48],
         };
@@ -171,6 +223,15 @@ impl Lighting {
             ambient: Self::AMBIENT,
             lights: Vec::from_array([sun, sky]),
         }
+    }
+
+    /// Returns the lighting with the directions that lights at the camera have for a camera.
+    #[must_use]
+    pub fn seen_from(mut self, view: &View) -> Self {
+        for light in &mut self.lights {
+            *light = light.seen_from(view);
+        }
+        self
     }
 
     /// Computes the lit colours of six faces, perpendicular to the axes, from their colours c in full light. Each channel is
@@ -217,6 +278,23 @@ impl Lighting {
             ((lit + 255 * ONE / 2) / (255 * ONE)) as u8
         })
     }
+}
+
+/// The lighting of the meshes of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshLighting {
+    /// Ambient light.
+    pub ambient: Rgb,
+    /// The only light.
+    pub light: Light,
+}
+
+impl MeshLighting {
+    /// White light at the camera, and no ambient light.
+    pub const CAMERA: Self = Self {
+        ambient: [0; 3],
+        light: Light::at_camera([0xFF; 3]),
+    };
 }
 
 /// Material of a solid, which determines its colours.

@@ -1,9 +1,10 @@
 //! Tests of lights in text form, and of the lit colours of faces.
 
 use glint_core::appearance::Appearance;
-use glint_core::fixed::Q32_32;
+use glint_core::camera::View;
+use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::{
-    Background, Light, LightError, Lighting, MAX_LIGHTS, Material, Rgb, parse_rgb,
+    Background, Light, LightError, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb, parse_rgb,
 };
 use proptest::prelude::*;
 
@@ -133,6 +134,10 @@ fn lights_and_colours_are_read() {
     assert_eq!(Light::parse("0,0,2.5"), white);
     let little = Light::new(along_z(Q32_32::lit("1e-5")), [255, 192, 128]);
     assert_eq!(Light::parse("0,0,1e-5,ffC080"), little);
+    let at_camera = Light::at_camera([255, 128, 10]);
+    assert_eq!(Light::parse("camera,ff800a"), Ok(at_camera));
+    assert_eq!(at_camera.to_string(), "camera,ff800a");
+    assert_eq!(Light::parse("camera"), Ok(Light::at_camera([0xFF; 3])));
     for text in [
         "",
         "1,2",
@@ -141,12 +146,15 @@ fn lights_and_colours_are_read() {
         "1,2,3,fff",
         "1,2,3,+fffff",
         "1,2,3,ffffff,",
+        "camera,",
+        "camera,1,2,3",
+        "cameras",
     ] {
         let error = Light::parse(text).expect_err(text);
         assert_eq!(error, LightError::Form { text });
         assert_eq!(
             error.to_string(),
-            format!("{text}: expected X,Y,Z[,RRGGBB]")
+            format!("{text}: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]")
         );
     }
     let error = Light::parse("0,-0,0").expect_err("nowhere").to_string();
@@ -176,6 +184,46 @@ fn what_is_not_said_of_light_follows_from_what_is() {
     };
     let Lighting { ambient, lights } = lit.lighting();
     assert_eq!((ambient, &lights[..]), (Lighting::AMBIENT, &[light][..]));
+}
+
+#[test]
+fn meshes_have_the_first_light() {
+    assert_eq!(Appearance::default().mesh_lighting(), MeshLighting::CAMERA);
+    let [first, second] = ["0,0,1", "0,1,0"].map(|text| Light::parse(text).expect("a light"));
+    let mut appearance = Appearance {
+        material: Material::Gold,
+        ambient: Some([1, 2, 3]),
+        ..Appearance::default()
+    };
+    let dim = MeshLighting {
+        ambient: [1, 2, 3],
+        ..MeshLighting::CAMERA
+    };
+    assert_eq!(appearance.mesh_lighting(), dim);
+    appearance.ambient = None;
+    appearance.lights = [first, second].into_iter().collect();
+    let lit = MeshLighting {
+        ambient: Lighting::AMBIENT,
+        light: first,
+    };
+    assert_eq!(appearance.mesh_lighting(), lit);
+}
+
+#[test]
+fn a_light_at_the_camera_follows_the_camera() {
+    let view = View::spherical(Q32_32::from_num(3), Turns(0), Turns::QUARTER).expect("a camera");
+    let lighting = Lighting {
+        ambient: [0; 3],
+        lights: [Light::at_camera([255; 3])].into_iter().collect(),
+    };
+    // The camera is on the x axis, so the face towards it is in full light and the others are dark.
+    let lit = lighting.clone().seen_from(&view);
+    let [_, face, dark @ ..] = lit.shine_on(&[[200; 3]; 6]);
+    assert_eq!(face, [200; 3]);
+    assert_eq!(dark, [[0; 3]; 4]);
+    assert_eq!(lighting.shine_on(&[[200; 3]; 6]), [[0; 3]; 6]);
+    let sun = Lighting::day();
+    assert_eq!(sun.clone().seen_from(&view), sun);
 }
 
 #[test]

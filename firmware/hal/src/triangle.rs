@@ -16,7 +16,7 @@ use glint_core::camera::Projection;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::line::Segment;
-use glint_model::{MeshSetup, Shading};
+use glint_model::{MeshLight, MeshSetup, Shading};
 use litex_pac::triangle::{
     self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
     Raster as RasterStart,
@@ -92,6 +92,9 @@ pub struct Geometry<'a> {
     pub mesh: &'a Mesh<'a>,
     /// The frame constants of the mesh.
     pub frame: &'a MeshSetup,
+    /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. Its direction is in `frame`.
+    /// There must be no ambient light with smooth shading and without `cull`.
+    pub light: Option<&'a MeshLight>,
     /// Whether back faces are left out.
     pub cull: bool,
     /// Source of the colours; `Flat` if the engine has no smooth shading.
@@ -236,6 +239,11 @@ impl TriangleEngine {
         registers.light_0().write(light[0]);
         registers.light_1().write(light[1]);
         registers.light_2().write(light[2]);
+        let (colour, ambient) = pass
+            .light
+            .map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
+        registers.light_colour().write(packed(colour));
+        registers.ambient().write(packed(ambient));
         let [x, y, z] = frame.translation;
         registers.tx_low().write(x as u32);
         registers.tx_high().write((x >> 32) as u16);
@@ -387,6 +395,11 @@ pub fn acknowledge() {
     registers
         .ev_pending()
         .write(EvPending::default().with_geometry(true).with_raster(true));
+}
+
+/// Register value of three channels, u1.8 each.
+fn packed([red, green, blue]: [u16; 3]) -> u32 {
+    u32::from(red) | u32::from(green) << 9 | u32::from(blue) << 18
 }
 
 /// Register value of a picture size.

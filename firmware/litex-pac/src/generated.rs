@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0xc5aa_c021;
+pub const BUILD_ID: u32 = 0x1d23_8d1e;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -3364,6 +3364,22 @@ pub mod triangle {
         pub const fn light_2(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_5118) }
+        }
+
+        /// `light_colour`, 27 bits: Colour of the light, u1.8 of each channel, at most 1: red in bits 0 to 8, green, blue. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn light_colour(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_511c) }
+        }
+
+        /// `ambient`, 27 bits: Ambient light, in the format of `light_colour`. It must be 0 with `smooth` and without `cull`. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn ambient(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5120) }
         }
     }
 

@@ -7,6 +7,7 @@ use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::field::Field;
+use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::stereo::Stereo;
@@ -19,8 +20,8 @@ use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
 use crate::triangle::{
-    Clip, DrawnTriangle, MeshSetup, Options, Part, Placement, Projected, Stats, draw_parts,
-    trace_frame,
+    Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Part, Placement, Projected, Stats,
+    draw_parts, trace_frame,
 };
 use crate::wireframe::{WireframeStats, WireframeSubject, render_wireframe};
 
@@ -40,6 +41,8 @@ pub struct Frame<'a> {
     pub size: Size,
     /// Colour of pixels without a triangle. A field covers every pixel.
     pub clear: Rgb565,
+    /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
+    pub lighting: MeshLighting,
 }
 
 /// The subject of a frame.
@@ -150,10 +153,10 @@ impl<'a> Subject<'a> {
 }
 
 impl FieldSubject<'_> {
-    fn options(&self) -> FieldOptions {
+    fn options(&self, view: &View) -> FieldOptions {
         FieldOptions {
             prepass: self.prepass,
-            ..FieldOptions::new(self.field, self.appearance, self.stereo)
+            ..FieldOptions::new(self.field, self.appearance, self.stereo, view)
         }
     }
 }
@@ -165,6 +168,7 @@ impl FieldSubject<'_> {
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
     mesh: Option<MeshSetup>,
+    light: Option<MeshLight>,
     field: Option<FieldConstants>,
 }
 
@@ -181,6 +185,11 @@ impl FrameConstants {
     /// Returns the constants of the mesh, if the frame has a mesh.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
         self.mesh.as_ref()
+    }
+
+    /// Returns the light on the meshes; `None` for white light at the camera, without ambient light.
+    pub const fn light(&self) -> Option<&MeshLight> {
+        self.light.as_ref()
     }
 
     /// Returns the constants of the field, if the frame has a field.
@@ -202,7 +211,7 @@ impl FrameConstants {
     /// # Errors
     /// A [`RenderError`] for a frame that cannot be drawn; the constants must then not be used for drawing.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
-        (self.mesh, self.field) = (None, None);
+        (self.mesh, self.light, self.field) = (None, None, None);
         let (view, [width, height]) = (&frame.view, frame.size.pixels());
         match &frame.subject {
             Subject::Mesh(subject) => {
@@ -210,13 +219,13 @@ impl FrameConstants {
                 self.mesh = Some(setup.with_clip(subject.clip)?);
             }
             Subject::Field(subject) => {
-                let options = subject.options();
+                let options = subject.options(view);
                 let setup = FieldSetup::new(subject.field, view, (width, height), &options)?;
                 self.set_field(setup, &options);
             }
             Subject::MeshInField(mesh, subject) => {
                 let (size, radius, clip) = ((width, height), mesh.mesh.radius(), mesh.clip);
-                let options = subject.options();
+                let options = subject.options(view);
                 let (mesh, field) =
                     mesh_in_field::constants(view, size, radius, subject.field, &options)?;
                 self.mesh = Some(mesh.with_clip(clip)?);
@@ -233,6 +242,14 @@ impl FrameConstants {
                 self.mesh = Some(camera);
             }
             Subject::Wireframe(_) => {}
+        }
+        let lighting = frame.mesh_lighting();
+        if let Some(mesh) = &mut self.mesh
+            && lighting != MeshLighting::CAMERA
+        {
+            let light = MeshLight::new(&lighting, view);
+            mesh.light = light.row;
+            self.light = Some(light);
         }
         Ok(())
     }
@@ -255,13 +272,22 @@ pub struct FrameStats {
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with a black background.
+    /// A frame with a black background, and white light at the camera for its meshes.
     pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
         Self {
             subject,
             view,
             size,
             clear: Rgb565(0),
+            lighting: MeshLighting::CAMERA,
+        }
+    }
+
+    /// The lighting of the meshes: that of the frame, or of the field's appearance for a mesh in a field.
+    pub fn mesh_lighting(&self) -> MeshLighting {
+        match &self.subject {
+            Subject::MeshInField(_, field) => field.appearance.mesh_lighting(),
+            _ => self.lighting,
         }
     }
 
@@ -301,7 +327,9 @@ impl<'a> Frame<'a> {
     ) -> Result<FrameStats, RenderError> {
         let mut stats = FrameStats::default();
         if let (Some(objects), Some(camera)) = (self.subject.objects(), constants.mesh()) {
-            stats.mesh = Some(self.draw_objects(objects, camera, buffer, scratch, progress)?);
+            let light = constants.light();
+            stats.mesh =
+                Some(self.draw_objects(objects, camera, light, buffer, scratch, progress)?);
             return Ok(stats);
         }
         if let Subject::Wireframe(subject) = &self.subject {
@@ -312,6 +340,7 @@ impl<'a> Frame<'a> {
             (Some(subject), Some(setup)) => {
                 let options = Options {
                     clear: self.clear.0,
+                    light: constants.light(),
                     ..subject.options()
                 };
                 let mesh = &subject.mesh;
@@ -339,6 +368,7 @@ impl<'a> Frame<'a> {
         &self,
         objects: &'a [Object<'a>],
         camera: &MeshSetup,
+        light: Option<&MeshLight>,
         buffer: &mut FrameBuffer,
         scratch: &mut [Projected],
         progress: &mut dyn FnMut(),
@@ -355,6 +385,7 @@ impl<'a> Frame<'a> {
                 frame: placement.setup(&self.view, &camera, subject.mesh.radius())?,
                 options: Options {
                     colour: *colour,
+                    light,
                     normals: placement.normals(),
                     ..subject.options()
                 },

@@ -30,7 +30,7 @@ pub use frame::{
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use triangle::{
-    Clip, DrawnTriangle, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,
+    Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,
     clip_exceptions, render, trace, trace_frame,
 };
 pub use wireframe::{WireframeStats, WireframeSubject};

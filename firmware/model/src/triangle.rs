@@ -8,6 +8,7 @@ pub mod clip;
 pub mod descriptor;
 mod exceptions;
 mod facing;
+mod mesh_light;
 mod mesh_setup;
 mod object;
 mod primitive;
@@ -23,6 +24,7 @@ pub mod vertex_cache;
 pub mod volume;
 
 pub use exceptions::clip_exceptions;
+pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
 pub use primitive::Options;

@@ -2,7 +2,8 @@
 
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::fixed::{Q8_24, Turns, U8_28};
+use glint_core::fixed::{Q8_24, Q32_32, Turns, U8_28};
+use glint_core::light::{Light, MeshLighting};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -10,8 +11,8 @@ use glint_model::triangle::setup::Facing;
 use glint_model::triangle::shade::intensity;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
-    Clip, Frame, FrameBuffer, MeshSetup, MeshSubject, Object, Placement, Projected, RenderError,
-    SIZES, Subject,
+    Clip, Frame, FrameBuffer, MeshLight, MeshSetup, MeshSubject, Object, Placement, Projected,
+    RenderError, SIZES, Subject,
 };
 use glint_vectors::math::{dot, normalised, world};
 use glint_vectors::{Camera, Model, Picture, Random};
@@ -128,7 +129,7 @@ fn vertices_of_objects_against_f64() {
     }
 }
 
-/// The intensity of a face follows the inverse transpose of its matrix.
+/// The intensity of a face follows the inverse transpose of its matrix, for a light at the camera and from a direction.
 #[test]
 fn light_on_objects_against_f64() {
     let mut random = Random(31);
@@ -137,7 +138,16 @@ fn light_on_objects_against_f64() {
         let same = round % 2 == 0;
         let matrix = random_matrix(&mut random, [0.02, 4.0], same, 1.0);
         let view = Camera::looking([4.0, 1.0, 2.0], [0.0; 3], 0.9, 0.1).rounded();
-        let frame = MeshSetup::new(&view, 320, 180, 0).unwrap();
+        let mut frame = MeshSetup::new(&view, 320, 180, 0).unwrap();
+        let mut towards = Camera::of(&view).n.map(|x| -x);
+        if round % 3 == 0 {
+            towards = random.direction();
+            let lighting = MeshLighting {
+                light: Light::new(towards.map(Q32_32::from_num), [255; 3]).unwrap(),
+                ..MeshLighting::CAMERA
+            };
+            frame.light = MeshLight::new(&lighting, &view).row;
+        }
         let placement = Placement::new(matrix);
         let setup = placement.setup(&view, &frame, RADIUS).unwrap();
         assert_eq!(placement.normals().is_none(), same);
@@ -153,7 +163,7 @@ fn light_on_objects_against_f64() {
                 .map(|j| cofactor(i, j) * f64::from(normal[j]))
                 .sum::<f64>()
         }));
-        let exact = -dot(turned, Camera::of(&view).n).min(0.0);
+        let exact = dot(turned, towards).max(0.0);
         let turned = placement
             .normals()
             .map_or(normal, |normals| normals.apply(normal));

@@ -374,7 +374,7 @@ fn light_against_f64() {
         let Some(bounds) = Bounds::new(&triangle.vertices, SIZE.0, SIZE.1) else {
             continue;
         };
-        let mut light = [0; 3].map(|_| Lit::new(Rgb565(random.bits() as u16), 256));
+        let mut light = [0; 3].map(|_| Lit::new(Rgb565(random.bits() as u16), [256; 3]));
         if round % 4 == 0 {
             light = [light[0]; 3];
         }

@@ -36,7 +36,7 @@ fn equal_light_is_a_flat_colour() {
             continue;
         };
         let colour = any_colour(&mut random);
-        let setup = Setup::smooth(&triangle, bounds, &[Lit::new(colour, 256); 3]);
+        let setup = Setup::smooth(&triangle, bounds, &[Lit::new(colour, [256; 3]); 3]);
         let mut picture = Picture::blank(SIZE);
         covered += draw(&setup, Rgb565(0), &mut picture.target()).covered;
         for (found, code) in picture.colour.iter().zip(&picture.depth) {
@@ -81,10 +81,10 @@ fn light_is_that_of_flat_shading() {
     for _ in 0..10_000 {
         let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
         let colour = any_colour(&mut random);
-        let light = Light::new(colour, normal, &frame.n);
+        let light = Light::new(colour, normal, &frame.n, |i| [i; 3]);
         for facing in [Facing::Front, Facing::Back] {
             let Lit(found) = light.to(facing);
-            let [r, g, b] = lit(colour, intensity(normal, &frame.n, facing))
+            let [r, g, b] = lit(colour, [intensity(normal, &frame.n, facing); 3])
                 .channels()
                 .map(u32::from);
             let rounded = [(found[0], 9), (found[1], 8), (found[2], 9)]
@@ -115,7 +115,7 @@ fn cut_edges_have_light_in_between() {
         let [a, b, c] = [0; 3].map(|_| {
             let normal = [0; 3].map(|_| random.integer(-32768, 32767) as i16);
             CameraVertex {
-                light: Light::new(any_colour(&mut random), normal, &frame.n),
+                light: Light::new(any_colour(&mut random), normal, &frame.n, |i| [i; 3]),
                 ..transform(&frame, [0; 3].map(|_| random.integer(-32768, 32767) as i16))
             }
         });

@@ -1,6 +1,8 @@
 //! The winding of triangles by their place on the screen.
 
 use glint_core::colour::{Shading, Winding};
+use glint_core::fixed::Q32_32;
+use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::{IndexedTriangle, Mesh, Rgb565, Vertex, encode};
 use glint_core::picture::Size;
 use glint_model::triangle::setup::Oriented;
@@ -57,6 +59,15 @@ fn the_order_in_the_mesh_does_not_matter() {
             })
             .collect();
         let view = Camera::inside(&mut random).rounded();
+        let lighting = if round % 3 == 0 {
+            MeshLighting::CAMERA
+        } else {
+            MeshLighting {
+                ambient: [20, 40, 60],
+                light: Light::new(random.direction().map(Q32_32::from_num), [255, 200, 150])
+                    .unwrap(),
+            }
+        };
         let picture = |order: [usize; 3], sign: i16| {
             let turned: Vec<_> = triangles
                 .iter()
@@ -72,7 +83,10 @@ fn the_order_in_the_mesh_does_not_matter() {
                 winding: Winding::Screen,
                 ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
             };
-            Picture::of_frame(&Frame::new(Subject::Mesh(subject), view, Size::W320))
+            Picture::of_frame(&Frame {
+                lighting,
+                ..Frame::new(Subject::Mesh(subject), view, Size::W320)
+            })
         };
         let first = picture(ORDERS[0], 1);
         covered += first.covered();

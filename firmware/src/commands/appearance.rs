@@ -1,4 +1,4 @@
-//! Commands that set a field's appearance: material, lights, background, fog and occlusion.
+//! Commands that set a field's appearance: material, lights, background, fog and occlusion. Meshes have the lights too.
 
 use glint_core::appearance::Appearance;
 use glint_core::choice::switch_name;
@@ -34,7 +34,13 @@ impl<'l> AppearanceCommands<'l> for Machine {
                 None => appearance.lights.clear(),
             }),
             None => {
-                let lights = self.scene.appearance().lighting().lights;
+                let appearance = self.scene.appearance();
+                let mut lights = appearance.lighting().lights;
+                if appearance.lights.is_empty() && !self.scene.shows_field() {
+                    lights.clear();
+                    // The list has room for one light.
+                    drop(lights.push(appearance.mesh_lighting().light));
+                }
                 if lights.is_empty() {
                     self.terminal.print_entry("light", &"none");
                 }
@@ -50,8 +56,13 @@ impl<'l> AppearanceCommands<'l> for Machine {
         match colour {
             Some(colour) => change(self, &mut |appearance| appearance.ambient = colour),
             None => {
-                let colour = Hexadecimal(self.scene.appearance().lighting().ambient);
-                self.terminal.print_entry("ambient", &colour);
+                let appearance = self.scene.appearance();
+                let colour = if self.scene.shows_field() {
+                    appearance.lighting().ambient
+                } else {
+                    appearance.mesh_lighting().ambient
+                };
+                self.terminal.print_entry("ambient", &Hexadecimal(colour));
             }
         }
         Ok(Reply::Done)

@@ -21,6 +21,8 @@ pub enum Fallback {
     Winding,
     /// The triangle engine shades smoothly in perspective only.
     Orthographic,
+    /// The triangle engine has no ambient light on the dark side of smooth triangles.
+    Light,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
@@ -58,6 +60,9 @@ impl fmt::Display for Fallback {
             Self::Winding => f.write_str("triangle engine: no winding by the screen"),
             Self::Orthographic => {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")
+            }
+            Self::Light => {
+                f.write_str("triangle engine: no ambient light on smooth triangles with `cull off`")
             }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),

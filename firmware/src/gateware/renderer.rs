@@ -318,6 +318,10 @@ impl GatewareRenderer {
             if mesh.winding != Winding::Mesh {
                 return Err(Fallback::Winding);
             }
+            let sees_dark_sides = mesh.shading == Shading::Smooth && !mesh.cull;
+            if sees_dark_sides && frame.mesh_lighting().ambient != [0; 3] {
+                return Err(Fallback::Light);
+            }
         }
         if frame.subject.objects().is_some() {
             return Err(Fallback::Objects);
@@ -359,6 +363,7 @@ impl GatewareRenderer {
         let pass = Geometry {
             mesh: &subject.mesh,
             frame: setup,
+            light: self.constants[place].light(),
             cull: subject.cull,
             shading: subject.shading,
             lists: buffers.lists(self.shading),
@@ -422,6 +427,7 @@ impl GatewareRenderer {
             let options = Options {
                 cull: subject.cull,
                 shading: subject.shading,
+                light: self.constants[place].light(),
                 ..Options::default()
             };
             let mut put = |setup: &_, colour| writer.put(setup, colour);

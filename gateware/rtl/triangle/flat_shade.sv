@@ -1,9 +1,15 @@
-// Flat shading: intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of the triangle, l the row of the light (the camera's
-// viewing direction n for a light at the camera), and − for a front face. The result is colour·intensity, rounded to nearest.
+// Flat shading (docs/formats.md, "Pixels" and "Light on meshes"): intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of
+// the triangle, l the row of the light, and − for a front face; then the share of each channel, min(1, ambient +
+// nearest(light·intensity)), and colour·share, rounded to nearest.
 //
-// One multiplier makes five products: three for N·l, one for blue and green side by side, and one for red. The module `setup`
-// drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
-// inputs hold during a beat; the colour is valid in clock 10 of the beat.
+// One multiplier makes nine products: three for N·l, one for each share, and one for each channel of the colour. The module
+// `setup` drives `count`, the number of the clock in a beat (the time of a triangle in a stage of `setup`, 11 clocks or more). The
+// inputs hold during a beat; the colour comes a beat after the normal, and the lit colour is valid from clock 9 of that beat on. Of
+// two triangles that follow each other:
+//
+//   count      0 … 2     3 … 5              6 … 8
+//   factors    N·l       colour·share       light·intensity
+//              second    first              second
 
 `default_nettype none
 
@@ -12,17 +18,19 @@ module flat_shade (
     input  wire              enable,
     input  wire  [3:0]       count,
     input  wire  [2:0][24:0] row_light,
+    input  wire  [2:0][8:0]  light_colour, // u1.8, red is the lowest
+    input  wire  [2:0][8:0]  ambient,
     input  wire              front,
     input  wire  [2:0][15:0] normal,
-    input  wire  [15:0]      colour,
+    input  wire  [15:0]      colour,       // of the triangle before
     output logic [15:0]      lit
 );
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [43:0] c, p;
     logic signed [16:0] component, towards;
-    logic        [8:0]  intensity;
-    logic        [10:0] green_blue;
+    // A queue of shares, red first; in clocks 6 to 8 its head is the intensity.
+    logic        [8:0]  head, second, third, intensity, share;
 
     always_comb begin
         unique case (count[1:0])
@@ -36,29 +44,44 @@ module flat_shade (
             4'd0:    a = row_light[0];
             4'd1:    a = row_light[1];
             4'd2:    a = row_light[2];
-            4'd6:    a = {6'b0, colour[10:5], 8'b0, colour[4:0]};
-            default: a = {20'b0, colour[15:11]};
+            4'd3:    a = {20'b0, colour[15:11]};
+            4'd4:    a = {19'b0, colour[10:5]};
+            4'd5:    a = {20'b0, colour[4:0]};
+            4'd6:    a = {16'b0, light_colour[0]};
+            4'd7:    a = {16'b0, light_colour[1]};
+            default: a = {16'b0, light_colour[2]};
         endcase
-        b = count[2] ? {9'b0, intensity} : 18'(towards);
+        b = count < 4'd3 ? 18'(towards) : {9'b0, head};
 
+        // The addend comes two clocks after the factors of its product.
         unique case (count)
-            4'd2:       c = 44'd1 << 28;
-            4'd3, 4'd4: c = p;
-            default:    c = 44'd1 << 20 | 44'd1 << 7;
+            4'd2:             c = 44'd1 << 28;
+            4'd3, 4'd4:       c = p;
+            4'd5, 4'd6, 4'd7: c = 44'd1 << 7;
+            4'd8:             c = {27'b0, ambient[0], 8'h80};
+            4'd9:             c = {27'b0, ambient[1], 8'h80};
+            default:          c = {27'b0, ambient[2], 8'h80};
         endcase
+
+        // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
+        intensity = p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
+        share     = p[17:16] != '0 ? 9'h100 : {1'b0, p[15:8]};
     end
 
-    // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
     always_ff @(posedge clk) begin
-        if (count == 4'd5) intensity <= p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};
-        if (count == 4'd9) green_blue <= {p[26:21], p[12:8]};
+        if (count == 4'd5) begin
+            head <= intensity;
+        end else if (enable && (count == 4'd0 || count == 4'd3 || count == 4'd4 || count == 4'd9 || count == 4'd10)) begin
+            {head, second, third} <= {second, third, share};
+        end
+        if (count == 4'd6) lit[15:11] <= p[12:8];
+        if (count == 4'd7) lit[10:5]  <= p[13:8];
+        if (count == 4'd8) lit[4:0]   <= p[12:8];
     end
-
-    assign lit = {p[12:8], green_blue};
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable, .a, .b, .c, .p);
 
-    wire _unused = &{1'b0, p[28:27], p[20:13], p[7:0]};
+    wire _unused = &{1'b0, p[28:18], p[7:0]};
 endmodule
 
 `default_nettype wire

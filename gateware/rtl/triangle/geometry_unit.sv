@@ -191,7 +191,8 @@ module geometry_unit #(
         logic [LIGHT_BITS-1:0] projected_light;
 
         vertex_light vertex_light (
-            .clk, .rst(rst || restart), .row_light(view.row_light), .take(data_valid[1] && data_ready[1]),
+            .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
+            .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
             .in_normal(data[128 + 48 +: 48]), .in_colour(data[128 + 96 +: 16]),
             .give(projected_valid && projected_ready), .out_light(projected_light)
         );
@@ -226,6 +227,7 @@ module geometry_unit #(
 
     setup #(.SMOOTH(SMOOTH)) setup (
         .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .row_light(view.row_light),
+        .light_colour(parameters.light_colour), .ambient(parameters.ambient),
         .smooth(flags.smooth), .busy(), .culled, .drawn(),
         .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
         .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]), .in_light(regular_light),

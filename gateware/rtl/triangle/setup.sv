@@ -11,7 +11,7 @@
 // last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
 // for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
 // triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`,
-// `smooth`) must hold while `busy` and when a triangle comes.
+// `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
@@ -44,6 +44,8 @@ module setup #(
     input  wire  [9:0]       height,
     input  wire              cull_back,
     input  wire  [2:0][24:0] row_light,   // row of the light, s2.23
+    input  wire  [2:0][8:0]  light_colour, // u1.8, red is the lowest
+    input  wire  [2:0][8:0]  ambient,
     input  wire              smooth,
     output logic             busy,
     output logic             culled,
@@ -123,7 +125,7 @@ module setup #(
     logic [45:0]          nx, ny;
     logic [23:0]          m, y;
     logic [5:0]           lead;
-    logic [15:0]          lit;
+    logic [15:0]          colour_2, lit_2;
     logic [20:0]          sum_x, sum_y;
     logic                 reciprocal_ready, reciprocal_done;
     passed_t              passed_1;
@@ -158,7 +160,8 @@ module setup #(
         .clk, .enable, .count, .w10(~t.not_w10), .w20(~t.not_w20), .x10(t.x10), .y01(t.y01), .x02(t.x02), .y20(t.y20), .nx, .ny
     );
     flat_shade shade (
-        .clk, .enable, .count, .row_light, .front(t.front), .normal(t.normal), .colour(t.colour), .lit
+        .clk, .enable, .count, .row_light, .light_colour, .ambient, .front(t.front), .normal(t.normal), .colour(colour_2),
+        .lit(lit_2)
     );
     // The reciprocal of the area starts in clock 3 of stage 1 and is valid from clock 7 of stage 2 on, or earlier in stage 2 if
     // the beat of stage 1 is longer than 11 clocks.
@@ -169,13 +172,12 @@ module setup #(
     );
 
     // Stage 2 computes (E1 − bias)/2^8 with E1 − bias = a − (E0 − bias) − (E2 − bias) − the sum of the three biases: of the
-    // lowest 8 bits only the carry is kept.
+    // lowest 8 bits only the carry is kept. The last products of the flat shading are made meanwhile.
     passed_t            passed_2;
     origin_t            origin_2;
     logic        [45:0] nx_2, ny_2;
     logic        [5:0]  lead_2;
     logic        [23:0] y_2;
-    logic        [15:0] lit_2;
     logic        [41:0] e0_2, e2_2;
     logic        [7:0]  area_low;
     logic        [1:0]  biases;
@@ -201,8 +203,8 @@ module setup #(
 
     wide_register #(.WIDTH($bits(passed_1) + $bits(origin_1) + 2 * 46 + 6 + 16 + 2 * 42 + 8 + 2)) stage_2 (
         .clk, .next(beat_comes),
-        .in({passed_1, origin_1, nx, ny, lead, lit, e0, e2, t.area[7:0], {1'b0, bias_0} + {1'b0, bias_1} + {1'b0, bias_2}}),
-        .out({passed_2, origin_2, nx_2, ny_2, lead_2, lit_2, e0_2, e2_2, area_low, biases})
+        .in({passed_1, origin_1, nx, ny, lead, t.colour, e0, e2, t.area[7:0], {1'b0, bias_0} + {1'b0, bias_1} + {1'b0, bias_2}}),
+        .out({passed_2, origin_2, nx_2, ny_2, lead_2, colour_2, e0_2, e2_2, area_low, biases})
     );
 
     // Stage 3.

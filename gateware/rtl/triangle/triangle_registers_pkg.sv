@@ -40,6 +40,8 @@ package triangle_registers_pkg;
         logic [4:0] list_shift;
         logic [31:0] exceptions;
         logic [19:0] exception_limit;
+        logic [2:0][8:0] light_colour;
+        logic [2:0][8:0] ambient;
     } geometry_t;
 
     // Camera and light of the geometry pass: docs/formats.md, "Frame constants".

@@ -1,18 +1,25 @@
-// Computes the light of a vertex (docs/formats.md, "Smooth shading"): the shaded colour L of each channel, and the side of a
-// triangle to which this light belongs. N is the vertex normal, l the row of the light.
+// Computes the light of a vertex (docs/formats.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each channel, and
+// the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With `cull_back` only front
+// faces are seen, so the light is that of front faces. Without, it is that of the side towards the light; the other side is dark, so
+// there must be no ambient light.
 //
-// One multiplier makes five products: three for N·l, one for green and blue side by side, and one for red. A vertex takes 6
-// clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that stage. The light waits in a FIFO
-// until the position of its vertex leaves that stage; `give` then takes the light out. Latency 17 clocks.
+// One multiplier makes six products: three for N·l, and one for each share of a channel; the other one makes the three products of
+// colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that
+// stage. The light waits in a FIFO until the position of its vertex leaves that stage; `give` then takes the light out. Latency
+// 22 clocks.
 //
-//   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10, 11: colour in   13, 14: L
+//   clocks after `take`   1…3: factors of N·l   6: N·l   7, 8: |N·l| rounded   9: intensity   10…12: factors of the shares
+//                         14…16: shares, factors of L   17…19: L
 
 `default_nettype none
 
 module vertex_light (
     input  wire              clk,
     input  wire              rst,
+    input  wire              cull_back,
     input  wire  [2:0][24:0] row_light,
+    input  wire  [2:0][8:0]  light_colour, // u1.8, red is the lowest
+    input  wire  [2:0][8:0]  ambient,
     input  wire              take,
     input  wire  [2:0][15:0] in_normal,
     input  wire  [15:0]      in_colour,
@@ -23,24 +30,26 @@ module vertex_light (
     localparam int unsigned PLACES = 16;
 
     // Bit k of `since` is high when a vertex entered k + 1 clocks ago.
-    logic        [13:0]      since;
+    logic        [18:0]      since;
     logic        [2:0][15:0] normal;
-    logic        [15:0]      colour, colour_held;
-    logic signed [24:0]      a;
+    logic        [15:0]      colour, colour_held, colour_late;
+    logic signed [24:0]      a, channel;
     logic signed [17:0]      b;
-    logic signed [43:0]      c, p;
+    logic signed [43:0]      c, p, product;
     logic        [15:0]      high, rounded;
-    logic        [8:0]       intensity;
-    logic                    back, back_held, whole, carry;
-    logic        [26:0]      green_blue;
+    logic        [8:0]       intensity, share;
+    logic                    back, back_held, back_late, dark, whole, carry;
+    logic        [12:0]      red;
+    logic        [13:0]      green;
 
     always_comb begin
         case (1'b1)
-            since[0]: a = row_light[0];
-            since[1]: a = row_light[1];
-            since[2]: a = row_light[2];
-            since[9]: a = {6'b0, colour_held[10:5], 8'b0, colour_held[4:0]};
-            default:  a = {20'b0, colour_held[15:11]};
+            since[0]:  a = row_light[0];
+            since[1]:  a = row_light[1];
+            since[2]:  a = row_light[2];
+            since[9]:  a = {16'b0, light_colour[0]};
+            since[10]: a = {16'b0, light_colour[1]};
+            default:   a = {16'b0, light_colour[2]};
         endcase
         case (1'b1)
             since[0]: b = 18'($signed(normal[0]));
@@ -48,16 +57,28 @@ module vertex_light (
             since[2]: b = 18'($signed(normal[2]));
             default:  b = {9'b0, intensity};
         endcase
-        c = since[3] || since[4] ? p : '0;
+        case (1'b1)
+            since[3], since[4]: c = p;
+            since[11]:          c = {27'b0, ambient[0], 8'h80};
+            since[12]:          c = {27'b0, ambient[1], 8'h80};
+            since[13]:          c = {27'b0, ambient[2], 8'h80};
+            default:            c = '0;
+        endcase
+        case (1'b1)
+            since[13]: channel = {20'b0, colour_late[15:11]};
+            since[14]: channel = {19'b0, colour_late[10:5]};
+            default:   channel = {20'b0, colour_late[4:0]};
+        endcase
     end
 
     multiply_add #(.BITS(44)) dsp (.clk, .enable(1'b1), .a, .b, .c, .p);
+    multiply_add #(.BITS(44)) colours (.clk, .enable(1'b1), .a(channel), .b({9'b0, share}), .c('0), .p(product));
 
     // The negation of a negative product v is ~v + 1. The added 1 carries into `high` only if all bits of v below `high` are 0.
     assign carry = !back && whole;
 
     always_ff @(posedge clk) begin
-        since <= {since[12:0], take};
+        since <= {since[17:0], take};
         if (take) begin
             normal <= in_normal;
             colour <= in_colour;
@@ -68,10 +89,15 @@ module vertex_light (
             whole       <= p[27:0] == '0;
             back        <= !p[43];
         end
-        if (since[6])  rounded    <= high + {14'b0, carry, !carry};
-        if (since[7])  intensity  <= rounded[15:9] != '0 ? 9'h100 : {1'b0, rounded[8:1]};
-        if (since[9])  back_held  <= back;
-        if (since[12]) green_blue <= p[26:0];
+        if (since[6])  rounded     <= high + {14'b0, carry, !carry};
+        if (since[6])  dark        <= back && cull_back;
+        if (since[7])  intensity   <= dark ? '0 : rounded[15:9] != '0 ? 9'h100 : {1'b0, rounded[8:1]};
+        if (since[9])  back_held   <= back && !cull_back;
+        if (since[11]) colour_late <= colour_held;
+        if (since[13]) back_late   <= back_held;
+        if (since[16]) red         <= product[12:0];
+        if (since[17]) green       <= product[13:0];
+        share <= p[17:16] != '0 ? 9'h100 : {1'b0, p[15:8]};
         if (rst) since <= '0;
     end
 
@@ -79,11 +105,11 @@ module vertex_light (
     logic room, valid;
 
     fifo #(.WIDTH(41), .DEPTH(PLACES)) finished (
-        .clk, .rst, .in_valid(since[13]), .in_ready(room), .in_data({back_held, p[12:0], green_blue}),
+        .clk, .rst, .in_valid(since[18]), .in_ready(room), .in_data({back_late, red, green, product[12:0]}),
         .out_valid(valid), .out_ready(give), .out_data(out_light)
     );
 
-    wire _unused = &{1'b0, rounded[0], room, valid};
+    wire _unused = &{1'b0, rounded[0], product[43:14], room, valid};
 endmodule
 
 `default_nettype wire

@@ -55,11 +55,11 @@ commands! {
         object Object(action: Option<Object>): "list the objects, add one, change its place or colour, or remove it";
     }
 
-    /// Commands of a field's appearance.
+    /// Commands of a field's appearance, and of the light on meshes.
     AppearanceCommands {
         material Material(material: Option<Material>): "show or set the material of a field; normal colours faces by direction";
-        light Light(light: Option<Or<Default, Light>>): "show the lights of a field, add one by its direction, or restore the material's own";
-        ambient Ambient(colour: Option<Or<Default, Rgb>>): "show or set the ambient light of a field";
+        light Light(light: Option<Or<Default, Light>>): "show the lights, add one by its direction or at the camera, or restore the default";
+        ambient Ambient(colour: Option<Or<Default, Rgb>>): "show or set the ambient light";
         background Background(background: Option<Background>): "show or set the background of a field";
         fog Fog(density: Option<Or<Off, U4_28>>): "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
         occlusion Occlusion(on: Option<bool>): "turn ambient occlusion of a field on or off, or show the setting";

@@ -105,7 +105,10 @@ fn mistakes_are_named_with_their_place() {
         "material wood",
         "material: MATERIAL is \"wood\" (column 10): expected normal or clay or jade or sky or gold or ivory or slate",
     );
-    assert_refused("light 1,2", "light: 1,2: expected X,Y,Z[,RRGGBB]");
+    assert_refused(
+        "light 1,2",
+        "light: 1,2: expected X,Y,Z[,RRGGBB] or camera[,RRGGBB]",
+    );
     assert_refused(
         "light 0,0,0",
         "light: direction 0,0,0: expected a non-zero direction",

@@ -108,9 +108,16 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     let mesh = Mesh::new_checked(&bytes).unwrap();
     let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
     let frame = MeshSetup::new(&view, 640, 360, mesh.radius()).unwrap();
+    let light = MeshLight {
+        row: frame.light,
+        forward: frame.n,
+        colour: [256, 7, 1],
+        ambient: [0, 255, 256],
+    };
     let pass = Geometry {
         mesh: &mesh,
         frame: &frame,
+        light: Some(&light),
         cull: true,
         shading: Shading::Smooth,
         lists: Lists {
@@ -151,6 +158,8 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         frame.light,
         "the light at the camera"
     );
+    assert_eq!(r.light_colour().read(), 1 << 18 | 7 << 9 | 256);
+    assert_eq!(r.ambient().read(), 256 << 18 | 255 << 9);
     assert_eq!(r.mesh_bytes().read(), 80, "chunks alone");
     assert_eq!(
         r.mesh().read(),

@@ -1,7 +1,7 @@
 //! Light on spheres, whose normal differs at every point: ambient light and directional lights.
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
-use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb};
+use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, whole};
 
 /// A directional light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,11 +49,6 @@ impl Lights {
             materials: material.spheres(),
         }
     }
-}
-
-/// Converts a share in 255ths to a share in 256ths: 255, the whole, becomes 256, which is a power of two.
-pub(super) const fn whole(part: u8) -> i32 {
-    part as i32 + (part >> 7) as i32
 }
 
 impl Lights {

@@ -1,6 +1,7 @@
 //! Options of drawing a field: colours, fog, one eye or two, precision of the march, and prepass.
 
 use glint_core::appearance::Appearance;
+use glint_core::camera::View;
 use glint_core::field::{FRACTION, Field};
 use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Lighting, Material};
@@ -84,8 +85,13 @@ impl FieldOptions {
         }
     }
 
-    /// Options for a field with an appearance, one eye or two, and the default tuning.
-    pub fn new(field: &Field, appearance: &Appearance, stereo: Option<Stereo>) -> Self {
+    /// Options for a field with an appearance that a camera sees, with one eye or two, and the default tuning.
+    pub fn new(
+        field: &Field,
+        appearance: &Appearance,
+        stereo: Option<Stereo>,
+        view: &View,
+    ) -> Self {
         let &Appearance {
             material,
             background,
@@ -93,7 +99,8 @@ impl FieldOptions {
             occlusion,
             ..
         } = appearance;
-        let palette = Palette::of(field, material, &appearance.lighting(), background);
+        let lighting = appearance.lighting().seen_from(view);
+        let palette = Palette::of(field, material, &lighting, background);
         Self {
             stereo,
             palette: if occlusion {

@@ -1,8 +1,8 @@
 //! Colour of a ray's end: a colour of the palette, darkened by the ray's number of steps and faded by the fog.
 
 use glint_core::field::Surface;
+use glint_core::light::whole;
 
-use super::lights::whole;
 use super::palette::Palette;
 use super::ray::{Ray, RayResult, State};
 use super::setup::FieldSetup;

@@ -40,7 +40,8 @@ pub struct MeshSetup {
     pub volume: Volume,
     /// Whether the mesh is an object, with a model matrix and a colour of its own.
     pub is_placed: bool,
-    /// The direction of the light that is at the camera, s2.23: `n`, or its direction in the axes of an object's mesh.
+    /// The row of the light, s2.23: `n` for a light at the camera, otherwise the direction from the light, in the axes of an object's
+    /// mesh.
     pub light: [i32; 3],
     /// Whether the mesh is mirrored, so that its front faces are clockwise on the screen.
     pub mirrors: bool,

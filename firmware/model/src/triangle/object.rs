@@ -1,7 +1,7 @@
 //! Objects: meshes with a place in the world (docs/formats.md, "Objects").
 
 use glint_core::camera::{Projection, View};
-use glint_core::fixed::{Q2_23, Q8_24, U4_28, U8_28};
+use glint_core::fixed::{Q8_24, U4_28, U8_28};
 use glint_core::matrix::{Matrix, Normals};
 
 use crate::depth::DepthScale;
@@ -180,18 +180,17 @@ impl Placement {
                 Volume::View { far } => Volume::View { far: far >> k },
             },
             is_placed: true,
-            light: self.light(view),
+            light: self.light(&camera.light),
             mirrors: self.matrix.mirrors(),
         })
     }
 
-    /// The camera's forward axis, turned to the axes of the mesh, s2.23; unchanged if the normals are turned to the world.
-    fn light(&self, view: &View) -> [i32; 3] {
-        let n = view.n().map(Q2_23::to_bits);
+    /// The row of the light, turned to the axes of the mesh, s2.23; unchanged if the normals are turned to the world.
+    fn light(&self, row: &[i32; 3]) -> [i32; 3] {
         if self.normals.is_some() {
-            return n;
+            return *row;
         }
-        product(&n, &self.rotation)
+        product(row, &self.rotation)
     }
 }
 

@@ -7,6 +7,7 @@ use glint_core::mesh::{Chunk, Rgb565, Triangle, Vertex};
 
 use crate::triangle::clip::{clip, off_picture};
 use crate::triangle::facing::Facing;
+use crate::triangle::mesh_light::MeshLight;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::setup::{Bounds, Oriented, Setup};
 use crate::triangle::shade::{Light, Lit, intensity, lit};
@@ -25,6 +26,8 @@ pub struct Options<'a> {
     pub winding: Winding,
     /// Colour in place of those of the mesh.
     pub colour: Option<Rgb565>,
+    /// Colours of the light; `None` for white light at the camera, without ambient light. The direction is in the frame constants.
+    pub light: Option<&'a MeshLight>,
     /// The matrix that turns the normals of an object to the axes of the light; `None` if they have these axes.
     pub normals: Option<&'a Normals>,
 }
@@ -35,6 +38,24 @@ impl Options<'_> {
             None => normal,
             Some(normals) => normals.apply(normal),
         }
+    }
+
+    /// The share of each channel of a colour that reaches the eye, u1.8, for an intensity.
+    fn shares(&self, intensity: u32) -> [u32; 3] {
+        match self.light {
+            None => [intensity; 3],
+            Some(light) => light.shares(intensity),
+        }
+    }
+
+    /// The side of a surface that the camera sees, by its normal, which has been turned to the axes of the light.
+    fn seen(&self, frame: &MeshSetup, normal: [i16; 3]) -> Facing {
+        let forward = match (self.light, self.normals) {
+            (None, _) => &frame.light,
+            (Some(_), None) => &frame.n,
+            (Some(light), Some(_)) => &light.forward,
+        };
+        Facing::of(normal, forward)
     }
 }
 
@@ -47,6 +68,7 @@ impl Default for Options<'_> {
             shading: Shading::Flat,
             winding: Winding::Mesh,
             colour: None,
+            light: None,
             normals: None,
         }
     }
@@ -75,7 +97,7 @@ impl Placed {
         vertices: [&ScreenVertex; 3],
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
-        if frame.is_placed || options.winding == Winding::Screen {
+        if frame.is_placed || options.winding == Winding::Screen || options.light.is_some() {
             return Self::optional(frame, options, triangle, vertices, light);
         }
         let oriented = Oriented::new(vertices.map(|v| *v))?;
@@ -88,13 +110,14 @@ impl Placed {
         Some(Self {
             oriented,
             bounds,
-            colour: lit(triangle.colour, intensity),
+            colour: lit(triangle.colour, [intensity; 3]),
             lit: light.map(|light| facing.order(light.map(|light| light.to(facing)))),
             projection: frame.projection,
         })
     }
 
-    /// Prepares a triangle of an object, or one by its place on the screen ([`Winding::Screen`]), which is never culled.
+    /// Prepares a triangle of an object, in a light other than white light at the camera, or by its place on the screen
+    /// ([`Winding::Screen`]); the last is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -109,7 +132,7 @@ impl Placed {
         let normal = options.turned(triangle.normal);
         let by_screen = options.winding == Winding::Screen;
         let (order, facing) = if by_screen {
-            let facing = Facing::of(normal, &frame.light);
+            let facing = options.seen(frame, normal);
             (Oriented::screen_order(&vertices), facing)
         } else {
             let facing = Oriented::new(vertices)?.facing;
@@ -139,7 +162,10 @@ impl Placed {
         Some(Self {
             oriented,
             bounds,
-            colour: lit(options.colour.unwrap_or(triangle.colour), intensity),
+            colour: lit(
+                options.colour.unwrap_or(triangle.colour),
+                options.shares(intensity),
+            ),
             lit: light.map(|light| order.map(|i| light_of(light[i]))),
             projection: frame.projection,
         })
@@ -177,7 +203,34 @@ pub fn vertex_light(
 
 fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     let colour = options.colour.unwrap_or(vertex.colour);
-    Light::new(colour, options.turned(vertex.normal), &frame.light)
+    let normal = options.turned(vertex.normal);
+    match options.light {
+        None => Light::new(colour, normal, &frame.light, |i| [i; 3]),
+        Some(light) => light_in(light, frame, options, colour, normal),
+    }
+}
+
+/// The light of a vertex in a light other than white light at the camera; `normal` is in the axes of the light.
+///
+/// Not inlined, so that frames with white light at the camera do not load this code into the instruction cache.
+#[inline(never)]
+fn light_in(
+    light: &MeshLight,
+    frame: &MeshSetup,
+    options: &Options,
+    colour: Rgb565,
+    normal: [i16; 3],
+) -> Light {
+    let lit = Light::new(colour, normal, &frame.light, |i| light.shares(i));
+    if options.winding == Winding::Mesh {
+        return lit;
+    }
+    // The normal is turned towards the camera, which may not be where the light is.
+    let seen = lit.to(options.seen(frame, normal));
+    Light {
+        front: seen,
+        back: seen,
+    }
 }
 
 /// A vertex of a clipped triangle.

@@ -82,7 +82,10 @@ pub fn trace(
     show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
-    let frame = MeshSetup::new(view, target.width, target.height, mesh.radius())?;
+    let mut frame = MeshSetup::new(view, target.width, target.height, mesh.radius())?;
+    if let Some(light) = options.light {
+        frame.light = light.row;
+    }
     trace_frame(mesh, frame, target, scratch, options, show)
 }
 

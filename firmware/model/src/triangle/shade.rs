@@ -1,4 +1,4 @@
-//! Shading of triangles and vertices with a light at the camera.
+//! Shading of triangles and vertices.
 
 use glint_core::colour::Rgb565;
 
@@ -8,10 +8,9 @@ use crate::triangle::rounding::nearest;
 /// Half a depth code, u18.6: the addition to the weight of light (docs/formats.md, "Smooth shading").
 pub const HALF_CODE: u32 = 1 << 5;
 
-/// Intensity clamp(−N·n, 0, 1), u1.8, for the normal N (s2.14) and the camera's forward direction n (s2.23). A back face
-/// negates N.
-pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
-    let product = along(normal, n);
+/// Intensity clamp(−N·l, 0, 1), u1.8, for the normal N (s2.14) and the row l of the light (s2.23). A back face negates N.
+pub fn intensity(normal: [i16; 3], row: &[i32; 3], facing: Facing) -> u32 {
+    let product = along(normal, row);
     let towards = match facing {
         Facing::Front => -product,
         Facing::Back => product,
@@ -19,11 +18,11 @@ pub fn intensity(normal: [i16; 3], n: &[i32; 3], facing: Facing) -> u32 {
     nearest(towards, 37 - 8).clamp(0, 1 << 8) as u32
 }
 
-/// Multiplies each channel of a colour by the intensity (u1.8, at most 1) and rounds to nearest.
-pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
-    let [r, g, b] = colour
-        .channels()
-        .map(|c| ((u32::from(c) * intensity + (1 << 7)) >> 8) as u16);
+/// Multiplies each channel of a colour by its share (u1.8, at most 1) and rounds to nearest.
+pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
+    let channels = colour.channels();
+    let [r, g, b] =
+        [0, 1, 2].map(|i| ((u32::from(channels[i]) * shares[i] + (1 << 7)) >> 8) as u16);
     Rgb565(r << 11 | g << 5 | b)
 }
 
@@ -33,9 +32,10 @@ pub fn lit(colour: Rgb565, intensity: u32) -> Rgb565 {
 pub struct Lit(pub [u16; 3]);
 
 impl Lit {
-    /// Multiplies each channel of a colour by the intensity (u1.8, at most 1), exactly.
-    pub fn new(colour: Rgb565, intensity: u32) -> Self {
-        let [r, g, b] = colour.channels().map(|c| u32::from(c) * intensity);
+    /// Multiplies each channel of a colour by its share (u1.8, at most 1), exactly.
+    pub fn new(colour: Rgb565, shares: [u32; 3]) -> Self {
+        let channels = colour.channels();
+        let [r, g, b] = [0, 1, 2].map(|i| u32::from(channels[i]) * shares[i]);
         Self([2 * r, g, 2 * b].map(|x| x as u16))
     }
 
@@ -58,9 +58,15 @@ pub struct Light {
 }
 
 impl Light {
-    /// Returns the light of a vertex of a mesh with this colour and normal; `n` is the camera's forward direction.
-    pub fn new(colour: Rgb565, normal: [i16; 3], n: &[i32; 3]) -> Self {
-        let to = |facing| Lit::new(colour, intensity(normal, n, facing));
+    /// Returns the light of a vertex of a mesh with this colour and normal; `row` is the row of the light, and `shares` returns the
+    /// share of each channel for an intensity.
+    pub fn new(
+        colour: Rgb565,
+        normal: [i16; 3],
+        row: &[i32; 3],
+        shares: impl Fn(u32) -> [u32; 3],
+    ) -> Self {
+        let to = |facing| Lit::new(colour, shares(intensity(normal, row, facing)));
         Self {
             front: to(Facing::Front),
             back: to(Facing::Back),
@@ -75,7 +81,7 @@ impl Light {
         }
     }
 
-    /// Returns the light on the side that the camera sees: a vertex lights at most one side.
+    /// Returns the light on the brighter side: a vertex lights at most one side, or both equally.
     pub fn visible(self) -> Lit {
         let (Lit(front), Lit(back)) = (self.front, self.back);
         Lit([0, 1, 2].map(|channel| front[channel].max(back[channel])))

@@ -11,7 +11,7 @@ use glint_core::light::{self, Background, Light, MAX_LIGHTS, Material, parse_rgb
 use glint_core::stereo::{self, Stereo};
 use std::fmt::Display;
 
-/// Options of a distance field and its appearance.
+/// Options of a distance field and its appearance, and of the light on meshes.
 #[derive(Args)]
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
@@ -24,11 +24,12 @@ pub struct FieldArguments {
     /// Material of a field; `normal` colours each face by its normal [default: normal].
     #[arg(long, value_parser = named(Material::ALL, Material::name))]
     material: Option<Material>,
-    /// A light on a field: the direction to it and its colour [default colour: white]; up to four [default: none on `normal`, sun
-    /// and sky on other materials].
+    /// A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a
+    /// field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; of several, the first
+    /// one lights the mesh in a field.
     #[arg(long, value_name = light::FORM, allow_hyphen_values = true)]
     light: Vec<String>,
-    /// Ambient light on a field [default: white without lights, 404040 with some].
+    /// Ambient light [default: 404040 with a --light; without, white on a field and black on meshes].
     #[arg(long, value_name = "RRGGBB")]
     ambient: Option<String>,
     /// Background of a field [default: white].
@@ -85,12 +86,11 @@ impl FieldArguments {
         self.prepass
     }
 
-    /// The appearance of the field. Options of a field that are given without a field are an error.
+    /// The appearance of the field, with the lights of meshes. Other options of a field that are given without a field are an error,
+    /// and so are several lights.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
         let given = [
             ("--material", self.material.is_some()),
-            ("--light", !self.light.is_empty()),
-            ("--ambient", self.ambient.is_some()),
             ("--background", self.background.is_some()),
             ("--fog", self.fog.is_some()),
             ("--occlusion", self.occlusion),
@@ -98,6 +98,10 @@ impl FieldArguments {
         ];
         if let (None, Some((option, _))) = (&self.field, given.iter().find(|(_, given)| *given)) {
             return Err(refusal(option, "a --field", "a mesh".to_owned()));
+        }
+        if self.field.is_none() && self.light.len() > 1 {
+            let found = self.light.len().to_string();
+            return Err(refusal("--light", "one light on meshes", found));
         }
         let fog = self.fog.as_deref().map(|text| {
             let found = quote(text.as_bytes());

@@ -190,7 +190,10 @@ impl RenderArguments {
             (None, Some(field)) => Subject::Field(field),
             (None, None) => anyhow::bail!("expected a model, a --field or both, found neither"),
         };
-        let frame = Frame::new(subject, view, size);
+        let frame = Frame {
+            lighting: appearance.mesh_lighting(),
+            ..Frame::new(subject, view, size)
+        };
         let Rendered { mut image, stats } = self.render(&frame)?;
         if let Some(wireframe) = self.wireframe {
             draw_wireframe(wireframe, &frame, &mut image)?;

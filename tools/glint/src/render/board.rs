@@ -1,6 +1,8 @@
 //! A renderer that draws frames on a board, by console commands.
 
-use super::commands::{field_commands, mesh_commands, object_command, size_command, view_command};
+use super::commands::{
+    field_commands, lighting_commands, mesh_commands, object_command, size_command, view_command,
+};
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
 use crate::board::Board;
@@ -78,6 +80,12 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         // The board draws a frame after every change, so the mesh or field, which takes the longest to draw, is set last.
         self.console.command(&size_command(frame.size))?;
         self.console.command(&view_command(&frame.view))?;
+        let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
+        if has_meshes && frame.subject.field_part().is_none() {
+            for command in lighting_commands(&frame.lighting) {
+                self.console.command(&command)?;
+            }
+        }
         if let Some(mesh) = frame.subject.mesh_part() {
             for command in mesh_commands(mesh) {
                 self.console.command(&command)?;

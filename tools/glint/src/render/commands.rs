@@ -3,7 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::choice::switch_name;
-use glint_core::light::Hexadecimal;
+use glint_core::light::{Hexadecimal, MeshLighting};
 use glint_core::object::Place;
 use glint_core::picture::Size;
 use glint_model::{Clip, FieldSubject, MeshSubject, Object};
@@ -33,6 +33,18 @@ pub fn object_command(name: &str, object: &Object) -> String {
         colour: object.colour,
     };
     format!("object add {name} {place}")
+}
+
+/// The console commands that set the lighting of meshes.
+pub fn lighting_commands(lighting: &MeshLighting) -> Vec<String> {
+    let mut commands = vec!["light default".to_owned()];
+    if *lighting == MeshLighting::CAMERA {
+        commands.push("ambient default".to_owned());
+    } else {
+        commands.push(format!("light {}", lighting.light));
+        commands.push(format!("ambient {}", Hexadecimal(lighting.ambient)));
+    }
+    commands
 }
 
 /// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.

@@ -7,6 +7,7 @@ use glint::render::{self, BoardRenderer, Frame, MeshSubject, Route, Subject};
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
+use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 
@@ -59,6 +60,37 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
         let cycles = stats.engine.get("cycles_soft_core").unwrap();
         println!("{camera}: {cycles} of {:?} cycles", stats.cycles);
         assert!(cycles <= 15_000);
+    }
+}
+
+/// A coloured light from a direction, a light at the camera, and ambient light, on each backend. The default comes last: its commands
+/// remove the light.
+#[test]
+fn light_on_meshes_is_the_models_on_every_backend() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:2");
+    let lights = ["1,-2,3,ffc080", "camera,80ff40"].map(|text| MeshLighting {
+        ambient: [0x20, 0x10, 0x60],
+        light: Light::parse(text).unwrap(),
+    });
+    for lighting in [lights[0], lights[1], MeshLighting::CAMERA] {
+        for backend in [None, Some(Backend::Cpu)] {
+            let subject = Subject::mesh(Mesh::new_checked(&mesh).unwrap());
+            let frame = Frame {
+                lighting,
+                ..Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320)
+            };
+            renderer.set_backend(backend);
+            let expected = render::on_model(&frame).unwrap();
+            renderer
+                .show(&frame, Route::Memory, &mut |_, _| {})
+                .unwrap();
+            let colour = renderer
+                .colour(frame.size, Route::Memory, &mut |_, _| {})
+                .unwrap();
+            assert!(colour == expected.image.colour, "{lighting:?}");
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! `glint render` of meshes by the model.
 
-use crate::common::{VIEW, depths, folder, json, picture, succeed};
+use crate::common::{VIEW, depths, folder, json, picture, refused, succeed};
 
 #[test]
 fn renders_and_their_files() {
@@ -70,4 +70,42 @@ fn renders_and_their_files() {
         );
     }
     assert!(depth.iter().any(|z| z.is_finite()));
+}
+
+/// Light on a mesh: at the camera or from a direction, with a colour, and ambient light.
+#[test]
+fn light_on_a_mesh() {
+    let folder = folder("light-on-a-mesh");
+    let render = |more: &[&str]| {
+        let arguments = [&["render", "icosphere:4", "--out", "a.png"], more].concat();
+        succeed(&folder, &arguments);
+        picture(&folder.join("a.png"))
+    };
+    let lit = |picture: &[u8], channel: usize| {
+        let channels = picture.iter().skip(channel).step_by(3);
+        channels.filter(|&&value| value > 0).count()
+    };
+    let default = render(&[]);
+    let stated = ["--light", "camera", "--ambient", "000000"];
+    assert_eq!(render(&stated), default);
+    // The light comes from above, so that the lower half is dark: without ambient light it is black.
+    let above = render(&["--light", "0,0,1,ff0000", "--ambient", "000000"]);
+    let bright = lit(&default, 0);
+    assert!((bright / 4..bright * 9 / 10).contains(&lit(&above, 0)));
+    assert_eq!([lit(&above, 1), lit(&above, 2)], [0; 2]);
+    // The default ambient light is grey.
+    let grey = render(&["--light", "0,0,1,ff0000"]);
+    assert!(
+        [0, 1, 2]
+            .iter()
+            .all(|&channel| lit(&grey, channel) >= bright)
+    );
+    assert_ne!(render(&["--ambient", "0000ff"]), default);
+    let two = [
+        "render", "cube", "--out", "b.png", "--light", "1,0,0", "--light", "0,1,0",
+    ];
+    assert_eq!(
+        refused(&folder, &two),
+        "error: --light: expected one light on meshes, found 2"
+    );
 }

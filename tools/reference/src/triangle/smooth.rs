@@ -291,7 +291,10 @@ fn screen(random: &mut Pcg64Mcg, thin: bool) -> Vec<([ScreenVertex; 3], [Lit; 3]
             });
             let lit = [0; 3].map(|_| {
                 let colour = [0, 0xFFFF, random.random()][random.random_range(0..3)];
-                Lit::new(Rgb565(colour), [256, random.random_range(0..=256)][i % 2])
+                Lit::new(
+                    Rgb565(colour),
+                    [[256, random.random_range(0..=256)][i % 2]; 3],
+                )
             });
             (vertices, lit)
         })

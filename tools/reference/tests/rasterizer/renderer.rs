@@ -2,7 +2,9 @@
 
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
-use glint_model::{DrawnTriangle, FrameBuffer, Options, Projected, ScreenVertex, Stats, trace};
+use glint_model::{
+    DrawnTriangle, FrameBuffer, MeshLight, Options, Projected, ScreenVertex, Stats, trace,
+};
 use glint_reference::camera::Size;
 use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
@@ -15,6 +17,8 @@ pub struct Renderer {
     pub colour: Vec<u16>,
     /// Depth codes of the last picture.
     pub depth: Vec<u32>,
+    /// Light on the mesh; `None` for white light at the camera.
+    pub light: Option<MeshLight>,
     /// Triangles that the model drew in the last picture.
     pub drawn: Vec<DrawnTriangle>,
     scratch: Vec<Projected>,
@@ -42,6 +46,7 @@ impl Renderer {
         };
         let options = Options {
             cull,
+            light: self.light.as_ref(),
             ..Options::default()
         };
         trace(

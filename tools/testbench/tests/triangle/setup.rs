@@ -5,7 +5,7 @@ use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::reciprocal::recip;
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
-use glint_model::{SIZES, ScreenVertex, Shading};
+use glint_model::{MeshLight, SIZES, ScreenVertex, Shading};
 use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls, exchange};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
@@ -15,12 +15,12 @@ const GUARD: i32 = 2047 << 8;
 /// Largest depth w, u18.6.
 const NEAREST: u32 = ((1 << 18) - 1) << 6;
 
-/// Frame constants: the picture's size, culling of back faces, the camera's direction n, and the shading.
+/// Frame constants: the picture's size, culling of back faces, the light, and the shading.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     size: (u32, u32),
     cull: bool,
-    n: [i32; 3],
+    light: MeshLight,
     shading: Shading,
 }
 
@@ -97,7 +97,9 @@ fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let bounds = Bounds::new(&oriented.vertices, width, height)?;
     let colour = lit(
         Rgb565(input.colour),
-        intensity(input.normal, &frame.n, oriented.facing),
+        frame
+            .light
+            .shares(intensity(input.normal, &frame.light.row, oriented.facing)),
     );
     let facing = oriented.facing;
     let setup = match frame.shading {
@@ -153,7 +155,10 @@ impl Bench {
         self.module.drive("width", frame.size.0);
         self.module.drive("height", frame.size.1);
         self.module.drive("cull_back", frame.cull);
-        self.module.drive_all("row_light", frame.n);
+        let light = &frame.light;
+        self.module.drive_all("row_light", light.row);
+        self.module.drive_all("light_colour", light.colour);
+        self.module.drive_all("ambient", light.ambient);
         self.module
             .drive("smooth", frame.shading == Shading::Smooth);
         let types = Types::of(&self.module);
@@ -266,14 +271,22 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
 fn light(random: &mut Pcg64Mcg) -> Light {
     let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
-    let lit = Lit::new(Rgb565(colour), intensity);
+    let lit = Lit::new(Rgb565(colour), [intensity; 3]);
     let dark = Lit::default();
     let [front, back] = [[lit, dark], [dark, lit]][random.random_range(0..2)];
     Light { front, back }
 }
 
+/// A light in the direction opposite to z; white and without ambient light.
+const WHITE: MeshLight = MeshLight {
+    row: [0, 0, 1 << 23],
+    forward: [0, 0, 1 << 23],
+    colour: MeshLight::PLAIN.0,
+    ambient: MeshLight::PLAIN.1,
+};
+
 fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
-    let n = [0; 3].map(|_| match random.random_range(0..8) {
+    let row = [0; 3].map(|_| match random.random_range(0..8) {
         0 => -1 << 24,
         1 => (1 << 24) - 1,
         2 => 0,
@@ -282,7 +295,17 @@ fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
     Frame {
         size: SIZES[round % 3],
         cull: round.is_multiple_of(2),
-        n,
+        light: if round % 4 < 2 {
+            MeshLight { row, ..WHITE }
+        } else {
+            let mut part = || [0, 256, random.random_range(0..=256)][random.random_range(0..3)];
+            MeshLight {
+                row,
+                colour: [(); 3].map(|()| part()),
+                ambient: [(); 3].map(|()| part()),
+                ..WHITE
+            }
+        },
         shading: Shading::Flat,
     }
 }
@@ -337,8 +360,8 @@ fn input(places: [[i32; 2]; 3], w: [u32; 3]) -> Input {
         colour: 0xFFFF,
         normal: [0, 0, -1 << 14],
         light: [[0, 256], [256, 0], [200, 0]].map(|[front, back]| Light {
-            front: Lit::new(Rgb565::WHITE, front),
-            back: Lit::new(Rgb565::WHITE, back),
+            front: Lit::new(Rgb565::WHITE, [front; 3]),
+            back: Lit::new(Rgb565::WHITE, [back; 3]),
         }),
     }
 }
@@ -384,7 +407,7 @@ fn corners(shading: Shading) {
             let frame = Frame {
                 size,
                 cull,
-                n: [0, 0, 1 << 23],
+                light: WHITE,
                 shading,
             };
             bench.check(&frame, &inputs);
@@ -435,7 +458,7 @@ fn clocks(shading: Shading) {
     let frame = Frame {
         size: SIZES[0],
         cull: true,
-        n: [0, 0, 1 << 23],
+        light: WHITE,
         shading,
     };
     let latency = bench.check(&frame, &[front]);

@@ -1,12 +1,13 @@
 //! Test bench of the triangle engine, with a memory, and the expected frames.
 
 use glint_core::camera::{Projection, View};
+use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex_cache;
 use glint_model::{
-    DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats, trace,
+    DrawnTriangle, FrameBuffer, MeshLight, MeshSetup, Options, Projected, Shading, Stats, trace,
 };
 use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
 
@@ -67,6 +68,26 @@ pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -
     expected_with(options, mesh, view, size)
 }
 
+/// Draws a frame with the model in the given lighting, with `shading`. Engine and model have the same pictures if back faces are culled,
+/// the shading is flat or there is no ambient light.
+pub fn expected_lit(
+    lighting: &MeshLighting,
+    shading: Shading,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+    cull: bool,
+) -> Expected {
+    let options = Options {
+        cull,
+        clear: CLEAR,
+        shading,
+        light: Some(Box::leak(Box::new(MeshLight::new(lighting, view)))),
+        ..Options::default()
+    };
+    expected_with(options, mesh, view, size)
+}
+
 fn expected_with(
     options: Options<'static>,
     mesh: &[u8],
@@ -98,12 +119,16 @@ fn expected_with(
         },
     )
     .unwrap();
+    let mut frame = MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap();
+    if let Some(light) = options.light {
+        frame.light = light.row;
+    }
     Expected {
         size,
         options,
         colour,
         depth,
-        frame: MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap(),
+        frame,
         clipped,
         stats,
     }
@@ -344,6 +369,11 @@ impl Bench {
         self.module.drive_all("view.row_v", frame.v);
         self.module.drive_all("view.row_n", frame.n);
         self.module.drive_all("view.row_light", frame.light);
+        let (colour, ambient) = options
+            .light
+            .map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
+        self.module.drive_all("geometry.light_colour", colour);
+        self.module.drive_all("geometry.ambient", ambient);
         let translation = ["view.tx", "view.ty", "view.tz"];
         for (path, value) in translation.into_iter().zip(frame.translation) {
             self.module.drive(path, value);

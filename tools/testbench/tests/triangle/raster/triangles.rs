@@ -88,7 +88,7 @@ impl Random {
         let colour = [0, u16::MAX, self.0.random()][self.within(0, 2) as usize];
         Lit::new(
             Rgb565(colour),
-            [256, self.within(0, 256) as u32][self.within(0, 1) as usize],
+            [[256, self.within(0, 256) as u32][self.within(0, 1) as usize]; 3],
         )
     }
 
