@@ -49,7 +49,8 @@ module line_raster (
     // The piece, at its current pixel. `error` belongs to the next one.
     logic               active, x_major, left, up;
     logic [15:0]        colour;
-    logic [11:0]        column, count;
+    logic [11:0]        column;
+    logic [11:0]        not_count; // complement of the pixels up to the end, which is counted up: fewer LUTs
     logic [5:0]         line;
     logic signed [20:0] error, fall;
     logic [19:0]        minor;
@@ -61,22 +62,22 @@ module line_raster (
     assign moves_column = x_major || moves_minor;
     assign moves_line   = !x_major || moves_minor;
     assign shown    = !column[11] && column[10:6] < blocks && line <= last_line;
-    assign ends     = !shown || count == 12'd1 || moves_line && line == (up ? '0 : last_line);
+    assign ends     = !shown || not_count == ~12'd1 || moves_line && line == (up ? '0 : last_line);
     assign in_ready = room && (!active || ends);
     assign takes    = in_valid && in_ready;
 
     always_ff @(posedge clk) begin
         if (room && active) begin
-            count  <= count - 1'b1;
-            error  <= error + (moves_minor ? fall : {1'b0, minor});
-            depth  <= depth + depth_step;
-            column <= column + ({12{left}} & {12{moves_column}} | 12'(moves_column));
-            line   <= line + ({6{up}} & {6{moves_line}} | 6'(moves_line));
-            active <= !ends;
+            not_count <= not_count + 1'b1;
+            error     <= error + (moves_minor ? fall : {1'b0, minor});
+            depth     <= depth + depth_step;
+            column    <= column + ({12{left}} & {12{moves_column}} | 12'(moves_column));
+            line      <= line + ({6{up}} & {6{moves_line}} | 6'(moves_line));
+            active    <= !ends;
         end
         if (takes) begin
             active     <= 1'b1;
-            count      <= in_piece.count;
+            not_count  <= ~in_piece.count;
             error      <= in_piece.error;
             depth      <= in_piece.depth;
             column     <= {1'b0, in_piece.column};

@@ -111,8 +111,9 @@ module line_setup (
     logic signed [9:0] ahead, above;
     logic              tie;
 
-    assign ahead = {{2{on_major[7] && !passed}}, on_major[7], ~on_major[6:0]} + 10'(back_major);
-    assign above = {2'b11, on_minor[7:0]} + 10'(!back_minor);
+    // Yosys puts the logic of the second summand into the LUTs of the sum, but gives that of the first one LUTs of its own.
+    assign ahead = 10'(back_major) + {{2{on_major[7] && !passed}}, on_major[7], ~on_major[6:0]};
+    assign above = 10'(!back_minor) + {2'b11, on_minor[7:0]};
     assign tie   = x_major ? left || minor == '0 : !left;
 
     // The depth step: a dividend shifts out and a quotient shifts in. With a negative difference of the depths both are inverted,
@@ -121,7 +122,7 @@ module line_setup (
     logic               falls, divides, dividing;
     logic [31:0]        quotient;
     logic signed [21:0] rest, next_rest;
-    logic [4:0]         bits_left;
+    logic [4:0]         bits_done;
 
     assign depth_difference = {1'b0, in_segment.b_w} - {1'b0, in_segment.a_w};
     assign divides   = major[19:8] != '0 && depth_difference != '0;
@@ -132,14 +133,14 @@ module line_setup (
             falls     <= divides && depth_difference[24];
             quotient  <= {depth_difference[15:0], 16'd0};
             rest      <= {14'd0, depth_difference[23:16] ^ {8{depth_difference[24]}}};
-            bits_left <= '1;
+            bits_done <= '0;
             dividing  <= divides;
             if (!divides) quotient <= '0;
         end else if (dividing) begin
             quotient  <= {quotient[30:0], !next_rest[21] ^ falls};
             rest      <= next_rest;
-            bits_left <= bits_left - 1'b1;
-            dividing  <= bits_left != '0;
+            bits_done <= bits_done + 1'b1;
+            dividing  <= bits_done != '1;
         end
         if (rst) dividing <= 1'b0;
     end
@@ -205,13 +206,15 @@ module line_setup (
     logic [12:0]        column;
     logic               reached, at_border, entered, shown, tracks, leaves, sends, copies;
     logic [9:0]         height;
+    logic [12:0]        minus_height;
     logic [4:0]         blocks;
     band_pkg::cut_t     cut;
 
     // The size holds from before the segment. The width of the picture is 64 times `blocks`.
     always_ff @(posedge clk) begin
-        cut    <= band_pkg::cut(size);
-        height <= 10'(picture_pkg::HEIGHT) << size;
+        cut          <= band_pkg::cut(size);
+        height       <= 10'(picture_pkg::HEIGHT) << size;
+        minus_height <= 13'(-picture_pkg::HEIGHT) << size;
     end
 
     assign blocks    = cut.stride[7:3];
@@ -229,7 +232,7 @@ module line_setup (
 
     always_comb begin
         edge_change = {7'd0, cut.lines};
-        if (at[5]) edge_change = up ? -{3'd0, height} : '0;
+        if (at[5]) edge_change = up ? minus_height : '0;
     end
 
     always_ff @(posedge clk) begin
