@@ -1,13 +1,18 @@
 //! `glint wireframe`.
 
-use super::common::{named, print_json, say, size, spinner, write_file, write_whole};
+use super::common::{
+    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file, write_whole,
+};
 use super::render::print_stats;
 use clap::{Args, Subcommand};
+use glint::board::{BoardName, ModelOrBoard};
+use glint::console::Console;
 use glint::error::FormatError;
 use glint::model;
-use glint::render::{Frame, Rendered, Subject, WireframeSubject, on_model};
+use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, WireframeSubject, on_model};
 use glint::view;
-use glint::wireframe::{self, Form, Made, MotionForm, Played};
+use glint::wireframe::{self, Action, Form, Made, MotionForm, Played};
+use glint_core::picture::{Backend, Size};
 use glint_core::wireframe::{Program, Viewing};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -94,7 +99,7 @@ pub struct MakeArguments {
     json: bool,
 }
 
-/// Render a program to a picture with the bit-exact model, after a script of keys.
+/// Render a program to a picture, after a script of keys.
 #[derive(Args)]
 pub struct RenderArguments {
     /// Program to read: .wft or .wfb.
@@ -109,15 +114,20 @@ pub struct RenderArguments {
     /// The motion by the keys: `drift-free`, or `accumulated` as in the original design, which rounds the end points in place.
     #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
     motion: MotionForm,
+    /// The renderer: `model` (the bit-exact model, in this process), `virtual` (the verilated SoC) or a serial port.
+    #[arg(long, default_value = "model")]
+    board: ModelOrBoard,
+    /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
+    #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
+    backend: Option<Backend>,
     /// Size of the picture: 320x180, 640x360 or 1280x720.
     #[arg(long, value_name = "WxH", default_value = "640x360")]
     size: String,
     /// Write the counts of segments, lines and pixels as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
-    /// Print the counts as JSON.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    transfer: TransferArguments,
 }
 
 impl WireframeCommand {
@@ -250,27 +260,36 @@ impl RenderArguments {
         let press = self.press.as_deref();
         let script = press.map(wireframe::script).transpose();
         let script = script.map_err(|error| error.in_file("--press"))?;
+        let script = script.unwrap_or_default();
         let bytes = wireframe::read(&self.program)?;
         let Played {
             bytes,
             pose,
             refused,
-        } = wireframe::play(
-            &wireframe::check(&bytes)?,
-            &script.unwrap_or_default(),
-            self.motion,
-        );
-        let program = wireframe::check(&bytes)?;
-        let subject = Subject::Wireframe(WireframeSubject { program, pose });
-        // The program has its own eye, so the frame's camera has no effect.
-        let camera = view::spherical("2,30,60")?;
-        let Rendered { image, stats } = on_model(&Frame::new(subject, camera, size))?;
+        } = wireframe::play(&wireframe::check(&bytes)?, &script, self.motion);
+        let Rendered { image, stats } = match &self.board {
+            ModelOrBoard::Model => {
+                let program = wireframe::check(&bytes)?;
+                let subject = Subject::Wireframe(WireframeSubject { program, pose });
+                // The program has its own eye, so the frame's camera has no effect.
+                let camera = view::spherical("2,30,60")?;
+                on_model(&Frame::new(subject, camera, size))?
+            }
+            ModelOrBoard::Board(name) => {
+                // The board has the drift-free motion only. The accumulated one is in the program.
+                let script = match self.motion {
+                    MotionForm::DriftFree => &script[..],
+                    MotionForm::Accumulated => &[],
+                };
+                self.on_board(name, &bytes, script, size)?
+            }
+        };
         write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.stats {
             let json = serde_json::to_string_pretty(&stats)? + "\n";
             write_file(path, json.as_bytes())?;
         }
-        if self.json {
+        if self.transfer.json {
             return print_json(&stats);
         }
         print_stats(&stats)?;
@@ -280,5 +299,22 @@ impl RenderArguments {
             ))?;
         }
         Ok(())
+    }
+
+    fn on_board(
+        &self,
+        name: &BoardName,
+        program: &[u8],
+        script: &[Action],
+        size: Size,
+    ) -> anyhow::Result<Rendered> {
+        let mut board = self.transfer.line.board(name)?;
+        let mut renderer = BoardRenderer::new(Console::new(&mut *board))
+            .with_backend(self.backend)
+            .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
+        let bar = bar("program and frame");
+        let rendered = renderer.play(program, script, size, &mut advance(&bar))?;
+        bar.finish_and_clear();
+        Ok(rendered)
     }
 }

@@ -9,6 +9,7 @@ use crate::board::Board;
 use crate::console::{self, Console};
 use crate::picture::Image;
 use crate::transfer::{self, Progress, Route};
+use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
@@ -102,6 +103,46 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         self.redraw()
+    }
+
+    /// Shows a program of the wireframe simulator on the board in a picture of this size, plays a script of keys, one step a frame, and
+    /// draws the last frame again.
+    ///
+    /// # Errors
+    /// The firmware refuses the program or a key, or the upload fails.
+    pub fn play(
+        &mut self,
+        program: &[u8],
+        script: &[Action],
+        size: Size,
+        progress: &mut Progress,
+    ) -> Result<Rendered, Error> {
+        if let Some(backend) = self.backend {
+            self.console.command(&format!("backend {backend}"))?;
+        }
+        self.console.command(&size_command(size))?;
+        if self.route == Route::Memory {
+            transfer::stage(&mut self.console, program)?;
+        }
+        self.uploads = self.uploads.wrapping_add(1);
+        let (console, session) = (&mut self.console, self.uploads);
+        transfer::upload_for(console, "program", program, session, progress, &mut |_| {})?;
+        let mut rotate = "";
+        for action in script {
+            match action {
+                Action::Rotate(on) => rotate = if *on { " rotate" } else { "" },
+                Action::Press(key) => {
+                    let command = format!("press {}{rotate}", key.name());
+                    self.console.command(&command)?;
+                }
+            }
+        }
+        let stats = self.redraw()?;
+        let image = Image {
+            colour: self.colour(size, self.route, progress)?,
+            ..Image::empty(size)
+        };
+        Ok(Rendered { image, stats })
     }
 
     /// Replaces the board's objects, whose meshes are uploaded once each, and shows them.

@@ -192,3 +192,26 @@ fn a_session_with_commands() {
     console.command("render").unwrap();
     assert!(shown(console)[0] == picture(&program, &Motion::default()));
 }
+
+#[test]
+fn a_script_of_keys() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let program = cube();
+    let script = wireframe::script("rotate,right:2,pan,up,zoom-in").unwrap();
+    let drawn = renderer
+        .play(&program, &script, Size::W320, &mut |_, _| {})
+        .unwrap();
+    let mut motion = Motion::default();
+    for step in [
+        Key::Right.step(true),
+        Key::Right.step(true),
+        Key::Up.step(false),
+        Key::ZoomIn.step(false),
+    ] {
+        assert!(motion.apply(step));
+    }
+    assert!(drawn.image.colour == picture(&program, &motion));
+    let counts = drawn.stats.wireframe.unwrap();
+    assert_eq!((counts.segments, counts.lines), (12, 12));
+}
