@@ -269,7 +269,7 @@ impl Scene {
         self.sphere
     }
 
-    /// Sets position and basis of the camera to those of `view`, and keeps half width and near plane.
+    /// Sets position and basis of the camera to those of `view`, and keeps projection, half width and near plane.
     pub fn move_view(&mut self, view: View) {
         self.set_view(view.with_lens_of(&self.view));
     }

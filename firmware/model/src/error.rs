@@ -131,7 +131,7 @@ impl fmt::Display for RenderError {
                 "width {width}: expected at least {least} for an object of this size in a picture of this width"
             ),
             Self::Orthographic => {
-                f.write_str("orthographic projection: expected perspective with a field")
+                f.write_str("orthographic projection: expected perspective with a field, set by a field of view")
             }
             Self::HalfWidth(half_width) => write!(
                 f,

@@ -2,7 +2,7 @@
 
 use glint_core::camera::View;
 use glint_core::console::CameraCommands;
-use glint_core::fixed::{Q32_32, Turns};
+use glint_core::fixed::{Q32_32, Turns, U8_28};
 
 use crate::error::CommandError;
 use crate::job::{Job, Orbit, Outcome, Reply};
@@ -39,6 +39,12 @@ impl<'l> CameraCommands<'l> for Machine {
 
     fn fov(&mut self, angle: Turns) -> Outcome<'l> {
         let view = self.scene.view().with_field_of_view(angle);
+        self.scene.set_view(view.map_err(CommandError::View)?);
+        Ok(Reply::Done)
+    }
+
+    fn orthographic(&mut self, width: U8_28) -> Outcome<'l> {
+        let view = self.scene.view().with_width(width);
         self.scene.set_view(view.map_err(CommandError::View)?);
         Ok(Reply::Done)
     }

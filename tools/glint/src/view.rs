@@ -2,9 +2,10 @@
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
-use glint_core::camera::{UP, View, ViewError};
+use glint_core::camera::{Projection, UP, View, ViewError};
+use glint_core::choice::Choice;
 use glint_core::fixed::fixed::traits::Fixed;
-use glint_core::fixed::{Q32_32, Turns};
+use glint_core::fixed::{Q32_32, Turns, U8_28};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -18,9 +19,12 @@ struct ViewFile {
     n: [f64; 3],
     half_width: f64,
     near: f64,
+    /// `perspective`, which is the default, or `orthographic`.
+    projection: Option<String>,
 }
 
-/// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}`.
+/// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}`; without a projection
+/// it is perspective.
 ///
 /// # Errors
 /// The file cannot be read, has other contents, or [`View::new_checked`] rejects the camera.
@@ -35,9 +39,20 @@ pub fn read(path: &Path) -> Result<View, InputError> {
 /// As [`read`].
 pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
     let file: ViewFile = serde_json::from_slice(bytes).map_err(|error| {
-        let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}"#;
+        let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}"#;
         FormatError::whole(form, error.to_string().escape_debug().to_string())
     })?;
+    let projection = file.projection.as_deref().unwrap_or_default();
+    let projection = match Projection::from_word(projection) {
+        Some(projection) => projection,
+        None if projection.is_empty() => Projection::Perspective,
+        None => {
+            return Err(refuse(
+                "a projection, `perspective` or `orthographic`",
+                projection,
+            ));
+        }
+    };
     let view = View::new_checked(
         vector(file.eye, "eye")?,
         vector(file.u, "u")?,
@@ -46,7 +61,8 @@ pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
         number(file.half_width, "half_width")?,
         number(file.near, "near")?,
     );
-    view.map_err(no_camera)
+    view.map(|view| view.with_projection(projection))
+        .map_err(no_camera)
 }
 
 fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError> {
@@ -101,7 +117,39 @@ pub fn look_at(text: &str) -> Result<View, FormatError> {
     View::towards(eye, gaze, up).map_err(no_camera)
 }
 
-/// Returns the camera with a horizontal field of view of `text` degrees.
+/// Free camera from `EX,EY,EZ,YAW,PITCH` or `EX,EY,EZ,YAW,PITCH,ROLL`: eye, and angles in degrees as those of [`View::look`].
+///
+/// # Errors
+/// The text is not five or six decimals, or the eye is too far from the origin.
+pub fn look(text: &str) -> Result<View, FormatError> {
+    let numbers = decimals(text).unwrap_or_default();
+    let (eye, angles) = match *numbers.as_slice() {
+        [ex, ey, ez, yaw, pitch] => ([ex, ey, ez], [yaw, pitch, Q32_32::ZERO]),
+        [ex, ey, ez, yaw, pitch, roll] => ([ex, ey, ez], [yaw, pitch, roll]),
+        _ => {
+            return Err(refuse(
+                "a camera EX,EY,EZ,YAW,PITCH[,ROLL] such as 0,-3,1,0,20",
+                text,
+            ));
+        }
+    };
+    let [yaw, pitch, roll] = angles.map(Turns::from_degrees);
+    View::look(eye, yaw, pitch, roll).map_err(no_camera)
+}
+
+/// Returns the camera in orthographic projection, with `text` world units across the picture.
+///
+/// # Errors
+/// The text is not a decimal in the range of [`View::with_width`].
+pub fn with_width(view: View, text: &str) -> Result<View, FormatError> {
+    let width: Option<U8_28> = text.trim().parse().ok();
+    let width = width
+        .filter(|width| *width < 256)
+        .ok_or_else(|| refuse("a width in world units", text))?;
+    view.with_width(width).map_err(no_camera)
+}
+
+/// Returns the camera in perspective with a horizontal field of view of `text` degrees.
 ///
 /// # Errors
 /// The text is not a decimal from 1 to 179.
@@ -177,6 +225,10 @@ mod tests {
             (&GOOD.replace("[0,-3,0]", "[0,-1e40,0]"), "-1e40"),
             (&GOOD.replace("0.9", "115.5"), "half_width 115.5"),
             (&GOOD.replace("0.1}", "0.001}"), "near 0.001"),
+            (
+                &GOOD.replace("0.1}", r#"0.1,"projection":"parallel"}"#),
+                "`perspective` or `orthographic`",
+            ),
         ];
         for (text, expected) in cases {
             let message = parse(text.as_bytes()).unwrap_err().to_string();
@@ -212,6 +264,43 @@ mod tests {
         ] {
             let message = look_at(text).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn free_look() {
+        let view = look("0,-3,0,0,0").unwrap();
+        assert_eq!(view, spherical("3,-90,90").unwrap());
+        // Half a turn to the right and a quarter of a turn about the direction of view.
+        let turned = look("0,3,0,180,0,90").unwrap();
+        let [v, n] = [turned.v(), turned.n()].map(|row| row.map(|c| c.to_num::<f64>()));
+        assert_eq!((v, n), ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]));
+        for (text, expected) in [
+            ("0,-3,0,0", "EX,EY,EZ,YAW,PITCH[,ROLL]"),
+            ("0,-3,0,0,x", "EX,EY,EZ,YAW,PITCH[,ROLL]"),
+            ("0,-33,0,0,0", "within 32 of the origin"),
+        ] {
+            let message = look(text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text}: {message}");
+        }
+    }
+
+    #[test]
+    fn orthographic_projections() {
+        let view = spherical("3,0,90").unwrap();
+        let parallel = with_width(view, "3.5").unwrap();
+        let file = GOOD.replace("0.9", "1.75");
+        let file = file.replace("0.1}", r#"0.1,"projection":"orthographic"}"#);
+        let read = parse(file.as_bytes()).unwrap();
+        assert_eq!(read.with_lens_of(&parallel), read);
+        for (width, expected) in [
+            ("0.01", "width 0.01"),
+            ("231", "width 231: expected 0.0174 to 230"),
+            ("300", "a width in world units"),
+            ("wide", "a width in world units"),
+        ] {
+            let message = with_width(view, width).unwrap_err().to_string();
+            assert!(message.contains(expected), "{width}: {message}");
         }
     }
 

@@ -68,10 +68,11 @@ commands! {
     /// Commands of the camera.
     CameraCommands {
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis";
-        view View(view: Option<View>): "show or set the camera: eye, basis (right, down, forward), half width, near plane";
+        view View(view: Option<View>): "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection";
         look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
         lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen";
-        fov FieldOfView(angle: FieldOfView): "set the horizontal field of view, in degrees";
+        fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees";
+        orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective";
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
 
@@ -167,7 +168,7 @@ pub fn write_help(out: &mut dyn fmt::Write, command: Option<&str>) -> fmt::Resul
         }
         None => {
             syntaxes()
-                .try_for_each(|syntax| writeln!(out, "{:12}{}", syntax.name, syntax.summary))?;
+                .try_for_each(|syntax| writeln!(out, "{:13}{}", syntax.name, syntax.summary))?;
             writeln!(out, "`help COMMAND` explains one command")
         }
     }

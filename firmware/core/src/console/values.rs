@@ -9,7 +9,7 @@ use super::argument::{Argument, Reader, WordArgument, group};
 use super::error::ValueError;
 use super::syntax::{Kind, Parameter, Shape};
 use crate::calibration::{MOST_SAMPLES, SAMPLES};
-use crate::camera;
+use crate::camera::{self, Projection};
 use crate::choice::choices;
 use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
@@ -277,14 +277,15 @@ group! {
 }
 
 group! {
-    /// A camera: eye, basis, half width and near plane.
+    /// A camera: eye, basis, half width, near plane, and a projection, by default perspective.
     View: camera::View = (
         ex: Q32_32, ey: Q32_32, ez: Q32_32,
         ux: Q2_23, uy: Q2_23, uz: Q2_23,
         vx: Q2_23, vy: Q2_23, vz: Q2_23,
         nx: Q2_23, ny: Q2_23, nz: Q2_23,
-        half_width: U8_28, near: U4_28,
+        half_width: U8_28, near: U4_28, projection: Option<Projection>,
     ) => camera::View::new_checked([ex, ey, ez], [ux, uy, uz], [vx, vy, vz], [nx, ny, nz], half_width, near)
+        .map(|view| view.with_projection(projection.unwrap_or_default()))
         .map_err(ValueError::View)
 }
 

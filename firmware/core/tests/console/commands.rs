@@ -1,6 +1,6 @@
 //! Tests of every command with its arguments.
 
-use glint_core::camera::View;
+use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::console::{Command, ImuAction, LINE_MAX, ObjectAction};
 use glint_core::field::{Field, Menger};
@@ -27,7 +27,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orbit", "size", "load", "object", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "orbit", "size", "load", "object", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
@@ -60,9 +60,12 @@ proptest! {
     #[test]
     fn views_come_back_bit_for_bit(r in 2_i64 << 32..=5 << 32, theta in any::<u32>(), phi in 0..=1_u32 << 31) {
         let view = View::spherical(Q32_32::from_bits(r), Turns(theta), Turns(phi)).expect("in range");
-        let line = format!("view {view}");
-        prop_assert!(line.len() <= LINE_MAX);
-        prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Command::View { view: Some(view) })));
+        for projection in Projection::ALL {
+            let view = view.with_projection(projection);
+            let line = format!("view {view}");
+            prop_assert!(line.len() <= LINE_MAX);
+            prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Command::View { view: Some(view) })));
+        }
     }
 }
 
@@ -249,6 +252,8 @@ fn every_command_is_understood() {
     assert_parses("winding screen", Command::Winding { rule });
     let angle = degrees(150);
     assert_parses("fov 150", Command::FieldOfView { angle });
+    let width = U8_28::from_num(3.5);
+    assert_parses("orthographic 3.5", Command::Orthographic { width });
     assert_parses("imu", Command::Imu { action: None });
     let imu = |line, action| {
         assert_parses(

@@ -126,21 +126,20 @@ impl Placement {
         let reach = self.reach(radius);
         // A part of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
-        let k = excess(largest(&n)).max(halvings(((z.abs() + (reach >> 1)) >> 41) as u32));
+        let mut k = excess(largest(&n)).max(halvings(((z.abs() + (reach >> 1)) >> 41) as u32));
+        let mut f = camera.scale_shift;
         let is_perspective = camera.projection == Projection::Perspective;
-        let k = if is_perspective {
-            k
+        if is_perspective {
+            f += k;
         } else {
-            // The depth codes of a frame may have more bits than the vertex stage has for a depth.
-            k.max(camera.depth.exponent.max(5).abs_diff(5))
-        };
-        // The rows u and v get as many fraction bits as fit: f − cut, and k more where Z is multiplied by 2^−k too.
-        let f = camera.scale_shift + if is_perspective { k } else { 0 };
+            // The vertex stage has depths of up to 16 world units, for which ke is 5.
+            k = k.max((camera.depth.exponent - 5).max(0) as u32);
+        }
+        // The rows u and v get as many fraction bits as fit: f − cut.
         let widest = x.abs().max(y.abs()) + reach;
         let cut = excess(largest(&u).max(largest(&v)))
             .max(halvings((widest >> 42) as u32))
             .max(f.saturating_sub(18));
-        // At most 4 + 4 + 1 less than f, which is at least 7.
         let scale_shift = f.saturating_sub(cut);
         let near = camera.near >> k;
         if is_perspective {

@@ -1,7 +1,7 @@
 //! Gazes along the direction up, and the ends of the range of fields of view.
 
 use glint_core::camera::{View, ViewError};
-use glint_core::fixed::{Q32_32, Turns};
+use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
 use glint_vectors::Camera;
@@ -29,6 +29,12 @@ pub const CASES: &[Case] = &[
     ("field of view of 0°", || refused(with_field_of_view(0.0))),
     ("field of view of 180°", || {
         refused(with_field_of_view(180.0))
+    }),
+    ("orthographic width of 0", || {
+        refused(above().with_width(U8_28::ZERO))
+    }),
+    ("orthographic width of 255", || {
+        refused(above().with_width(U8_28::from_num(255)))
     }),
 ];
 

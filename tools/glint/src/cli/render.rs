@@ -60,10 +60,21 @@ pub struct RenderArguments {
         allow_hyphen_values = true
     )]
     look_at: Option<String>,
+    /// A camera at the eye E that looks along +y, turned by YAW to the right, PITCH down and ROLL about its direction, in degrees.
+    #[arg(
+        long,
+        value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
+        conflicts_with_all = ["view", "camera", "look_at"],
+        allow_hyphen_values = true
+    )]
+    look: Option<String>,
     /// The horizontal field of view, 1 to 179 degrees, in place of the camera's half width. Pixels are square.
     #[arg(long, value_name = "DEGREES")]
     fov: Option<String>,
-    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z}.
+    /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
+    #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "field"])]
+    orthographic: Option<String>,
+    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
     #[arg(long, value_name = "VIEW.json")]
     view: Option<PathBuf>,
     /// The renderer: `model` (the bit-exact model, in this process), `virtual` (the verilated SoC) or a serial port.
@@ -226,18 +237,23 @@ impl RenderArguments {
     }
 
     fn camera(&self) -> anyhow::Result<View> {
-        let view = match (&self.view, &self.look_at) {
-            (Some(path), _) => {
+        let view = match (&self.view, &self.look_at, &self.look) {
+            (Some(path), ..) => {
                 let view = view::read(path)?;
                 self.check_eye(&view, &path.display().to_string())?;
                 view
             }
-            (None, Some(text)) => {
+            (None, Some(text), _) => {
                 let view = view::look_at(text).map_err(|error| error.in_file("--look-at"))?;
                 self.check_eye(&view, "--look-at")?;
                 view
             }
-            (None, None) => {
+            (None, None, Some(text)) => {
+                let view = view::look(text).map_err(|error| error.in_file("--look"))?;
+                self.check_eye(&view, "--look")?;
+                view
+            }
+            (None, None, None) => {
                 let default = if self.field.name().is_some() {
                     "4,30,60"
                 } else {
@@ -247,12 +263,16 @@ impl RenderArguments {
                 view::spherical(camera).map_err(|error| error.in_file("--camera"))?
             }
         };
-        match &self.fov {
-            Some(angle) => Ok(
+        let view = match (&self.fov, &self.orthographic) {
+            (Some(angle), _) => {
                 view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
-            ),
-            None => Ok(view),
-        }
+            }
+            (None, Some(width)) => {
+                view::with_width(view, width).map_err(|error| error.in_file("--orthographic"))?
+            }
+            (None, None) => view,
+        };
+        Ok(view)
     }
 
     fn subject<'m>(&self, model: &'m Model, clip: Clip) -> Result<MeshSubject<'m>, MeshError> {

@@ -49,15 +49,7 @@ pub fn lighting_commands(lighting: &MeshLighting) -> Vec<String> {
 
 /// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
 pub fn view_command(view: &View) -> String {
-    let mut command = "view".to_owned();
-    let mut put = |number: &dyn std::fmt::Display| command.push_str(&format!(" {number}"));
-    view.eye().iter().for_each(|c| put(c));
-    for row in [view.u(), view.v(), view.n()] {
-        row.iter().for_each(|c| put(c));
-    }
-    put(&view.half_width());
-    put(&view.near());
-    command
+    format!("view {view}")
 }
 
 /// The console commands that set a field, alone or together with the mesh that the board has. Only the last command makes the
@@ -98,14 +90,18 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
 mod tests {
     use super::view_command;
     use crate::view;
+    use glint_core::camera::Projection;
 
     #[test]
     fn a_view_survives_the_console() {
-        let view = view::spherical("3.3,33.3,66.6").unwrap();
-        let command = view_command(&view);
-        assert!(command.len() < glint_core::console::LINE_MAX);
-        let parsed = glint_core::console::Command::parse(&command).unwrap();
-        let view = Some(view);
-        assert_eq!(parsed, Some(glint_core::console::Command::View { view }));
+        for projection in Projection::ALL {
+            let view = view::spherical("3.3,33.3,66.6").unwrap();
+            let view = view.with_projection(projection);
+            let command = view_command(&view);
+            assert!(command.len() < glint_core::console::LINE_MAX);
+            let parsed = glint_core::console::Command::parse(&command).unwrap();
+            let view = Some(view);
+            assert_eq!(parsed, Some(glint_core::console::Command::View { view }));
+        }
     }
 }

@@ -94,6 +94,41 @@ fn light_on_meshes_is_the_models_on_every_backend() {
     }
 }
 
+/// In orthographic projection the triangle engine draws the model's picture, and so does the CPU, also with smooth shading.
+#[test]
+fn orthographic_pictures_are_the_models_on_every_backend() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board);
+    let mesh = mesh("icosphere:3");
+    let view = view::with_width(view::spherical("2,30,60").unwrap(), "1.2").unwrap();
+    for (backend, shading) in [
+        (None, Shading::Flat),
+        (Some(Backend::Cpu), Shading::Flat),
+        (None, Shading::Smooth),
+    ] {
+        let subject = Subject::Mesh(MeshSubject {
+            shading,
+            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
+        });
+        let frame = Frame::new(subject, view, Size::W320);
+        renderer.set_backend(backend);
+        let expected = render::on_model(&frame).unwrap();
+        let stats = renderer
+            .show(&frame, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        let colour = renderer
+            .colour(frame.size, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert!(colour == expected.image.colour, "{backend:?} {shading}");
+        let depth = renderer
+            .depth(frame.size, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert!(depth == expected.image.depth, "{backend:?} {shading}");
+        let by_gateware = stats.backend.as_deref() == Some("gateware");
+        assert_eq!(by_gateware, backend.is_none() && shading == Shading::Flat);
+    }
+}
+
 /// Renders a mesh on the board from three positions of the camera, one of them inside the mesh, and compares the picture on the
 /// monitor, the depth buffer and the counts with the model's.
 fn the_monitor_shows_what_the_model_renders(name: &str) {

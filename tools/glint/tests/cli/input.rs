@@ -194,6 +194,14 @@ fn bad_names_and_numbers() {
             "error: --fov: expected 1 to 179 degrees, found '179.5'",
         ),
         (
+            &["render", "cube", "--out", "out.png", "--orthographic", "0"],
+            "error: --orthographic: expected a camera, found width 0: expected 0.0174 to 230",
+        ),
+        (
+            &["render", "cube", "--out", "out.png", "--look", "0,-2,0"],
+            "error: --look: expected a camera EX,EY,EZ,YAW,PITCH[,ROLL] such as 0,-3,1,0,20, found '0,-2,0'",
+        ),
+        (
             &[
                 "render",
                 "--out",

@@ -28,6 +28,7 @@ fn renders_and_their_files() {
         render("s.png", &["--view", "view.json", "--shading", "smooth"])
     );
     assert_eq!(picture, render("l.png", &["--look-at", "0,-2,0,0,5,0"]));
+    assert_eq!(picture, render("k.png", &["--look", "0,-2,0,0,0"]));
     let view = ["--view", "view.json"];
     assert_eq!(
         picture,
@@ -40,6 +41,11 @@ fn renders_and_their_files() {
     assert_ne!(
         picture,
         render("w.png", &[&view[..], &["--fov", "150"]].concat())
+    );
+    let orthographic = ["--orthographic", "1.8", "--depth", "orthographic.f32"];
+    assert_ne!(
+        picture,
+        render("p.png", &[&view[..], &orthographic].concat())
     );
     let object = [
         "--object",
@@ -60,6 +66,10 @@ fn renders_and_their_files() {
     assert!(number("pixels_tested") >= number("pixels_covered"));
     assert!(stats["cycles"].is_null() && stats["clock"].is_null());
 
+    // The teapot lies between 1.5 and 2.5 from the eye along n.
+    let parallel = depths(&folder.join("orthographic.f32"));
+    let covered = parallel.iter().filter(|z| z.is_finite());
+    assert!(covered.clone().count() > 5_000 && covered.clone().all(|z| (1.4..2.6).contains(z)));
     let depth = depths(&folder.join("a.f32"));
     assert_eq!(depth.len(), 320 * 180);
     for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
