@@ -4,14 +4,13 @@
 mod bench;
 mod fields;
 mod gathered;
+mod light;
 mod lines;
 
-use bench::{Bench, CLEAR, SIZES, expected, expected_lit, expected_on, expected_smooth};
+use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint::{convert, generate};
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q32_32, Turns};
-use glint_core::light::{Light, MeshLighting};
-use glint_model::Shading;
 use glint_vectors::meshes::{self, ahead, at};
 use glint_vectors::scenes::{inside, scenes};
 use rand::RngExt;
@@ -112,38 +111,6 @@ fn scenes_with_smooth_shading() {
                 "{name}: {} clocks for the geometry, {} for the raster, {} clipped, {} pixels",
                 clocks.geometry, clocks.raster, smooth.stats.clipped, smooth.stats.pixels_covered
             );
-        }
-    }
-}
-
-/// Draws frames in light from a direction or at the camera, with a colour, and with ambient light, flat and smooth in turn.
-#[test]
-fn scenes_in_any_light() {
-    let mut random = Pcg64Mcg::new(9);
-    let mut bench = Bench::smooth(6, 0.0);
-    for (name, mesh, view, cull) in scenes(generated) {
-        // Skips large meshes, which take long and test nothing more.
-        if mesh.len() > 1 << 20 {
-            continue;
-        }
-        for shading in Shading::ALL {
-            let mut colour = || [(); 3].map(|()| random.random());
-            let ambient = if shading == Shading::Smooth && !cull {
-                [0; 3]
-            } else {
-                colour()
-            };
-            let colour = colour();
-            let towards =
-                [(); 3].map(|()| Q32_32::from_bits(random.random_range(-1 << 32..1 << 32)));
-            let light = if random.random_bool(0.3) {
-                Light::at_camera(colour)
-            } else {
-                Light::new(towards, colour).expect("a direction")
-            };
-            let lighting = MeshLighting { ambient, light };
-            let expected = expected_lit(&lighting, shading, &mesh, &view, SIZES[0], cull);
-            bench.draw(&format!("{name} in {lighting:?}"), &mesh, &expected);
         }
     }
 }

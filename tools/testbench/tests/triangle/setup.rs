@@ -1,28 +1,23 @@
 //! Compares triangle setup, culling and shading with the model.
 
+mod frame;
+
 use glint_core::colour::Rgb565;
 use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::reciprocal::recip;
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
-use glint_model::{MeshLight, SIZES, ScreenVertex, Shading};
+use glint_model::{SIZES, ScreenVertex, Shading};
 use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls, exchange};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+
+use frame::{Frame, WHITE, frame};
 
 /// Largest coordinate within the guard band, s12.8.
 const GUARD: i32 = 2047 << 8;
 /// Largest depth w, u18.6.
 const NEAREST: u32 = ((1 << 18) - 1) << 6;
-
-/// Frame constants: the picture's size, culling of back faces, the light, and the shading.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    size: (u32, u32),
-    cull: bool,
-    light: MeshLight,
-    shading: Shading,
-}
 
 #[derive(Clone, Copy, Debug)]
 struct Input {
@@ -275,39 +270,6 @@ fn light(random: &mut Pcg64Mcg) -> Light {
     let dark = Lit::default();
     let [front, back] = [[lit, dark], [dark, lit]][random.random_range(0..2)];
     Light { front, back }
-}
-
-/// A light in the direction opposite to z; white and without ambient light.
-const WHITE: MeshLight = MeshLight {
-    row: [0, 0, 1 << 23],
-    forward: [0, 0, 1 << 23],
-    colour: MeshLight::PLAIN.0,
-    ambient: MeshLight::PLAIN.1,
-};
-
-fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
-    let row = [0; 3].map(|_| match random.random_range(0..8) {
-        0 => -1 << 24,
-        1 => (1 << 24) - 1,
-        2 => 0,
-        _ => random.random_range(-1 << 23..=1 << 23),
-    });
-    Frame {
-        size: SIZES[round % 3],
-        cull: round.is_multiple_of(2),
-        light: if round % 4 < 2 {
-            MeshLight { row, ..WHITE }
-        } else {
-            let mut part = || [0, 256, random.random_range(0..=256)][random.random_range(0..3)];
-            MeshLight {
-                row,
-                colour: [(); 3].map(|()| part()),
-                ambient: [(); 3].map(|()| part()),
-                ..WHITE
-            }
-        },
-        shading: Shading::Flat,
-    }
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Test bench of the triangle engine, with a memory, and the expected frames.
 
 use glint_core::camera::{Projection, View};
-use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
@@ -68,27 +67,8 @@ pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -
     expected_with(options, mesh, view, size)
 }
 
-/// Draws a frame with the model in the given lighting, with `shading`. Engine and model have the same pictures if back faces are culled,
-/// the shading is flat or there is no ambient light.
-pub fn expected_lit(
-    lighting: &MeshLighting,
-    shading: Shading,
-    mesh: &[u8],
-    view: &View,
-    size: (u32, u32),
-    cull: bool,
-) -> Expected {
-    let options = Options {
-        cull,
-        clear: CLEAR,
-        shading,
-        light: Some(Box::leak(Box::new(MeshLight::new(lighting, view)))),
-        ..Options::default()
-    };
-    expected_with(options, mesh, view, size)
-}
-
-fn expected_with(
+/// Draws a frame with the model, with any options.
+pub fn expected_with(
     options: Options<'static>,
     mesh: &[u8],
     view: &View,
