@@ -255,8 +255,9 @@ impl GatewareRenderer {
         self.watchdog.reset();
         self.start = Start {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
-            cycles: cpu::cycles(),
             engine: self.engine.counters(),
+            // Comes last, because the reading of the counters is no part of the frame.
+            cycles: cpu::cycles(),
         };
     }
 
