@@ -13,9 +13,10 @@ use glint_core::wireframe::ProgramError;
 use glint_model::RenderError;
 
 use crate::gateware::Fallback;
-use crate::models::{CUBE, FIELDS, MAX_MESHES, NameError, RemoveError};
+use crate::models::{FIELDS, MAX_MESHES, NameError, RemoveError, SIMPLEGPU};
 use crate::objects::{OBJECTS, ObjectError};
 use crate::sensor::{CalibrationError, SensorError};
+use crate::shapes::Shapes;
 use crate::wireframe::WIREFRAME;
 
 /// Reason why a command failed. `Display` is the text after `error: `.
@@ -37,8 +38,6 @@ pub enum CommandError<'l> {
     ObjectMesh(&'l str),
     /// The list of objects cannot be changed.
     Object(ObjectError),
-    /// No objects were added.
-    NoObjects,
     /// The SoC has no triangle engine.
     NoEngine,
     /// `stereo` was requested while a mesh in a field is shown, which is drawn for one eye only.
@@ -121,7 +120,9 @@ impl Display for CommandError<'_> {
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
                 let fields = FIELDS.iter().map(|(name, _)| *name);
-                let mut names = [CUBE].into_iter().chain(fields).chain([OBJECTS, WIREFRAME]);
+                let mut names = Shapes::names()
+                    .chain(fields)
+                    .chain([OBJECTS, SIMPLEGPU, WIREFRAME]);
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
             }
@@ -136,9 +137,6 @@ impl Display for CommandError<'_> {
                 )
             }
             Self::Object(error) => error.fmt(f),
-            Self::NoObjects => {
-                f.write_str("scene objects: no objects, expected `object add MESH` first")
-            }
             Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
             Self::StereoOfMesh => f.write_str(
                 "stereo: not available for a mesh in a field, expected `mesh off` first",

@@ -8,7 +8,7 @@
 //! commands (scene, object, appearance, camera, imu, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
-//! machine (state) ─┬─ renderer, gateware, scene, models, objects, arena, memory
+//! machine (state) ─┬─ renderer, gateware, scene, models, objects, shapes, arena, memory
 //!                  ├─ terminal, transfer
 //!                  ├─ sensor, replay
 //!                  └─ interrupts
@@ -46,6 +46,7 @@ mod scene;
 mod selftest;
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 mod sensor;
+mod shapes;
 #[allow(unsafe_code)] // Uses the UART before it has an owner.
 mod start;
 mod terminal;

@@ -7,20 +7,22 @@ use glint_core::fixed::Q32_32;
 use glint_core::mesh::{MAX_NAME, Mesh, MeshError};
 use glint_core::object::Place;
 use glint_core::regions::Region;
+use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
 use heapless::{String, Vec};
 
 use crate::arena::Arena;
-use crate::cube;
 use crate::objects::{OBJECTS, ObjectError, Objects};
+use crate::shapes::{CUBE, Shapes};
 use crate::wireframe::WIREFRAME;
 
-/// Name of the built-in mesh, which is shown until a mesh is uploaded. A mesh that is uploaded under this name takes its place.
-pub const CUBE: &str = "cube";
 /// Name of a mesh that is uploaded without a name.
 pub const MODEL: &str = "model";
 /// Largest number of uploaded meshes.
 pub const MAX_MESHES: usize = 16;
+
+/// Name of the scene of SimpleGPU.
+pub const SIMPLEGPU: &str = "simplegpu";
 
 /// Fields that the command `scene` shows, with their names.
 pub const FIELDS: [(&str, Field); 2] = [
@@ -65,7 +67,8 @@ pub enum RemoveError {
     Object(u32),
 }
 
-/// The built-in mesh and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes.
+/// The built-in meshes and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes. An
+/// uploaded mesh takes the place of a built-in one with its name.
 pub struct Models {
     arena: Arena,
     /// The uploaded meshes and their memory.
@@ -74,25 +77,30 @@ pub struct Models {
     program: Option<(Program<'static>, Region)>,
     /// The shown mesh.
     shown: Named,
-    cube: Mesh<'static>,
+    shapes: Shapes,
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
 }
 
 impl Models {
-    /// The models at start: the cube is shown. `cube_program` is the built-in wireframe program.
+    /// The models at start: the cube is shown. `shapes` is memory for the built-in meshes, and `cube_program` the built-in wireframe
+    /// program.
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
-    pub fn new(arena: Arena, cube_program: Program<'static>) -> Result<Self, MeshError> {
-        let cube = Mesh::new_checked(&cube::BYTES)?;
+    pub fn new(
+        arena: Arena,
+        shapes: &'static mut [u8],
+        cube_program: Program<'static>,
+    ) -> Result<Self, MeshError> {
+        let shapes = Shapes::new(shapes)?;
         Ok(Self {
             arena,
             meshes: Vec::new(),
             program: None,
-            shown: named(CUBE, cube),
-            cube,
+            shown: named(CUBE, shapes.cube()),
+            shapes,
             cube_program,
             objects: Objects::default(),
         })
@@ -119,21 +127,15 @@ impl Models {
         self.program.as_ref().map(|(program, _)| program)
     }
 
-    /// Names and meshes: the built-in one, and then the uploaded ones.
-    pub fn meshes(&self) -> impl Iterator<Item = (&str, &Mesh<'_>)> {
-        let uploaded = self.meshes.iter();
-        let uploaded = uploaded.map(|(named, _)| (named.name.as_str(), &named.mesh));
-        let cube = (CUBE, &self.cube);
-        let built_in = uploaded
-            .clone()
-            .all(|(name, _)| name != CUBE)
-            .then_some(cube);
-        built_in.into_iter().chain(uploaded)
+    /// Names and meshes of the uploads.
+    pub fn uploads(&self) -> impl Iterator<Item = (&str, &Mesh<'_>)> + Clone {
+        let uploads = self.meshes.iter();
+        uploads.map(|(named, _)| (named.name.as_str(), &named.mesh))
     }
 
-    /// Number of uploaded meshes.
-    pub fn upload_count(&self) -> usize {
-        self.meshes.len()
+    /// Names of the built-in meshes that no upload has taken the place of.
+    pub fn built_in(&self) -> impl Iterator<Item = &'static str> {
+        Shapes::names().filter(move |built_in| self.uploads().all(|(name, _)| name != *built_in))
     }
 
     /// Number of bytes without an upload.
@@ -147,6 +149,13 @@ impl Models {
         let is_other = self.shown.name != name;
         self.shown = named(name, mesh);
         Some(is_other)
+    }
+
+    /// Shows a built-in mesh.
+    pub fn show_shape(&mut self, shape: Shape) {
+        if let Some(mesh) = self.shapes.shape(shape) {
+            self.shown = named(shape.name(), mesh);
+        }
     }
 
     /// The objects.
@@ -165,10 +174,26 @@ impl Models {
         Some(self.objects.add(&named(name, mesh).name, mesh, place))
     }
 
-    fn find(&self, name: &str) -> Option<Mesh<'static>> {
+    /// Adds an object with a built-in mesh.
+    ///
+    /// # Errors
+    /// The list is full.
+    pub fn add_shape(&mut self, shape: Shape, place: &Place) -> Result<(), ObjectError> {
+        match self.shapes.shape(shape) {
+            Some(mesh) => {
+                let named = named(shape.name(), mesh);
+                self.objects.add(&named.name, mesh, place)
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn find(&mut self, name: &str) -> Option<Mesh<'static>> {
         let uploaded = self.meshes.iter().find(|(named, _)| named.name == name);
-        let built_in = (name == CUBE).then_some(self.cube);
-        uploaded.map(|(named, _)| named.mesh).or(built_in)
+        match uploaded {
+            Some((named, _)) => Some(named.mesh),
+            None => self.shapes.named(name),
+        }
     }
 
     /// The staging memory for the next upload, which is separate from all uploads.
@@ -182,7 +207,7 @@ impl Models {
     /// The reason why not.
     pub fn check_name(&self, name: &str) -> Result<(), NameError> {
         let mut fields = FIELDS.iter().map(|(name, _)| *name);
-        if [OBJECTS, WIREFRAME].contains(&name) || fields.any(|field| field == name) {
+        if [OBJECTS, SIMPLEGPU, WIREFRAME].contains(&name) || fields.any(|field| field == name) {
             return Err(NameError::BuiltIn);
         }
         let is_new = self.meshes.iter().all(|(named, _)| named.name != name);
@@ -267,7 +292,7 @@ impl Models {
         }
         let (_, region) = self.meshes.remove(position);
         if self.shown.name == name {
-            self.shown = named(CUBE, self.cube);
+            self.shown = named(CUBE, self.shapes.cube());
         }
         self.arena.release(region);
         self.close_gaps();
@@ -276,7 +301,7 @@ impl Models {
 
     /// Moves all uploads together, so that one gap remains.
     fn close_gaps(&mut self) {
-        let (shown, cube) = (self.shown.name.clone(), self.cube);
+        let (shown, cube) = (self.shown.name.clone(), self.shapes.cube());
         // Nothing may borrow from the arena while it moves its regions.
         let lengths: Vec<usize, MAX_MESHES> = self
             .meshes
@@ -287,7 +312,11 @@ impl Models {
                 length
             })
             .collect();
-        self.objects.replace_all(|_| Some(cube));
+        let meshes = &self.meshes;
+        self.objects.replace_all(|name| {
+            let moves = meshes.iter().any(|(named, _)| named.name == name);
+            moves.then_some(cube)
+        });
         self.shown = named(CUBE, cube);
         let program = self.program.take();
         let program = program.map(|(program, region)| (program.bytes().len(), region));

@@ -10,6 +10,7 @@ use glint_core::picture::{Backend, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
 use glint_hal::triangle::Counters;
+use glint_model::scenes::Settings;
 use glint_model::{
     Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject, WireframeSubject,
 };
@@ -251,6 +252,19 @@ impl Scene {
     pub fn set_prepass(&mut self, prepass: bool) {
         self.changed |= self.field.is_some() && self.prepass != prepass;
         self.prepass = prepass;
+    }
+
+    /// Sets camera, light and options of a built-in scene.
+    pub fn set_all(&mut self, settings: &Settings) {
+        self.set_view(settings.view);
+        self.set_cull(settings.cull);
+        self.set_shading(settings.shading);
+        self.set_clip(settings.clip);
+        self.set_winding(settings.winding);
+        let mut appearance = self.appearance.clone();
+        appearance.lights = [settings.lighting.light].into_iter().collect();
+        appearance.ambient = Some(settings.lighting.ambient);
+        self.set_appearance(appearance);
     }
 
     /// The camera.

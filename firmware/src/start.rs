@@ -5,7 +5,7 @@ use core::fmt::{self, Write as _};
 use glint_core::camera::ViewError;
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
-use glint_core::wireframe::{Program, ProgramError};
+use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_hal::frequency::{Frequency, NotAFrequency};
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
@@ -23,7 +23,6 @@ use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
-use crate::wireframe;
 
 /// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
 #[unsafe(no_mangle)]
@@ -150,14 +149,14 @@ pub fn machine() -> Result<Machine, StartError> {
         Backend::Cpu
     };
 
-    let program = Program::new_checked(wireframe::PROGRAM.as_flattened());
+    let program = Program::new_checked(CUBE.as_flattened());
     let program = program.map_err(StartError::Program)?;
 
     Ok(Machine::new(
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
-        Models::new(memory.uploads, program).map_err(StartError::Cube)?,
+        Models::new(memory.uploads, memory.shapes, program).map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

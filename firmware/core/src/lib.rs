@@ -32,6 +32,7 @@ pub mod orientation;
 pub mod picture;
 pub mod polar;
 pub mod regions;
+pub mod shape;
 pub mod stereo;
 pub mod trig;
 pub mod vector;

@@ -23,9 +23,9 @@ pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 pub const MAX_RADIUS: u32 = 56_756;
 
 /// Bytes of a record: a chunk's header, a vertex or a triangle. The mesh's header is as long as two records.
-const RECORD: usize = 16;
+pub(crate) const RECORD: usize = 16;
 /// Bytes of the mesh's header.
-const HEADER: usize = 2 * RECORD;
+pub(crate) const HEADER: usize = 2 * RECORD;
 
 /// Whether a text may be the name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
 pub fn is_name(text: &str) -> bool {

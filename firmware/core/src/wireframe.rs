@@ -6,6 +6,7 @@
 //! original design, which rounds the end points in place and therefore drifts. [`Projection`] maps a moved segment to the screen.
 
 pub mod accumulate;
+mod cube;
 mod edges;
 mod error;
 mod format;
@@ -16,6 +17,7 @@ mod program;
 mod projection;
 pub mod text;
 
+pub use cube::CUBE;
 pub use edges::unique_edges;
 pub use error::{Expected, Found, Place, ProgramError, Violation};
 pub use format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};

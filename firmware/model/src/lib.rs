@@ -19,6 +19,7 @@ mod frame_buffer;
 pub mod line;
 pub mod mesh_in_field;
 pub mod raymarch;
+pub mod scenes;
 pub mod triangle;
 pub mod wireframe;
 

@@ -39,7 +39,7 @@ impl<'l> AppearanceCommands<'l> for Machine {
                 if appearance.lights.is_empty() && !self.scene.shows_field() {
                     lights.clear();
                     // The list has room for one light.
-                    drop(lights.push(appearance.mesh_lighting().light));
+                    let _ = lights.push(appearance.mesh_lighting().light);
                 }
                 if lights.is_empty() {
                     self.terminal.print_entry("light", &"none");

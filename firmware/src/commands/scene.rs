@@ -6,13 +6,14 @@ use glint_core::field::Field;
 use glint_core::stereo::Stereo;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
+use glint_model::scenes::{self, Settings};
 
 use super::upload;
 use crate::error::CommandError;
 use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::{FIELDS, MAX_MESHES, MODEL};
+use crate::models::{FIELDS, MAX_MESHES, MODEL, SIMPLEGPU};
 use crate::objects::OBJECTS;
 use crate::wireframe::WIREFRAME;
 
@@ -41,7 +42,12 @@ impl<'l> SceneCommands<'l> for Machine {
         let Self {
             terminal, models, ..
         } = self;
-        for (name, mesh) in models.meshes() {
+        terminal.print(format_args!("built-in"));
+        for name in models.built_in() {
+            terminal.print(format_args!(" {name}"));
+        }
+        terminal.print(format_args!("\n"));
+        for (name, mesh) in models.uploads() {
             let (vertices, triangles, bytes) = (
                 mesh.vertex_count(),
                 mesh.triangle_count(),
@@ -55,7 +61,7 @@ impl<'l> SceneCommands<'l> for Machine {
             let (segments, bytes) = (program.segment_count(), program.bytes().len());
             terminal.print(format_args!("program segments {segments} bytes {bytes}\n"));
         }
-        let (count, free) = (models.upload_count(), models.free());
+        let (count, free) = (models.uploads().count(), models.free());
         terminal.print(format_args!(
             "uploads {count} of {MAX_MESHES}\nfree {free} bytes\n"
         ));
@@ -136,22 +142,22 @@ fn list(machine: &mut Machine) {
     let (wireframe, objects) = (scene.shows_wireframe(), scene.shows_objects());
     let instead = wireframe || objects;
     let field = scene.field();
-    for (name, _) in models.meshes() {
+    let mut print = |name: &str| {
         let shown = !instead && (field.is_none() || scene.with_mesh()) && name == models.shown();
         let state = if shown { "shown" } else { "there" };
         terminal.print(format_args!("scene {name} {state}\n"));
-    }
+    };
+    models.built_in().for_each(&mut print);
+    models.uploads().for_each(|(name, _)| print(name));
     for (name, named) in FIELDS {
         let shown = !instead && field == Some(&named);
         let state = if shown { "shown" } else { "there" };
         terminal.print(format_args!("scene {name} {state}\n"));
     }
-    let state = match (objects, models.objects().all()) {
-        (true, _) => "shown",
-        (false, []) => "empty",
-        (false, _) => "there",
-    };
-    terminal.print(format_args!("scene {OBJECTS} {state}\n"));
+    let state = if objects { "shown" } else { "there" };
+    terminal.print(format_args!(
+        "scene {OBJECTS} {state}\nscene {SIMPLEGPU} there\n"
+    ));
     let state = if wireframe { "shown" } else { "there" };
     terminal.print(format_args!("scene {WIREFRAME} {state}\n"));
 }
@@ -164,9 +170,22 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>
     }
     if name == OBJECTS {
         if models.objects().all().is_empty() {
-            return Err(CommandError::NoObjects);
+            let settings = Settings::objects().map_err(CommandError::View)?;
+            for (shape, place) in scenes::objects() {
+                let added = models.add_shape(shape, &place);
+                added.map_err(CommandError::Object)?;
+            }
+            scene.set_all(&settings);
         }
         scene.show_objects();
+        return Ok(());
+    }
+    if name == SIMPLEGPU {
+        let settings = Settings::simplegpu().map_err(CommandError::View)?;
+        models.show_shape(scenes::SIMPLEGPU);
+        scene.set_all(&settings);
+        scene.set_field(None);
+        scene.touch();
         return Ok(());
     }
     if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {

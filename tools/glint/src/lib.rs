@@ -6,7 +6,7 @@
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
 //! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
-//! | [`render`] | renders a frame by the model or by a board |
+//! | [`render`], [`scene`] | renders a frame by the model or by a board; the built-in scenes |
 //! | [`board`] | boards: serial port, or simulation |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
@@ -31,6 +31,7 @@ pub mod object;
 pub mod picture;
 pub mod polygons;
 pub mod render;
+pub mod scene;
 pub mod transfer;
 pub mod triangulate;
 pub mod view;

@@ -251,7 +251,7 @@ impl DemoArguments {
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
             // The camera's distance, azimuth and polar angle in this frame.
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
-            let stats = renderer.render_after(&format!("camera {}", place.join(" ")))?;
+            let stats = renderer.render_after(&[&format!("camera {}", place.join(" "))])?;
             let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
             let frame = Frame::new(Subject::Field(subject), view, SIZE);
             let image = Image {

@@ -17,6 +17,7 @@ use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
     Renderer, Route, Stats, Subject, Wireframe, draw_edges, edges,
 };
+use glint::scene::Scene;
 use glint::transfer::Progress;
 use glint::view;
 use glint_core::camera::View;
@@ -35,8 +36,12 @@ const VIRTUAL: ModelOrBoard = ModelOrBoard::Board(BoardName::Virtual);
 #[derive(Args)]
 pub struct RenderArguments {
     /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
-    #[arg(required_unless_present_any = ["field", "object"])]
+    #[arg(required_unless_present_any = ["field", "object", "scene"])]
     model: Option<String>,
+    /// A built-in scene: `objects` (the 3D accelerator: five objects with Gouraud shading), `simplegpu` (six polygons, clipped, with a
+    /// field of view of 150 degrees) or `wireframe` (the wireframe simulator's cube). It has a camera of its own.
+    #[arg(long, value_parser = named(Scene::ALL, Scene::name), conflicts_with_all = ["model", "field", "object"])]
+    scene: Option<Scene>,
     /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
     /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with = "field")]
@@ -156,8 +161,14 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let view = self.camera()?;
         let size = size(&self.size)?;
+        if let Some(scene) = self.scene {
+            let has_camera = self.camera.is_some() || self.look_at.is_some() || self.view.is_some();
+            let view = has_camera.then(|| self.camera()).transpose()?;
+            let drawn = scene.draw(view, size, |frame| self.write(frame));
+            return drawn.map_err(|error| anyhow::anyhow!(error))?;
+        }
+        let view = self.camera()?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
@@ -199,15 +210,21 @@ impl RenderArguments {
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
             (Some(mesh), None) => Subject::Mesh(mesh),
             (None, Some(field)) => Subject::Field(field),
-            (None, None) => anyhow::bail!("expected a model, a --field or both, found neither"),
+            (None, None) => {
+                anyhow::bail!("expected a model, a --field, an --object or a --scene, found none")
+            }
         };
-        let frame = Frame {
+        self.write(&Frame {
             lighting: appearance.mesh_lighting(),
             ..Frame::new(subject, view, size)
-        };
-        let Rendered { mut image, stats } = self.render(&frame)?;
+        })
+    }
+
+    /// Renders a frame, and writes pictures and statistics.
+    fn write(&self, frame: &Frame) -> anyhow::Result<()> {
+        let Rendered { mut image, stats } = self.render(frame)?;
         if let Some(wireframe) = self.wireframe {
-            draw_wireframe(wireframe, &frame, &mut image)?;
+            draw_wireframe(wireframe, frame, &mut image)?;
         }
         write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.depth {
@@ -228,7 +245,7 @@ impl RenderArguments {
                 model: self.model.as_deref(),
                 field: self.field.name(),
                 board: self.board.to_string(),
-                size: size.pixels(),
+                size: frame.size.pixels(),
                 stats: &totals,
             };
             return print_json(&outcome);
@@ -357,6 +374,7 @@ impl RenderArguments {
     ) -> anyhow::Result<Rendered> {
         let mut renderer = BoardRenderer::new(Console::new(board))
             .with_backend(self.backend)
+            .with_scene(self.scene)
             .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
         let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;

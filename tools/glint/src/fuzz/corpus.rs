@@ -169,6 +169,7 @@ const WIREFRAMES: &[&str] = &[
 
 const CONSOLE: &[&str] = &[
     "help\rhelp camera\rinfo\rscene\rscene cube\rscene model\r",
+    "object add cube scale 0.5 rotate z 30 move 1,0,-2 colour ff8000\robject list\robject move 1 0,0,1\robject remove all\rmodels\r",
     "camera 2.5 30 60\rcamera 5 -720.125 179.99999\rorbit 12\rorbit\r",
     "view\rview 0 -3 0 1 0 0 0 0 -1 0 1 0 0.9 0.1\r",
     "field\rfield menger:4\rfield cubes:2,0.5\rfield off\rstereo\rstereo 0.05,3\rstereo 0.05,3,red-cyan\rstereo off\rprepass on\r",

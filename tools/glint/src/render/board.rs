@@ -8,6 +8,7 @@ use super::stats::{Stats, stats_of};
 use crate::board::Board;
 use crate::console::{self, Console};
 use crate::picture::Image;
+use crate::scene::Scene;
 use crate::transfer::{self, Progress, Route};
 use crate::wireframe::Action;
 use glint_core::camera::View;
@@ -23,6 +24,8 @@ pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
+    /// The built-in scene that is shown in place of the subjects of frames.
+    scene: Option<Scene>,
 }
 
 impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
@@ -33,6 +36,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             uploads: 0,
             backend: None,
             route: Route::Serial,
+            scene: None,
         }
     }
 
@@ -41,6 +45,12 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
         let backend = backend.into();
         Self { backend, ..self }
+    }
+
+    /// Shows a built-in scene of the board in place of the subjects of frames, which are not uploaded; `None` uploads them.
+    #[must_use]
+    pub fn with_scene(self, scene: Option<Scene>) -> Self {
+        Self { scene, ..self }
     }
 
     /// Sets the route by which [`render`](Renderer::render) transfers meshes and pictures. The default is the serial line.
@@ -80,6 +90,12 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
         // The board draws a frame after every change, so the mesh or field, which takes the longest to draw, is set last.
         self.console.command(&size_command(frame.size))?;
+        if let Some(scene) = self.scene {
+            // Without objects, the board makes those of the scene.
+            self.console.command("object remove all")?;
+            let scene = format!("scene {}", scene.name());
+            return self.render_after(&[&scene, &view_command(&frame.view)]);
+        }
         self.console.command(&view_command(&frame.view))?;
         let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
         if has_meshes && frame.subject.field_part().is_none() {
@@ -281,15 +297,17 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(stats_of(&lines)?)
     }
 
-    /// Sends a command that changes the scene, draws one frame, and reads its statistics.
+    /// Sends commands that change the scene, draws one frame, and reads its statistics.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
-    pub fn render_after(&mut self, command: &str) -> Result<Stats, Error> {
+    pub fn render_after(&mut self, commands: &[&str]) -> Result<Stats, Error> {
         // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
-        let text = format!("{command}\rrender\r");
+        let text = format!("{}\rrender\r", commands.join("\r"));
         self.console.board().write(text.as_bytes())?;
-        self.console.reply(command)?;
+        for command in commands {
+            self.console.reply(command)?;
+        }
         let lines = self.console.reply("render")?;
         Ok(stats_of(&lines)?)
     }

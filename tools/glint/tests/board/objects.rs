@@ -5,6 +5,7 @@ use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
 use glint::object::Description;
 use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
+use glint::scene::Scene;
 use glint::{transfer, view};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -78,7 +79,7 @@ fn meshes_have_names_and_share_the_memory() {
     let free = |bytes: usize| format!("free {} bytes", (64 << 20) - bytes);
     let list = |console: &mut Console<SimulatedBoard>| console.command("models").unwrap();
     let all = [
-        "mesh cube vertices 8 triangles 12 bytes 368".to_owned(),
+        "built-in cube sphere torus cylinder polygons".to_owned(),
         format!("mesh a vertices 24 triangles 12 bytes {}", a.len()),
         format!("mesh b vertices 12 triangles 20 bytes {}", b.len()),
         format!("mesh c vertices 42 triangles 80 bytes {}", c.len()),
@@ -114,4 +115,33 @@ fn meshes_have_names_and_share_the_memory() {
     console.command("scene objects").unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     assert_eq!(list(&mut console).last(), Some(&free(b.len())));
+}
+
+/// The built-in scenes of the firmware are those of the host, and are drawn as the model draws them.
+#[test]
+fn scenes_are_the_models() {
+    let mut board = running_board();
+    for scene in Scene::ALL {
+        let mut renderer = renderer(&mut board)
+            .with_route(Route::Memory)
+            .with_scene(Some(scene));
+        let parts = Parts {
+            colour: true,
+            depth: scene != Scene::Wireframe,
+        };
+        let [found, expected] = scene
+            .draw(None, Size::W320, |frame| {
+                let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
+                [rendered, render::on_model(frame).unwrap()]
+            })
+            .unwrap();
+        assert!(found.image.colour == expected.image.colour, "{scene:?}");
+        if parts.depth {
+            assert!(found.image.depth == expected.image.depth, "{scene:?}");
+            let counts = [&found, &expected].map(|rendered| rendered.stats.triangles());
+            let [found, expected] =
+                counts.map(|counts| (counts.triangles_in, counts.triangles_drawn));
+            assert_eq!(found, expected, "{scene:?}");
+        }
+    }
 }

@@ -1,0 +1,64 @@
+//! The built-in meshes: the cube, and shapes that are made when they are first used.
+
+use core::mem;
+
+use glint_core::mesh::{Mesh, MeshError};
+use glint_core::shape::{MAX_BYTES, Shape};
+
+use crate::cube;
+
+/// Name of the mesh that is shown at start.
+pub const CUBE: &str = "cube";
+
+/// The built-in meshes, and memory for those that have not been made.
+pub struct Shapes {
+    cube: Mesh<'static>,
+    shapes: [Option<Mesh<'static>>; Shape::ALL.len()],
+    memory: &'static mut [u8],
+}
+
+impl Shapes {
+    /// The built-in meshes, with `memory` for the shapes, aligned to 16 bytes.
+    ///
+    /// # Errors
+    /// [`MeshError`] for a damaged cube.
+    pub fn new(memory: &'static mut [u8]) -> Result<Self, MeshError> {
+        Ok(Self {
+            cube: Mesh::new_checked(&cube::BYTES)?,
+            shapes: [None; Shape::ALL.len()],
+            memory,
+        })
+    }
+
+    /// The cube.
+    pub const fn cube(&self) -> Mesh<'static> {
+        self.cube
+    }
+
+    /// Names of all built-in meshes.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        [CUBE].into_iter().chain(Shape::NAMES)
+    }
+
+    /// The built-in mesh with this name.
+    pub fn named(&mut self, name: &str) -> Option<Mesh<'static>> {
+        if name == CUBE {
+            return Some(self.cube);
+        }
+        let shape = Shape::ALL.into_iter().find(|shape| shape.name() == name)?;
+        self.shape(shape)
+    }
+
+    /// A shape; `None` if there is no memory for it, which the windows of main memory exclude.
+    pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
+        let place = self.shapes.get_mut(shape as usize)?;
+        if place.is_none() {
+            let memory = mem::take(&mut self.memory);
+            let (bytes, rest) = memory.split_at_mut_checked(MAX_BYTES)?;
+            self.memory = rest;
+            let length = shape.write(bytes)?;
+            *place = Mesh::new_checked(bytes.get(..length)?).ok();
+        }
+        *place
+    }
+}
