@@ -6,7 +6,12 @@ use crate::firmware::{LIMIT, PROMPT, command, image, started};
 use litex_pac::triangle::Counters;
 
 /// Keys of output lines whose values depend on time.
-const TIMES: [&str; 3] = ["cycles ", "video_frames ", "uptime_ms "];
+const TIMES: [&str; 4] = [
+    "cycles ",
+    "cycles_soft_core ",
+    "video_frames ",
+    "uptime_ms ",
+];
 
 /// Console names of counters of the triangle engine whose values do not depend on time.
 const COUNTS: [&str; 4] = ["vertices", "cycles_walking", "cycles_empty", "groups"];
