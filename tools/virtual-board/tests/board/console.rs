@@ -49,7 +49,7 @@ fn lasting(text: &str, clock_hz: u32) -> String {
     let counters = counters();
     let depends_on_time = |line: &&str| {
         let key = line.split(' ').next().unwrap_or_default();
-        key == "cycles_soft_core" || counters.contains(&key) && !COUNTS.contains(&key)
+        counters.contains(&key) && !COUNTS.contains(&key)
     };
     let lines = text.split('\n').filter(|line| !depends_on_time(line));
     lines.map(line).collect::<Vec<_>>().join("\n")
