@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! renderer ── repeat (benchmark loops)
+//!    ├── geometry (passes of the meshes, clipping)
 //!    ├── lines (wireframes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
@@ -10,6 +11,8 @@
 
 mod buffers;
 mod fallback;
+#[allow(unsafe_code)] // Memory that the geometry passes read and write.
+mod geometry;
 mod lines;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod renderer;
@@ -17,4 +20,5 @@ mod repeat;
 mod watchdog;
 
 pub use fallback::Fallback;
+pub use geometry::Cpu;
 pub use renderer::{GatewareRenderer, Output, Rendered};

@@ -5,7 +5,7 @@ use glint_hal::scanout::Display;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
 use litex_pac::cpu;
 
-use crate::gateware::{self, Fallback, GatewareRenderer, Output};
+use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output};
 use crate::memory::Scratch;
 use crate::models::Models;
 use crate::scene::{Drawn, RenderedBy, Scene};
@@ -30,14 +30,15 @@ impl Renderer {
         &mut self,
         models: &Models,
         scene: &Scene,
-        progress: impl FnMut(),
+        mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
         let frame = scene.frame(models);
-        let drawn = match self.draw_by_gateware(&frame, scene)? {
+        let drawn = match self.draw_by_gateware(&frame, scene, &mut progress)? {
             Ok(gateware::Rendered {
                 cycles,
                 stats,
                 counters,
+                ..
             }) => Ok(Drawn {
                 cycles,
                 stats,
@@ -85,6 +86,7 @@ impl Renderer {
         &mut self,
         frame: &Frame,
         scene: &Scene,
+        progress: &mut dyn FnMut(),
     ) -> Option<Result<gateware::Rendered, Option<Fallback>>> {
         let colour = self.display.back()?;
         let Some(gateware) = &mut self.gateware else {
@@ -95,7 +97,12 @@ impl Renderer {
         }
         let depth = scene.wants_depth().then_some(&mut *self.depth);
         let mut output = Output { colour, depth };
-        Some(gateware.advance(frame, &mut output)?.map_err(Some))
+        let mut cpu = Cpu {
+            scratch: &mut self.scratch,
+            progress,
+        };
+        let advanced = gateware.advance(frame, &mut output, &mut cpu)?;
+        Some(advanced.map_err(Some))
     }
 
     fn draw_by_cpu(
@@ -141,7 +148,12 @@ impl Renderer {
             colour,
             depth: None,
         };
-        Some(gateware.repeat(&scene.frame(models), &mut output, count))
+        let mut cpu = Cpu {
+            scratch: &mut self.scratch,
+            progress: &mut || {},
+        };
+        let frame = scene.frame(models);
+        Some(gateware.repeat(&frame, &mut output, &mut cpu, count))
     }
 
     /// Colours of the last frame: RGB565, row by row.

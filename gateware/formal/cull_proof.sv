@@ -10,6 +10,7 @@ module cull_proof (
     input wire  [10:0]      width,
     input wire  [9:0]       height,
     input wire              cull_back,
+    input wire              mirror,
     input wire              in_valid,
     input wire  [2:0][65:0] in_vertices,
     input wire  [15:0]      in_colour,
@@ -23,7 +24,7 @@ module cull_proof (
     setup_pkg::oriented_t out_triangle;
 
     cull #(.PLACES(8)) dut (
-        .clk, .rst, .width, .height, .cull_back, .busy, .culled,
+        .clk, .rst, .width, .height, .cull_back, .mirror, .busy, .culled,
         .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal, .out_valid, .out_ready, .out_triangle
     );
 

@@ -11,6 +11,7 @@ module cull #(
     input  wire  [10:0]      width,
     input  wire  [9:0]       height,
     input  wire              cull_back,
+    input  wire              mirror,
     output logic             busy,
     output logic             culled,
     input  wire              in_valid,

@@ -31,7 +31,8 @@ module setup_proof #(
     assign number = in_culled ? '1 : kept;
 
     setup #(.LAST(4'd2)) dut (
-        .clk, .rst, .width(11'd320), .height(10'd180), .cull_back(1'b1), .row_light('0), .light_colour('0), .ambient('0), .busy, .culled, .drawn,
+        .clk, .rst, .width(11'd320), .height(10'd180), .cull_back(1'b1), .mirror(1'b0), .row_light('0),
+        .light_colour('0), .ambient('0), .busy, .culled, .drawn,
         .in_valid, .in_ready, .in_vertices('0), .in_colour({in_culled, 11'd0, number}), .in_normal('0),
         .out_valid, .out_ready, .out_descriptor(descriptor)
     );

@@ -96,11 +96,16 @@ class TriangleEngine(LiteXModule):
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
+            CSRField("append", offset=5, description="Continue the descriptors, lists and exceptions of the pass before in place of "
+                     "empty ones. `size`, `geometry_descriptors`, `geometry_lists`, `list_shift` and `exceptions` must be as in that "
+                     "pass. No effect in the first pass after a reset or after `cancel`."),
+            CSRField("mirror", offset=6, description="The mesh is mirrored: front faces are clockwise on the screen."),
+            CSRField("recolour", offset=7, description="Use `colour` in place of the colours of the mesh."),
             CSRField("lines", offset=8, description="Draw lines: `mesh` has segments in place of triangles."),
             CSRField("orthographic", offset=9, description="Orthographic projection, in which X and Y are not divided and depth codes "
                      "are linear. Light between vertices is not: `smooth` must be 0."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
-            "and those from `light_0` on, must hold while it runs.")
+            "and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied.")
         address = "Byte address, a multiple of 16, of"
         self._mesh = Parameter(32, name="mesh", description=f"{address} the mesh's first chunk.")
         self._mesh_bytes = Parameter(32, name="mesh_bytes", description="Length of all chunks of the mesh in bytes, a multiple of 16.")
@@ -166,8 +171,9 @@ class TriangleEngine(LiteXModule):
             "triangles": "Triangles of the mesh.",
             "unseen": "Triangles behind the near plane or beyond one side of the picture.",
             "culled": "Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds.",
-            "descriptor_count": "Descriptors written.",
-            "exception_count": "Triangles that need clipping, listed in `exceptions`.",
+            "descriptor_count": "Descriptors written, with `append` those of the passes before included.",
+            "exception_count": "Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` those "
+                               "of the passes before included.",
         }
         results = {name: CSRStatus(32, name=name, description=description) for name, description in results.items()}
         for name, register in results.items():
@@ -201,6 +207,8 @@ class TriangleEngine(LiteXModule):
                                        "in bits 0 to 8, green, blue.")
         self._ambient = Parameter(27, name="ambient", description="Ambient light, in the format of `light_colour`. It must be 0 with "
                                   "`smooth` and without `cull`.")
+        self._colour = Parameter(16, name="colour", description="Colour in place of those of the mesh, with `recolour` in "
+                                 "`geometry`, RGB565.")
 
         # # #
 
@@ -220,7 +228,8 @@ class TriangleEngine(LiteXModule):
         self.parameters = PassParameters(
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
-             self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient],
+             self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
+             self._colour],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
         # A raymarcher copies its parameters at the same time as the raster pass, which waits for both.
         self.raster_load, self.field_loading = Signal(), Signal()
@@ -236,7 +245,8 @@ class TriangleEngine(LiteXModule):
             ("valid", 1), ("ready", 1), *_FIELD_GROUP])
 
         geometry_flags = Struct("geometry_flags_t", "Choices of a geometry pass.", {
-            name: getattr(self._geometry.fields, name) for name in ("size", "cull", "smooth", "lines", "orthographic")})
+            name: getattr(self._geometry.fields, name) for name in (
+                "size", "cull", "smooth", "append", "mirror", "recolour", "lines", "orthographic")})
         geometry = Struct("geometry_t", "Parameters of the geometry pass. Places in memory are byte addresses.", {
             "mesh": self._mesh.storage,
             "mesh_bytes": self._mesh_bytes.storage,
@@ -248,6 +258,7 @@ class TriangleEngine(LiteXModule):
             "exception_limit": self._exception_limit.storage,
             **{name: [register.storage[9*i:9*i + 9] for i in range(3)]
                for name, register in (("light_colour", self._light_colour), ("ambient", self._ambient))},
+            "colour": self._colour.storage,
         })
         view = Struct("view_t", "Camera and light of the geometry pass: docs/formats.md, \"Frame constants\".", {
             "scale_shift": self._scale_shift.storage,

@@ -1,8 +1,9 @@
 //! Driver of the triangle engine, which draws meshes in memory into frames in memory.
 //!
-//! A frame takes two passes. The geometry pass writes descriptors and band lists of a mesh, and a list of the triangles that
-//! need clipping. The raster pass draws a frame from these lists, and from a second set that the program may write
-//! (docs/formats.md, "Descriptors and band lists"). Both passes may run at the same time, for two frames.
+//! A frame takes a geometry pass for each of its meshes and one raster pass. A geometry pass writes descriptors and band lists of a
+//! mesh, and a list of the triangles that need clipping. The raster pass draws a frame from these lists, and from a second set
+//! that the program may write (docs/formats.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
+//! time, for two frames.
 //!
 //! The engine accesses memory by address and bypasses the CPU's data cache, so starting a pass is unsafe: see
 //! [`TriangleEngine::start_geometry`] and [`TriangleEngine::start_raster`]. The engine sees earlier writes of the CPU;
@@ -13,7 +14,7 @@ use core::sync::atomic::{Ordering, compiler_fence};
 use core::time::Duration;
 
 use glint_core::camera::Projection;
-use glint_core::mesh::Mesh;
+use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
 use glint_model::line::Segment;
 use glint_model::{MeshLight, MeshSetup, Shading};
@@ -74,7 +75,7 @@ impl fmt::Display for EngineError {
 
 impl core::error::Error for EngineError {}
 
-/// Output of a geometry pass in memory; every address is a multiple of 16.
+/// Output of the geometry passes of a frame in memory; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
     /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine determines the length of each.
@@ -83,6 +84,12 @@ pub struct Lists {
     pub descriptor_limit: u32,
     /// Address of the band lists.
     pub lists: u32,
+    /// In these passes and in the raster pass, a band list has room for 4 << `list_shift` entries.
+    pub list_shift: u8,
+    /// Address of the list of exceptions, the triangles that need clipping: their numbers in their mesh, of 4 bytes each.
+    pub exceptions: u32,
+    /// Largest number of exceptions that fit the memory at `exceptions`.
+    pub exception_limit: u32,
 }
 
 /// A geometry pass.
@@ -99,12 +106,10 @@ pub struct Geometry<'a> {
     pub cull: bool,
     /// Source of the colours; `Flat` if the engine has no smooth shading.
     pub shading: Shading,
-    /// Output of the pass.
-    pub lists: Lists,
-    /// Address of the list of exceptions, the triangles that need clipping: their numbers, of 4 bytes each.
-    pub exceptions: u32,
-    /// Largest number of exceptions that fit the memory at `exceptions`.
-    pub exception_limit: u32,
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
+    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size.
+    pub lists: Option<Lists>,
 }
 
 /// A geometry pass whose registers have been written, ready to start.
@@ -139,22 +144,20 @@ pub struct Raster {
     pub depth: Option<u32>,
     /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
+    /// A band list has room for 4 << `list_shift` entries; [`Lists::list_shift`] of the next geometry pass must be the same.
+    pub list_shift: u8,
     /// The sets of descriptors and band lists, drawn in this order in each band.
     pub sets: [Option<Set>; 2],
 }
 
-/// Counts of a geometry pass.
+/// Counts of the last geometry pass, and of the passes that it continued.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Triangles of the mesh.
+    /// Triangles of the mesh of the last pass.
     pub triangles: u32,
-    /// Triangles behind the near plane or beyond one side of the picture.
-    pub unseen: u32,
-    /// Triangles left out by the setup: culled back faces, and triangles that cover no pixel centre.
-    pub culled: u32,
-    /// Descriptors made.
+    /// Descriptors made by all passes.
     pub descriptors: u32,
-    /// Triangles that need clipping.
+    /// Triangles that need clipping, in all passes.
     pub exceptions: u32,
 }
 
@@ -203,26 +206,26 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers of a geometry pass, so that the start itself is short. No geometry pass may be running. In
-    /// this pass and in the raster pass, a band list has room for 4 << `list_shift` entries.
+    /// Writes the registers of a geometry pass, so that the start itself is short. The pass before may still run, if it was started
+    /// at least 128 clock cycles ago; the engine has copied its registers.
     ///
     /// # Errors
     /// [`Error::Size`] if the engine does not support this picture size; no register is then written.
-    pub fn prepare_geometry(
-        &mut self,
-        pass: &Geometry,
-        list_shift: u8,
-    ) -> Result<Prepared, EngineError> {
+    pub fn prepare_geometry(&mut self, pass: &Geometry) -> Result<Prepared, EngineError> {
         let registers = &self.registers;
         let frame = pass.frame;
         let size = Size::of(frame.width, frame.height).ok_or(Error::Size)?;
         let records = pass.mesh.records();
         registers.mesh().write(records.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(records) as u32);
-        self.write_output(&pass.lists, list_shift);
-        registers.exceptions().write(pass.exceptions);
-        registers.exception_limit().write(pass.exception_limit);
-
+        if let Some(lists) = &pass.lists {
+            self.write_output(lists);
+            registers.exceptions().write(lists.exceptions);
+            registers.exception_limit().write(lists.exception_limit);
+        }
+        if let Some(colour) = pass.colour {
+            registers.colour().write(colour.0);
+        }
         registers.scale_shift().write(frame.engine_shift() as u8);
         // The registers are written one by one, because a loop would need a table of their addresses.
         let [u, v, n, light] =
@@ -264,7 +267,10 @@ impl TriangleEngine {
                 .with_cull(pass.cull)
                 .with_smooth(pass.shading == Shading::Smooth)
                 .with_orthographic(frame.projection == Projection::Orthographic)
-                .with_size(code(size)),
+                .with_size(code(size))
+                .with_append(pass.lists.is_none())
+                .with_mirror(frame.mirrors)
+                .with_recolour(pass.colour.is_some()),
         })
     }
 
@@ -275,12 +281,11 @@ impl TriangleEngine {
         segments: &[[u32; Segment::WORDS]],
         size: Size,
         lists: &Lists,
-        list_shift: u8,
     ) -> Prepared {
         let registers = &self.registers;
         registers.mesh().write(segments.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(segments) as u32);
-        self.write_output(lists, list_shift);
+        self.write_output(lists);
         // Lines have no exceptions: the list of them has a place, because the engine checks it, and no room.
         registers.exceptions().write(lists.lists);
         registers.exception_limit().write(0);
@@ -293,12 +298,12 @@ impl TriangleEngine {
     }
 
     /// Writes the registers that tell where a geometry pass puts its output.
-    fn write_output(&self, lists: &Lists, list_shift: u8) {
+    fn write_output(&self, lists: &Lists) {
         let registers = &self.registers;
         registers.geometry_descriptors().write(lists.descriptors);
         registers.descriptor_limit().write(lists.descriptor_limit);
         registers.geometry_lists().write(lists.lists);
-        registers.list_shift().write(list_shift);
+        registers.list_shift().write(lists.list_shift);
     }
 
     /// Starts the prepared geometry pass.
@@ -321,6 +326,7 @@ impl TriangleEngine {
         registers.frame().write(pass.frame);
         registers.depth().write(pass.depth.unwrap_or(0));
         registers.clear().write(pass.clear);
+        registers.list_shift().write(pass.list_shift);
         let [first, second] = pass.sets;
         if let Some(set) = first {
             registers.lists_0().write(set.lists);
@@ -367,14 +373,12 @@ impl TriangleEngine {
             .write(Control::default().with_cancel(true));
     }
 
-    /// Counts of the last geometry pass.
+    /// Counts of the geometry passes.
     #[must_use]
     pub fn counts(&self) -> Counts {
         let registers = &self.registers;
         Counts {
             triangles: registers.triangles().read(),
-            unseen: registers.unseen().read(),
-            culled: registers.culled().read(),
             descriptors: registers.descriptor_count().read(),
             exceptions: registers.exception_count().read(),
         }

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x1d23_8d1e;
+pub const BUILD_ID: u32 = 0x4138_d962;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -2854,7 +2854,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5018) }
         }
 
-        /// `geometry`, 10 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold while it runs. Reads as 0.
+        /// `geometry`, 10 bits: Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, and those from `light_0` on, must hold for 128 clock cycles after the start, in which they are copied. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn geometry(&self) -> Register<Geometry, ReadWrite> {
@@ -3182,7 +3182,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50bc) }
         }
 
-        /// `descriptor_count`, 32 bits: Descriptors written.
+        /// `descriptor_count`, 32 bits: Descriptors written, with `append` those of the passes before included.
         #[inline]
         #[must_use]
         pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
@@ -3190,7 +3190,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50c0) }
         }
 
-        /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions`.
+        /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` those of the passes before included.
         #[inline]
         #[must_use]
         pub const fn exception_count(&self) -> Register<u32, ReadOnly> {
@@ -3380,6 +3380,14 @@ pub mod triangle {
         pub const fn ambient(&self) -> Register<u32, ReadWrite> {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_5120) }
+        }
+
+        /// `colour`, 16 bits: Colour in place of those of the mesh, with `recolour` in `geometry`, RGB565. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn colour(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_5124) }
         }
     }
 
@@ -3695,6 +3703,48 @@ pub mod triangle {
         #[must_use]
         pub const fn with_smooth(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+
+        /// `append`, bit 5: Continue the descriptors, lists and exceptions of the pass before in place of empty ones. `size`, `geometry_descriptors`, `geometry_lists`, `list_shift` and `exceptions` must be as in that pass. No effect in the first pass after a reset or after `cancel`.
+        #[inline]
+        #[must_use]
+        pub const fn append(self) -> bool {
+            (self.0 >> 5) & 1 != 0
+        }
+
+        /// This value with another `append`.
+        #[inline]
+        #[must_use]
+        pub const fn with_append(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
+        }
+
+        /// `mirror`, bit 6: The mesh is mirrored: front faces are clockwise on the screen.
+        #[inline]
+        #[must_use]
+        pub const fn mirror(self) -> bool {
+            (self.0 >> 6) & 1 != 0
+        }
+
+        /// This value with another `mirror`.
+        #[inline]
+        #[must_use]
+        pub const fn with_mirror(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
+        }
+
+        /// `recolour`, bit 7: Use `colour` in place of the colours of the mesh.
+        #[inline]
+        #[must_use]
+        pub const fn recolour(self) -> bool {
+            (self.0 >> 7) & 1 != 0
+        }
+
+        /// This value with another `recolour`.
+        #[inline]
+        #[must_use]
+        pub const fn with_recolour(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
         }
 
         /// `lines`, bit 8: Draw lines: `mesh` has segments in place of triangles.

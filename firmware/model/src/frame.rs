@@ -19,9 +19,10 @@ use crate::mesh_in_field;
 use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
+use crate::triangle::setup::Setup;
 use crate::triangle::{
     Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Part, Placement, Projected, Stats,
-    draw_parts, trace_frame,
+    draw_parts, set_up_parts,
 };
 use crate::wireframe::{WireframeStats, WireframeSubject, render_wireframe};
 
@@ -139,6 +140,35 @@ impl<'a> Subject<'a> {
     pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
         match self {
             Self::Objects(objects) => Some(objects),
+            _ => None,
+        }
+    }
+
+    /// The mesh with this number, and the options of its drawing in a light ([`FrameConstants::light`]), of which `clear` has no effect;
+    /// `None` after the last mesh.
+    pub fn numbered_mesh<'s>(
+        &'s self,
+        number: usize,
+        light: Option<&'s MeshLight>,
+    ) -> Option<(&'s MeshSubject<'a>, Options<'s>)> {
+        match self {
+            Self::Mesh(subject) | Self::MeshInField(subject, _) if number == 0 => {
+                let options = Options {
+                    light,
+                    ..subject.options()
+                };
+                Some((subject, options))
+            }
+            Self::Objects(objects) => {
+                let object = objects.get(number)?;
+                let options = Options {
+                    colour: object.colour,
+                    light,
+                    normals: object.placement.normals(),
+                    ..object.subject.options()
+                };
+                Some((&object.subject, options))
+            }
             _ => None,
         }
     }
@@ -303,14 +333,71 @@ impl<'a> Frame<'a> {
 
     /// Number of vertices for which the scratch memory of [`draw`](Self::draw) needs room.
     pub fn scratch_vertices(&self) -> usize {
-        let mesh = self.subject.mesh_part().map(|subject| &subject.mesh);
-        let objects = self.subject.objects().unwrap_or_default();
-        let meshes = objects.iter().map(|object| &object.subject.mesh);
-        meshes
-            .chain(mesh)
-            .map(Mesh::largest_chunk)
+        (0..)
+            .map_while(|number| self.subject.numbered_mesh(number, None))
+            .map(|(subject, _)| subject.mesh.largest_chunk())
             .max()
             .unwrap_or(0)
+    }
+
+    /// Returns the frame constants of the mesh with this number: `constants`, those of the frame, or for an object its own ones, which
+    /// are computed into `own`.
+    ///
+    /// # Errors
+    /// As [`Placement::setup`] and [`MeshSetup::with_clip`].
+    pub fn mesh_setup<'s>(
+        &self,
+        constants: &'s MeshSetup,
+        number: usize,
+        own: &'s mut Option<MeshSetup>,
+    ) -> Result<&'s MeshSetup, RenderError> {
+        let objects = self.subject.objects().unwrap_or_default();
+        let Some(Object {
+            subject, placement, ..
+        }) = objects.get(number)
+        else {
+            return Ok(constants);
+        };
+        let volume = constants.volume_of(subject.clip)?;
+        let own = own.get_or_insert(*constants);
+        placement.update(own, &self.view, constants, subject.mesh.radius(), volume)?;
+        Ok(own)
+    }
+
+    /// The mesh with this number, with its options and frame constants, from those of the frame; `None` after the last mesh.
+    fn part<'s>(
+        &'s self,
+        constants: &'s FrameConstants,
+        setup: &MeshSetup,
+        number: usize,
+    ) -> Result<Option<Part<'s>>, RenderError> {
+        let Some((subject, options)) = self.subject.numbered_mesh(number, constants.light()) else {
+            return Ok(None);
+        };
+        Ok(Some(Part {
+            mesh: subject.mesh,
+            frame: *self.mesh_setup(setup, number, &mut None)?,
+            options,
+        }))
+    }
+
+    /// Makes the triangles of all meshes of the frame from the frame's `constants`, in the order in which they are drawn, and calls `emit`
+    /// with each and its setup. `scratch` is memory for projected vertices. The counts of pixels in the result are 0.
+    ///
+    /// # Errors
+    /// [`RenderError`] for scratch memory that is too small, or for an object whose constants are out of range.
+    pub fn set_up_meshes(
+        &self,
+        constants: &FrameConstants,
+        scratch: &mut [Projected],
+        emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
+    ) -> Result<Stats, RenderError> {
+        let Some(setup) = constants.mesh() else {
+            return Ok(Stats::default());
+        };
+        let mut part = |number| self.part(constants, setup, number);
+        let size = (setup.width, setup.height);
+        set_up_parts(&mut part, size, scratch, emit)
     }
 
     /// Draws the frame into `buffer` from the frame's `constants`, with `scratch` as memory for projected vertices. Calls
@@ -326,32 +413,21 @@ impl<'a> Frame<'a> {
         progress: &mut dyn FnMut(),
     ) -> Result<FrameStats, RenderError> {
         let mut stats = FrameStats::default();
-        if let (Some(objects), Some(camera)) = (self.subject.objects(), constants.mesh()) {
-            let light = constants.light();
-            stats.mesh =
-                Some(self.draw_objects(objects, camera, light, buffer, scratch, progress)?);
-            return Ok(stats);
-        }
         if let Subject::Wireframe(subject) = &self.subject {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }
-        match (self.subject.mesh_part(), constants.mesh()) {
-            (Some(subject), Some(setup)) => {
-                let options = Options {
-                    clear: self.clear.0,
-                    light: constants.light(),
-                    ..subject.options()
-                };
-                let mesh = &subject.mesh;
-                let drawn = trace_frame(mesh, *setup, buffer, scratch, &options, |triangle| {
-                    if triangle.index % TRIANGLES_A_CALL == 0 {
-                        progress();
-                    }
-                })?;
-                stats.mesh = Some(drawn);
-            }
-            _ => buffer.depth.fill(0),
+        if let Some(setup) = constants.mesh() {
+            let mut part = |number| self.part(constants, setup, number);
+            let mut show = |triangle: &DrawnTriangle| {
+                if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
+                    progress();
+                }
+            };
+            let clear = self.clear.0;
+            stats.mesh = Some(draw_parts(&mut part, clear, buffer, scratch, &mut show)?);
+        } else {
+            buffer.depth.fill(0);
         }
         if let Some(FieldConstants { setup, palette }) = constants.field() {
             let mut show = |x, _, _: &Ray, _: &RayResult| {
@@ -362,41 +438,5 @@ impl<'a> Frame<'a> {
             stats.field = Some(render_field(setup, palette, buffer, &mut show)?);
         }
         Ok(stats)
-    }
-
-    fn draw_objects(
-        &self,
-        objects: &'a [Object<'a>],
-        camera: &MeshSetup,
-        light: Option<&MeshLight>,
-        buffer: &mut FrameBuffer,
-        scratch: &mut [Projected],
-        progress: &mut dyn FnMut(),
-    ) -> Result<Stats, RenderError> {
-        let mut part = |number: usize| {
-            let Object {
-                subject,
-                placement,
-                colour,
-            } = &objects[number];
-            let camera = camera.with_clip(subject.clip)?;
-            Ok(Part {
-                mesh: subject.mesh,
-                frame: placement.setup(&self.view, &camera, subject.mesh.radius())?,
-                options: Options {
-                    colour: *colour,
-                    light,
-                    normals: placement.normals(),
-                    ..subject.options()
-                },
-            })
-        };
-        let mut show = |triangle: &DrawnTriangle| {
-            if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
-                progress();
-            }
-        };
-        let clear = self.clear.0;
-        draw_parts(objects.len(), &mut part, clear, buffer, scratch, &mut show)
     }
 }

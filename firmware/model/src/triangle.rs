@@ -28,6 +28,8 @@ pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
 pub use primitive::Options;
-pub use render::{DrawnTriangle, Part, Stats, draw_parts, render, trace, trace_frame};
+pub use render::{
+    DrawnTriangle, Part, Stats, draw_parts, render, set_up_parts, trace, trace_frame,
+};
 pub use vertex::{Projected, ScreenVertex};
 pub use volume::Clip;

@@ -7,7 +7,7 @@ use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::triangle::descriptor::{
-    Descriptor, Full, LENGTHS, ListWriter, band_rows, list_shift, list_word, words,
+    Descriptor, Full, LENGTHS, ListCounts, ListWriter, band_rows, list_shift, list_word, words,
 };
 use glint_model::{
     FieldSubject, Frame, FrameConstants, FrameStats, MeshSubject, Projected, RenderError, Subject,
@@ -108,23 +108,28 @@ fn lists_name_the_triangles_of_their_bands() {
             let list_words = 4 * list_word(bands, shift) as usize;
             let mut descriptors = vec![0; DESCRIPTORS * words(capability)];
             let mut lists = vec![0; list_words];
-            let mut writer = ListWriter::new(
-                &mut descriptors,
-                &mut lists,
-                size.width(),
-                shift,
-                capability,
-            );
+            let mut counts = ListCounts::EMPTY;
             let mut put = vec![];
-            while put.len() < DESCRIPTORS {
-                let triangle = glint_vectors::triangles::random_triangle(&mut random);
-                let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
-                    continue;
-                };
-                writer.put(&setup, Rgb565::WHITE);
-                put.push(setup);
+            // Several writers continue each other's lists.
+            for end in [DESCRIPTORS / 4, DESCRIPTORS / 2, DESCRIPTORS] {
+                let mut writer = ListWriter::new(
+                    &mut descriptors,
+                    &mut lists,
+                    &mut counts,
+                    size.width(),
+                    shift,
+                    capability,
+                );
+                while put.len() < end {
+                    let triangle = glint_vectors::triangles::random_triangle(&mut random);
+                    let Some((_, setup)) = set_up(triangle, (size.width(), size.height())) else {
+                        continue;
+                    };
+                    writer.put(&setup, Rgb565::WHITE);
+                    put.push(setup);
+                }
+                assert_eq!(writer.finish(), Ok(end as u32));
             }
-            assert_eq!(writer.finish(), Ok(DESCRIPTORS as u32));
             for band in 0..bands {
                 let rows = band_rows(size.width()) as i32;
                 let (top, bottom) = (band as i32 * rows, (band as i32 + 1) * rows);
@@ -168,7 +173,15 @@ fn lists_without_room_are_refused() {
         (words(Shading::Flat), LENGTHS - 1, Err(Full)),
     ] {
         let (mut descriptors, mut lists) = (vec![0; descriptor_words], vec![0; list_words]);
-        let mut writer = ListWriter::new(&mut descriptors, &mut lists, 320, 15, Shading::Flat);
+        let mut counts = ListCounts::EMPTY;
+        let mut writer = ListWriter::new(
+            &mut descriptors,
+            &mut lists,
+            &mut counts,
+            320,
+            15,
+            Shading::Flat,
+        );
         writer.put(&setup, Rgb565::WHITE);
         assert_eq!(writer.finish(), expected);
     }

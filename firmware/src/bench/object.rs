@@ -1,24 +1,28 @@
 //! The constants of an object, which the soft core computes once a frame for each object.
 
+use core::cell::RefCell;
 use core::hint::black_box;
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q8_24, Q32_32, Turns};
 use glint_core::matrix::{Axis, Matrix};
+use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::{MeshSetup, Placement};
+use glint_model::{Frame, MeshSetup, MeshSubject, Object, Placement, Subject};
+
+use crate::cube;
 
 use super::measure::{Report, measure};
 
-/// Radius of a mesh that fills a box of 1×1×1 world units, 14 fraction bits.
-const RADIUS: u32 = 14_190;
-
-/// Measures the smallest depth and the frame constants of objects, turned and of one scale or of three.
+/// Measures the frame constants of objects, turned and of one scale or of three.
 pub fn object(report: Report) {
     let [width, height] = Size::W640.pixels();
     let view = View::spherical(Q32_32::lit("3"), Turns(1 << 29), Turns(1 << 29));
     let Ok(view) = view else { return };
     let Ok(camera) = MeshSetup::new(&view, width, height, 0) else {
+        return;
+    };
+    let Ok(mesh) = Mesh::new_checked(&cube::BYTES) else {
         return;
     };
     let [half, quarter, one] = ["0.5", "0.25", "1.5"].map(|x| x.parse().unwrap_or(Q8_24::ONE));
@@ -33,14 +37,21 @@ pub fn object(report: Report) {
                 .and_then(|matrix| matrix.then(&Matrix::translation([half, quarter, one])?));
             Placement::new(turned.unwrap_or(Matrix::IDENTITY))
         });
+        let objects = placements.map(|placement| Object {
+            subject: MeshSubject::new(mesh),
+            placement,
+            colour: None,
+        });
+        let frame = Frame::new(Subject::Objects(&objects), view, Size::W640);
+        let own = RefCell::new(None);
         measure(
             report,
             name,
-            |phase| &placements[(phase >> 30) as usize],
-            |placement| {
+            |phase| (phase >> 30) as usize,
+            |number| {
                 // The constants stay where they are made, as in the drawing of a frame.
-                black_box(&placement.setup(&view, &camera, RADIUS));
-                placement.depths(&camera, RADIUS)
+                let mut own = own.borrow_mut();
+                black_box(frame.mesh_setup(&camera, number, &mut own)).is_ok()
             },
         );
     }

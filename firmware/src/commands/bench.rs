@@ -82,8 +82,9 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         (None, None) => "triangle",
     };
     terminal.print(format_args!(
-        "bench {kernel} frames {FRAMES} cycles {}",
-        rendered.cycles
+        "bench {kernel} frames {FRAMES} cycles {} soft_core {}",
+        rendered.cycles,
+        rendered.cycles - rendered.waited
     ));
     if let Some(stats) = rays {
         for (name, value) in ray_values(&stats) {

@@ -5,7 +5,7 @@ use core::mem;
 use glint_core::colour::Shading;
 use glint_hal::triangle::{Lists, Set};
 use glint_model::line::Segment;
-use glint_model::triangle::descriptor::{self, list_shift};
+use glint_model::triangle::descriptor::{self, ListCounts, list_shift};
 use glint_model::{Stats, WireframeStats};
 
 /// Numbers of items for which the memory of one frame has room. The CPU draws frames that need more.
@@ -38,17 +38,21 @@ impl Room {
 
 /// Memory of one frame: two sets of descriptors and band lists, and the list of exceptions.
 pub struct Buffers {
-    descriptors: &'static mut [u32],
-    lists: &'static mut [u32],
+    /// Descriptors of triangles that are not clipped.
+    pub descriptors: &'static mut [u32],
+    /// Band lists of these descriptors.
+    pub lists: &'static mut [u32],
     /// Numbers of the exceptions: triangles that the geometry pass leaves to the clipper.
     pub exceptions: &'static mut [u32],
     /// Descriptors of clipped triangles, or the segments of a wireframe.
     pub clipped_descriptors: &'static mut [u32],
     /// Band lists of clipped triangles.
     pub clipped_lists: &'static mut [u32],
-    /// The sets of lists written by the geometry pass and by the clipper.
+    /// What the clipper has written to `clipped_descriptors` and `clipped_lists`, if there is the second one of `sets`.
+    pub clipped_counts: ListCounts,
+    /// The sets of lists written by the geometry passes and by the clipper.
     pub sets: [Option<Set>; 2],
-    /// Counts of triangles of the geometry pass and the clipper.
+    /// Counts of triangles of the geometry passes and the clipper.
     pub stats: Stats,
 }
 
@@ -66,6 +70,7 @@ impl Buffers {
             exceptions: piece(room.descriptors)?,
             clipped_descriptors: piece(room.descriptor_words())?,
             clipped_lists: piece(room.list_words)?,
+            clipped_counts: ListCounts::EMPTY,
             sets: [None; 2],
             stats: Stats::default(),
         })
@@ -81,21 +86,29 @@ impl Buffers {
         self.clipped_descriptors.as_chunks_mut().0
     }
 
+    /// Removes the sets and counts of the frame before.
+    pub fn clear(&mut self) {
+        (self.sets, self.stats) = ([None; 2], Stats::default());
+    }
+
     /// The list shift of both passes for a picture of this width.
     pub const fn list_shift(&self, width: u32) -> u32 {
         list_shift(width, self.lists.len())
     }
 
-    /// The memory for the output of a geometry pass, on gateware whose best shading is `capability`.
-    pub fn lists(&self, capability: Shading) -> Lists {
+    /// The memory for the output of geometry passes, for a picture of this width, on gateware whose best shading is `capability`.
+    pub fn lists(&self, capability: Shading, width: u32) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
             descriptor_limit: (self.descriptors.len() / descriptor::words(capability)) as u32,
             lists: address(self.lists),
+            list_shift: self.list_shift(width) as u8,
+            exceptions: address(self.exceptions),
+            exception_limit: self.exceptions.len() as u32,
         }
     }
 
-    /// The set of lists that a geometry pass has written, with `count` descriptors.
+    /// The set of lists that geometry passes have written, with `count` descriptors.
     pub fn set(&self, count: u32) -> Set {
         Set {
             descriptors: address(self.descriptors),

@@ -13,16 +13,8 @@ pub enum Fallback {
     Triangle(EngineError),
     /// The raymarcher of this gateware lacks a feature.
     Field(Missing),
-    /// The triangle engine draws one mesh a frame.
-    Objects,
-    /// The triangle engine clips to the guard band only.
-    Clip,
-    /// The triangle engine knows the winding of the mesh only.
-    Winding,
     /// The triangle engine shades smoothly in perspective only.
     Orthographic,
-    /// The triangle engine has no ambient light on the dark side of smooth triangles.
-    Light,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
@@ -55,14 +47,8 @@ impl fmt::Display for Fallback {
         match self {
             Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
-            Self::Objects => f.write_str("triangle engine: one mesh a frame"),
-            Self::Clip => f.write_str("triangle engine: no clipping to the view volume"),
-            Self::Winding => f.write_str("triangle engine: no winding by the screen"),
             Self::Orthographic => {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")
-            }
-            Self::Light => {
-                f.write_str("triangle engine: no ambient light on smooth triangles with `cull off`")
             }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),

@@ -51,10 +51,8 @@ impl GatewareRenderer {
         let segments = buffers.segments();
         let count = 1 + self.projected.stats.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
-        let [width, _] = size.pixels();
-        let shift = buffers.list_shift(width) as u8;
-        let lists = buffers.lists(self.shading);
-        self.engine.prepare_lines(segments, size, &lists, shift)
+        let lists = buffers.lists(self.shading, size.width());
+        self.engine.prepare_lines(segments, size, &lists)
     }
 
     /// Takes the descriptors of a geometry pass of lines, which wrote to `self.buffers[place]`.
@@ -80,7 +78,7 @@ impl GatewareRenderer {
             self.projected = Projected::default();
             while !self.project(subject, frame.size, now)? {}
             let prepared = self.prepare_lines(frame.size, now);
-            self.start_geometry(prepared);
+            self.start_pass(prepared);
             self.wait(TriangleEngine::geometry, output)?;
             self.take_lines(now);
             if number > 0 {

@@ -1,22 +1,17 @@
-//! The passes of a frame: the geometry pass, clipping by the CPU, and the raster pass.
+//! The passes of a frame: the geometry passes, and the raster pass.
 
 use glint_core::camera::Projection;
-use glint_core::colour::{Shading, Winding};
+use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
-use glint_hal::triangle::{
-    Counters, EngineError, Error, Geometry, Prepared, Raster, Set, TriangleEngine,
-};
-use glint_model::triangle::descriptor::ListWriter;
-use glint_model::{
-    Clip, Frame, FrameConstants, FrameStats, MeshSubject, Options, Stats, Subject, WireframeStats,
-    clip_exceptions,
-};
+use glint_hal::triangle::{Counters, EngineError, Error, Prepared, Raster, Set, TriangleEngine};
+use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeStats};
 use litex_pac::cpu;
 
 use super::buffers::{Buffers, Projected, Room, address};
 use super::fallback::Fallback;
+use super::geometry::{Cpu, GeometryPasses, Job};
 use super::watchdog::Watchdog;
 
 /// The memory that a frame is written to.
@@ -31,6 +26,8 @@ pub struct Output<'a> {
 pub struct Rendered {
     /// Clock cycles from the first register write of the frame to the detection of its end.
     pub cycles: u64,
+    /// Clock cycles of these in which the soft core only waited for the gateware, of a benchmark.
+    pub waited: u64,
     /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
     /// Growth of the triangle engine's counters during the frame.
@@ -51,6 +48,8 @@ enum Stage {
 #[derive(Default)]
 struct Start {
     cycles: u64,
+    /// `GatewareRenderer::waited`.
+    waited: u64,
     engine: Counters,
     raymarcher: raymarch::Counters,
 }
@@ -75,7 +74,10 @@ pub struct GatewareRenderer {
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
     constants: [FrameConstants; 2],
+    geometry: GeometryPasses,
     watchdog: Watchdog,
+    /// Clock cycles of all waits of benchmarks.
+    pub(super) waited: u64,
     start: Start,
     /// Time at which the last pass was started: the lower half of the cycle counter.
     pass_start: u32,
@@ -96,10 +98,11 @@ impl GatewareRenderer {
         frequency: Frequency,
     ) -> Option<Self> {
         let room = Room::of(memory.len())?;
+        let shading = engine.shading();
         Some(Self {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
-            shading: engine.shading(),
+            shading,
             engine,
             raymarcher,
             buffers: [
@@ -111,7 +114,9 @@ impl GatewareRenderer {
             drawn_sizes: [None; 2],
             stage: Stage::Idle,
             constants: Default::default(),
+            geometry: GeometryPasses::new(shading),
             watchdog: Watchdog::new(frequency),
+            waited: 0,
             start: Start::default(),
             pass_start: 0,
         })
@@ -158,7 +163,7 @@ impl GatewareRenderer {
     }
 
     /// Starts or continues the drawing of a frame. `frame` and `output` must stay the same until the function returns a
-    /// result; `None` means that a pass is still running.
+    /// result; `None` means that a pass is still running. The call that starts a frame may take long.
     ///
     /// # Errors
     /// The gateware cannot draw the frame; the gateware is then idle.
@@ -166,9 +171,10 @@ impl GatewareRenderer {
         &mut self,
         frame: &Frame,
         output: &mut Output,
+        cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         loop {
-            let result = self.step(frame, output);
+            let result = self.step(frame, output, cpu);
             if result.is_some() || !self.ends_soon() {
                 return result;
             }
@@ -187,67 +193,79 @@ impl GatewareRenderer {
         }
     }
 
-    fn step(&mut self, frame: &Frame, output: &mut Output) -> Option<Result<Rendered, Fallback>> {
-        let step = match (self.stage, &frame.subject) {
-            (Stage::Idle, _) => return self.begin(frame, output).err().map(Err),
+    fn step(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        cpu: &mut Cpu,
+    ) -> Option<Result<Rendered, Fallback>> {
+        let has_geometry = match (self.stage, &frame.subject) {
+            (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) => {
                 match self.project(wireframe, frame.size, 0) {
                     Ok(false) => return None,
                     Ok(true) => {
                         let prepared = self.prepare_lines(frame.size, 0);
-                        self.start_geometry(prepared);
-                        self.stage = Stage::Geometry;
-                        return None;
+                        self.start_pass(prepared);
+                        Ok(true)
                     }
-                    Err(error) => Err(error),
+                    Err(error) => Err(error.into()),
                 }
             }
-            (Stage::Geometry, Subject::Wireframe(_)) => match self.engine.geometry() {
-                None => return self.check_progress(output).err().map(Err),
-                Some(result) => result.map(|()| self.take_lines(0)),
+            (Stage::Geometry, subject) => match (self.engine.geometry(), subject) {
+                (None, _) => return self.check_progress(output).err().map(Err),
+                (Some(Ok(())), Subject::Wireframe(_)) => {
+                    self.take_lines(0);
+                    Ok(false)
+                }
+                (Some(Ok(())), _) => self.continue_geometry(frame, 0),
+                (Some(Err(error)), _) => Err(error.into()),
             },
-            (Stage::Geometry, Subject::Mesh(mesh) | Subject::MeshInField(mesh, _)) => {
-                match self.engine.geometry() {
-                    None => return self.check_progress(output).err().map(Err),
-                    Some(Ok(())) => self.clip(mesh, 0),
-                    Some(result) => result,
-                }
-            }
             _ => match self.engine.raster() {
                 None => return self.check_progress(output).err().map(Err),
                 Some(Ok(())) => {
                     self.stage = Stage::Idle;
                     return Some(Ok(self.rendered(frame, 0)));
                 }
-                Some(result) => result,
+                Some(Err(error)) => Err(error.into()),
             },
         };
-        match step {
-            Ok(()) => {
-                self.start_raster(frame, output, self.sets(0));
-                self.stage = Stage::Raster;
-                None
-            }
-            Err(error) => Some(Err(self.give_up(output, error))),
-        }
+        self.enter(has_geometry, frame, output).err().map(Err)
     }
 
-    fn begin(&mut self, frame: &Frame, output: &mut Output) -> Result<(), Fallback> {
+    /// Enters the stage after the start of a geometry pass (`Ok(true)`), or after the end of the last one (`Ok(false)`).
+    fn enter(
+        &mut self,
+        has_geometry: Result<bool, Fallback>,
+        frame: &Frame,
+        output: &mut Output,
+    ) -> Result<(), Fallback> {
+        self.stage = match has_geometry {
+            Ok(true) => {
+                self.pass_start = cpu::cycles_low();
+                Stage::Geometry
+            }
+            Ok(false) => {
+                self.start_raster(frame, output, self.sets(0));
+                Stage::Raster
+            }
+            Err(error) => return Err(self.give_up(output, error)),
+        };
+        Ok(())
+    }
+
+    fn begin(&mut self, frame: &Frame, output: &mut Output, cpu: &mut Cpu) -> Result<(), Fallback> {
         self.start_measurement(frame);
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
-        if let Some(mesh) = frame.subject.mesh_part() {
-            let prepared = self.prepare_geometry(mesh, 0)?;
-            self.start_geometry(prepared);
-            self.stage = Stage::Geometry;
-        } else if let Subject::Wireframe(_) = frame.subject {
+        if let Subject::Wireframe(_) = frame.subject {
             self.projected = Projected::default();
             self.stage = Stage::Project;
-        } else {
-            self.start_raster(frame, output, [None; 2]);
-            self.stage = Stage::Raster;
+            return Ok(());
         }
-        Ok(())
+        self.prepare_geometry(frame, 0)?;
+        let has_geometry = self.start_geometry(frame, 0, cpu);
+        self.enter(has_geometry, frame, output)
     }
 
     /// Stores the time and the counters at the start of a measurement, and resets the watchdog.
@@ -255,6 +273,7 @@ impl GatewareRenderer {
         self.watchdog.reset();
         self.start = Start {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
+            waited: self.waited,
             engine: self.engine.counters(),
             // Comes last, because the reading of the counters is no part of the frame.
             cycles: cpu::cycles(),
@@ -274,7 +293,7 @@ impl GatewareRenderer {
         let field = self.raymarcher_counters(frame);
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
-        let mesh = frame.subject.mesh_part().map(|_| Stats {
+        let mesh = self.constants[place].mesh().map(|_| Stats {
             // In each clock that `cycles_walking` counts, the walker tests a group of eight pixels.
             pixels_tested: 8 * u64::from(counters.cycles_walking),
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
@@ -287,6 +306,7 @@ impl GatewareRenderer {
         });
         Rendered {
             cycles,
+            waited: self.waited - self.start.waited,
             stats: FrameStats {
                 mesh,
                 field: field.as_ref().map(raymarch::ray_counts),
@@ -296,12 +316,60 @@ impl GatewareRenderer {
         }
     }
 
+    /// The geometry passes, and what they use for `frame` with the memory and constants of index `place`.
+    fn geometry_of<'f>(
+        &'f mut self,
+        frame: &'f Frame<'f>,
+        place: usize,
+    ) -> (&'f mut GeometryPasses, Job<'f>) {
+        let job = Job {
+            frame,
+            constants: &self.constants[place],
+            engine: &mut self.engine,
+            buffers: &mut self.buffers[place],
+        };
+        (&mut self.geometry, job)
+    }
+
+    /// Writes the registers of the first geometry pass from `self.constants[place]`. The passes will write to `self.buffers[place]`.
+    pub(super) fn prepare_geometry(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
+        let (geometry, mut job) = self.geometry_of(frame, place);
+        geometry.prepare(&mut job)
+    }
+
+    /// Starts a prepared geometry pass of lines.
+    pub(super) fn start_pass(&mut self, pass: Prepared) {
+        // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of this pass.
+        unsafe { self.engine.start_geometry(pass) };
+    }
+
+    /// Starts the prepared geometry pass. Returns whether a pass runs.
+    pub(super) fn start_geometry(
+        &mut self,
+        frame: &Frame,
+        place: usize,
+        cpu: &mut Cpu,
+    ) -> Result<bool, Fallback> {
+        let (geometry, mut job) = self.geometry_of(frame, place);
+        geometry.start(&mut job, cpu)
+    }
+
+    /// Continues after the end of a geometry pass. Returns whether another pass runs.
+    pub(super) fn continue_geometry(
+        &mut self,
+        frame: &Frame,
+        place: usize,
+    ) -> Result<bool, Fallback> {
+        let (geometry, mut job) = self.geometry_of(frame, place);
+        geometry.advance(&mut job)
+    }
+
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         if matches!(frame.subject, Subject::Wireframe(_)) && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
-        if let Some(mesh) = frame.subject.mesh_part() {
+        for (mesh, _) in (0..).map_while(|number| frame.subject.numbered_mesh(number, None)) {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
             }
@@ -313,19 +381,6 @@ impl GatewareRenderer {
             {
                 return Err(Fallback::Orthographic);
             }
-            if mesh.clip != Clip::Guard {
-                return Err(Fallback::Clip);
-            }
-            if mesh.winding != Winding::Mesh {
-                return Err(Fallback::Winding);
-            }
-            let sees_dark_sides = mesh.shading == Shading::Smooth && !mesh.cull;
-            if sees_dark_sides && frame.mesh_lighting().ambient != [0; 3] {
-                return Err(Fallback::Light);
-            }
-        }
-        if frame.subject.objects().is_some() {
-            return Err(Fallback::Objects);
         }
         Ok(self.constants[place].update(frame)?)
     }
@@ -353,35 +408,6 @@ impl GatewareRenderer {
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
     }
 
-    /// Writes the registers of a geometry pass from `self.constants[place]`. The pass will write to `self.buffers[place]`.
-    pub(super) fn prepare_geometry(
-        &mut self,
-        subject: &MeshSubject,
-        place: usize,
-    ) -> Result<Prepared, EngineError> {
-        let setup = self.constants[place].mesh().ok_or(Error::Size)?;
-        let buffers = &self.buffers[place];
-        let pass = Geometry {
-            mesh: &subject.mesh,
-            frame: setup,
-            light: self.constants[place].light(),
-            cull: subject.cull,
-            shading: subject.shading,
-            lists: buffers.lists(self.shading),
-            exceptions: address(buffers.exceptions),
-            exception_limit: buffers.exceptions.len() as u32,
-        };
-        let shift = buffers.list_shift(setup.width) as u8;
-        self.engine.prepare_geometry(&pass, shift)
-    }
-
-    pub(super) fn start_geometry(&mut self, pass: Prepared) {
-        // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of
-        // this pass; the mesh stays while the renderer is busy.
-        unsafe { self.engine.start_geometry(pass) };
-        self.pass_start = cpu::cycles_low();
-    }
-
     pub(super) fn start_raster(
         &mut self,
         frame: &Frame,
@@ -397,6 +423,7 @@ impl GatewareRenderer {
             whole: *drawn_size != Some(frame.size),
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
+            list_shift: self.buffers[0].list_shift(frame.size.width()) as u8,
             sets,
         };
         *drawn_size = Some(frame.size);
@@ -406,61 +433,20 @@ impl GatewareRenderer {
         self.pass_start = cpu::cycles_low();
     }
 
-    /// Clips the exceptions, the triangles that need it, of the geometry pass that wrote `self.buffers[place]`.
-    pub(super) fn clip(&mut self, subject: &MeshSubject, place: usize) -> Result<(), EngineError> {
-        let setup = self.constants[place].mesh().ok_or(Error::Size)?;
-        let buffers = &mut self.buffers[place];
-        let counts = self.engine.counts();
-        buffers.sets = [Some(buffers.set(counts.descriptors)), None];
-        let mut clipped_drawn = 0;
-        if counts.exceptions > 0 {
-            cpu::flush_data_cache();
-            let exceptions = buffers.exceptions.get(..counts.exceptions as usize);
-            let mut numbers = exceptions.unwrap_or_default().iter().copied();
-            let list_shift = buffers.list_shift(setup.width);
-            let mut writer = ListWriter::new(
-                buffers.clipped_descriptors,
-                buffers.clipped_lists,
-                setup.width,
-                list_shift,
-                self.shading,
-            );
-            let options = Options {
-                cull: subject.cull,
-                shading: subject.shading,
-                light: self.constants[place].light(),
-                ..Options::default()
-            };
-            let mut put = |setup: &_, colour| writer.put(setup, colour);
-            clipped_drawn = clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-            let count = writer.finish().map_err(|_| Error::Full)?;
-            buffers.sets[1] = Some(buffers.clipped_set(count));
-        }
-        let drawn = counts.descriptors + clipped_drawn;
-        buffers.stats = Stats {
-            triangles_in: counts.triangles,
-            culled: counts.triangles.saturating_sub(drawn),
-            clipped: counts.exceptions,
-            drawn,
-            ..Stats::default()
-        };
-        Ok(())
-    }
-
     /// Cancels the frame and fails if the triangle engine has made no progress for too long.
     pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
-            return Err(self.give_up(output, EngineError::Timeout));
+            return Err(self.give_up(output, EngineError::Timeout.into()));
         }
         Ok(())
     }
 
     /// Cancels the running passes, and returns `error` as the reason to draw the frame by the CPU.
-    pub(super) fn give_up(&mut self, output: &Output, error: EngineError) -> Fallback {
+    pub(super) fn give_up(&mut self, output: &Output, error: Fallback) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
         self.invalidate(output.colour);
-        error.into()
+        error
     }
 
     /// The sets of lists in `self.buffers[place]`.

@@ -1,17 +1,19 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
 use glint_hal::triangle::{PassResult, TriangleEngine};
-use glint_model::{Frame, MeshSubject, Subject};
+use glint_model::{Frame, Subject};
+use litex_pac::cpu;
 
 use super::fallback::Fallback;
+use super::geometry::Cpu;
 use super::renderer::{GatewareRenderer, Output, Rendered};
 
 /// Number of times that the end of a pass is queried between two checks of progress.
 const POLLS: u32 = 100;
 
 impl GatewareRenderer {
-    /// Draws a frame `count` times, where each geometry pass runs during the raster pass of the frame before. The result
-    /// covers the work of `count` frames: for a mesh, the measurement begins when the first geometry pass has ended. The
+    /// Draws a frame `count` times, where the geometry passes run during the raster pass of the frame before. The result covers the
+    /// work of `count` frames: with a mesh, the measurement begins when the geometry passes of the first frame have ended. The
     /// console does not answer meanwhile.
     ///
     /// # Errors
@@ -20,40 +22,41 @@ impl GatewareRenderer {
         &mut self,
         frame: &Frame,
         output: &mut Output,
+        cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
-        match (&frame.subject, frame.subject.mesh_part()) {
+        match (&frame.subject, frame.subject.numbered_mesh(0, None)) {
             (Subject::Wireframe(wireframe), _) => {
                 self.repeat_lines(wireframe, frame, output, count)
             }
-            (_, Some(mesh)) => self.repeat_mesh(mesh, frame, output, count),
+            (_, Some(_)) => self.repeat_meshes(frame, output, cpu, count),
             (_, None) => self.repeat_field(frame, output, count),
         }
     }
 
-    fn repeat_mesh(
+    fn repeat_meshes(
         &mut self,
-        mesh: &MeshSubject,
         frame: &Frame,
         output: &mut Output,
+        cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
         self.start_measurement(frame);
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
-        let mut prepared = self.prepare_geometry(mesh, 0)?;
+        self.prepare_geometry(frame, 0)?;
         let (mut now, mut next) = (0, 1);
         for number in 0..=count {
-            self.start_geometry(prepared);
-            // Computes the constants for the next frame while the geometry pass runs.
+            let mut runs = self.start_geometry(frame, now, cpu);
+            // Computes the constants for the next frame while a geometry pass runs.
             self.update_constants(frame, next)?;
-            self.wait(TriangleEngine::geometry, output)?;
-            if let Err(error) = self.clip(mesh, now) {
-                return Err(self.give_up(output, error));
+            while self.check(runs, output)? {
+                self.wait(TriangleEngine::geometry, output)?;
+                runs = self.continue_geometry(frame, now);
             }
             // A raster pass may still read the buffers at `next`. This call only writes registers: the geometry pass, which
             // overwrites these buffers, starts after the end of the raster pass.
-            prepared = self.prepare_geometry(mesh, next)?;
+            self.prepare_geometry(frame, next)?;
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
             }
@@ -94,17 +97,26 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, 0))
     }
 
+    /// Cancels the frame if `result` is an error.
+    fn check<T>(&mut self, result: Result<T, Fallback>, output: &Output) -> Result<T, Fallback> {
+        result.map_err(|error| self.give_up(output, error))
+    }
+
     /// Waits for the end of the pass whose result the function `result` reads.
     pub(super) fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,
     ) -> Result<(), Fallback> {
+        let start = cpu::cycles();
         loop {
             for _ in 0..POLLS {
                 match result(&self.engine) {
-                    Some(Ok(())) => return Ok(()),
-                    Some(Err(error)) => return Err(self.give_up(output, error)),
+                    Some(Ok(())) => {
+                        self.waited += cpu::cycles() - start;
+                        return Ok(());
+                    }
+                    Some(Err(error)) => return Err(self.give_up(output, error.into())),
                     None => {}
                 }
             }

@@ -22,7 +22,8 @@
 //                 3 words out   in_ready   the first band    each further band
 //
 // `restart` (while idle) empties all lists, which takes 64 clocks; `finish` (a level, after the last input) writes the lengths
-// and ends with `done`. Items for which there is no room are dropped, and `full` is set: the frame is then incomplete.
+// and ends with `done`. Later inputs continue the lists until the next `restart`. Items for which there is no room are dropped,
+// and `full` is set: the frame is then incomplete.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // The first part of the triangle setup: computes the area, the facing, the bounds in pixels, and the start group (the eight
 // pixels in which rasterization begins). A triangle is dropped, with a pulse of `culled`, if it has no area, if it is a back
 // face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
-// picture are empty.
+// picture are empty. `mirror` exchanges front and back faces.
 //
 // Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 9 or 12. Two triangles are inside, in
 // different stages; `phase` counts the 3 clocks of a stage:
@@ -27,6 +27,7 @@ module cull #(
     input  wire  [10:0]            width,
     input  wire  [9:0]             height,
     input  wire                    cull_back,
+    input  wire                    mirror,
     output logic                   busy,
     output logic                   culled,
     input  wire                    in_valid,
@@ -173,7 +174,8 @@ module cull #(
     end
 
     // The reasons to cull the triangle, and the values that depend on its facing, registered for phase 2.
-    logic        front, no_area, no_column, no_row;
+    // `swap`: vertices 1 and 2 change places, so that the vertices are clockwise on the screen.
+    logic        swap, front, no_area, no_column, no_row;
     logic [39:0] magnitude;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
@@ -183,7 +185,7 @@ module cull #(
     assign right_last = right - 1'b1;
 
     always_comb begin
-        // `topmost` is the number of the highest vertex on the screen, after vertices 1 and 2 of a front face are swapped.
+        // `topmost` is the number of the highest vertex on the screen, after the swap of vertices 1 and 2.
         // Among vertices of equal height it is the smallest number.
         if ((last.y01[20] || last.y01 == '0) && !last.y20[20]) topmost = 2'd0;
         else if (last.y_same)                                  topmost = area[43] ? 2'd2 : 2'd1;
@@ -207,7 +209,8 @@ module cull #(
                 bottom <= cut_y[9:0];
             end
             default: begin
-                front        <= area[43];
+                swap         <= area[43];
+                front        <= area[43] ^ mirror;
                 no_area      <= area == '0;
                 no_column    <= left >= right;
                 no_row       <= top >= bottom;
@@ -219,7 +222,7 @@ module cull #(
         endcase
     end
 
-    // In a front face, vertices 1 and 2 are swapped. Values that change their sign use −v = ~v + 1.
+    // Values that change their sign use −v = ~v + 1.
     setup_pkg::oriented_t oriented;
 
     always_comb begin
@@ -235,12 +238,12 @@ module cull #(
         oriented.area        = magnitude;
         // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but gives that of a minuend LUTs of
         // its own.
-        oriented.not_w10     = {1'b0, last.v0.w} + ~{1'b0, front ? last.v2.w : last.v1.w};
-        oriented.not_w20     = {1'b0, last.v0.w} + ~{1'b0, front ? last.v1.w : last.v2.w};
-        oriented.x10         = front ? last.x20 : last.x10;
-        oriented.x02         = -(front ? last.x10 : last.x20);
-        oriented.y01         = (front ? ~last.y20 : last.y01) + 21'(front);
-        oriented.y20         = (front ? ~last.y01 : last.y20) + 21'(front);
+        oriented.not_w10     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v2.w : last.v1.w};
+        oriented.not_w20     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v1.w : last.v2.w};
+        oriented.x10         = swap ? last.x20 : last.x10;
+        oriented.x02         = -(swap ? last.x10 : last.x20);
+        oriented.y01         = (swap ? ~last.y20 : last.y01) + 21'(swap);
+        oriented.y20         = (swap ? ~last.y01 : last.y20) + 21'(swap);
         oriented.w0          = last.v0.w;
         oriented.y0          = last.v0.y;
         oriented.x0          = last.v0.x;
@@ -257,7 +260,7 @@ module cull #(
             localparam int unsigned OTHER = i == 0 ? 0 : 3 - i;
             triangle_pkg::light_t vertex;
 
-            assign vertex = front ? last_light[LIGHT_BITS * OTHER +: LIGHT_BITS] : last_light[LIGHT_BITS * i +: LIGHT_BITS];
+            assign vertex = swap ? last_light[LIGHT_BITS * OTHER +: LIGHT_BITS] : last_light[LIGHT_BITS * i +: LIGHT_BITS];
             assign lit[LIT_BITS * i +: LIT_BITS] = vertex.back != front ? {vertex.red, vertex.green, vertex.blue} : '0;
         end
 

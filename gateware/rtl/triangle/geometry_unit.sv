@@ -14,6 +14,10 @@
 // vertices or beyond the mesh's end) and `full` (no room for all descriptors, list entries or exceptions). The lists then name
 // the descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
 //
+// A frame of several meshes takes a start for each. With `flags.append` descriptors, lists, exceptions, their counts and `full`
+// continue those of the mesh before; size, places and `list_shift` must be the same. Exceptions have their numbers in their mesh.
+// After `restart` there is nothing to continue, and the lists are emptied.
+//
 // With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats.md, "Segments in memory"): mesh_walk reads them
 // as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
 //
@@ -70,7 +74,8 @@ module geometry_unit #(
     typedef enum logic [2:0] {IDLE, PREPARE, BEGIN, WALK, FINISH} state_t;
     state_t state;
 
-    logic clear, walk_busy, lists_idle, lists_done, drained, hurry;
+    // `has_lists`: the lists are those of a frame that was not cancelled.
+    logic clear, has_lists, walk_busy, lists_idle, lists_done, drained, hurry;
     logic [1:0] writes_idle;
 
     assign busy  = state != IDLE;
@@ -89,9 +94,11 @@ module geometry_unit #(
                 state <= IDLE;
             end
         endcase
+        if (clear) has_lists <= 1'b1;
         if (rst || restart) begin
-            state <= IDLE;
-            done  <= 1'b0;
+            state     <= IDLE;
+            done      <= 1'b0;
+            has_lists <= 1'b0;
         end
     end
 
@@ -193,7 +200,7 @@ module geometry_unit #(
         vertex_light vertex_light (
             .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
             .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
-            .in_normal(data[128 + 48 +: 48]), .in_colour(data[128 + 96 +: 16]),
+            .in_normal(data[128 + 48 +: 48]), .in_colour(flags.recolour ? parameters.colour : data[128 + 96 +: 16]),
             .give(projected_valid && projected_ready), .out_light(projected_light)
         );
 
@@ -226,11 +233,12 @@ module geometry_unit #(
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
     setup #(.SMOOTH(SMOOTH)) setup (
-        .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .row_light(view.row_light),
+        .clk, .rst(rst || restart), .width, .height, .cull_back(flags.cull), .mirror(flags.mirror), .row_light(view.row_light),
         .light_colour(parameters.light_colour), .ambient(parameters.ambient),
         .smooth(flags.smooth), .busy(), .culled, .drawn(),
         .in_valid(regular_valid), .in_ready(regular_ready), .in_vertices(regular),
-        .in_colour(regular_side[15:0]), .in_normal(regular_side[63:16]), .in_light(regular_light),
+        .in_colour(flags.recolour ? parameters.colour : regular_side[15:0]), .in_normal(regular_side[63:16]),
+        .in_light(regular_light),
         .out_valid(descriptor_valid), .out_ready(descriptor_ready), .out_descriptor(descriptor),
         .out_planes(planes)
     );
@@ -245,7 +253,8 @@ module geometry_unit #(
     assign piece_ready      = binner_ready && in_lines;
 
     binner #(.ADDRESS_BITS(ADDRESS_BITS), .COUNT_BITS(COUNT_BITS), .SMOOTH(SMOOTH), .LINES(LINES)) binner (
-        .clk, .rst(rst || restart), .restart(clear), .finish(state == FINISH), .done(lists_done), .idle(lists_idle), .full,
+        .clk, .rst(rst || restart), .restart(clear && !(flags.append && has_lists)), .finish(state == FINISH),
+        .done(lists_done), .idle(lists_idle), .full,
         .size(flags.size), .descriptor_base(parameters.descriptors[4 +: ADDRESS_BITS]),
         .descriptor_limit(parameters.descriptor_limit), .list_base(parameters.lists[4 +: ADDRESS_BITS]),
         .list_shift(parameters.list_shift), .exception_base(parameters.exceptions[4 +: ADDRESS_BITS]),

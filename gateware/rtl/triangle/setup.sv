@@ -10,8 +10,8 @@
 // last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
 // last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
 // for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
-// triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `row_light`,
-// `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
+// triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `mirror`,
+// `row_light`, `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.
 //
 // E0, E1 and E2 are the edge functions, A is the area, and (px, py) is the start relative to vertex 0. Edges 0 and 2 meet in
 // vertex 0, so both are evaluated from (px, py). Edge 1 follows from E0 + E1 + E2 = 2A = a. This holds at every point: the
@@ -43,6 +43,7 @@ module setup #(
     input  wire  [10:0]      width,
     input  wire  [9:0]       height,
     input  wire              cull_back,
+    input  wire              mirror,
     input  wire  [2:0][24:0] row_light,   // row of the light, s2.23
     input  wire  [2:0][8:0]  light_colour, // u1.8, red is the lowest
     input  wire  [2:0][8:0]  ambient,
@@ -90,7 +91,7 @@ module setup #(
     logic                     first_valid, cull_busy;
 
     cull #(.SMOOTH(SMOOTH)) cull_stage (
-        .clk, .rst, .width, .height, .cull_back, .busy(cull_busy), .culled,
+        .clk, .rst, .width, .height, .cull_back, .mirror, .busy(cull_busy), .culled,
         .in_valid, .in_ready, .in_vertices, .in_colour, .in_normal, .in_light,
         .out_valid(first_valid), .out_ready(beat), .out_triangle(first), .out_lit(first_lit)
     );

@@ -26,6 +26,9 @@ package triangle_registers_pkg;
         logic [1:0] size;
         logic cull;
         logic smooth;
+        logic append;
+        logic mirror;
+        logic recolour;
         logic lines;
         logic orthographic;
     } geometry_flags_t;
@@ -42,6 +45,7 @@ package triangle_registers_pkg;
         logic [19:0] exception_limit;
         logic [2:0][8:0] light_colour;
         logic [2:0][8:0] ambient;
+        logic [15:0] colour;
     } geometry_t;
 
     // Camera and light of the geometry pass: docs/formats.md, "Frame constants".

@@ -80,8 +80,11 @@ fn a_pass_of_lines_has_segments_and_no_exceptions() {
         descriptors: 0x4600_0000,
         descriptor_limit: 77,
         lists: 0x4700_0000,
+        list_shift: 9,
+        exceptions: 0x4710_0000,
+        exception_limit: 5,
     };
-    let prepared = engine.prepare_lines(&segments, Size::W640, &lists, 9);
+    let prepared = engine.prepare_lines(&segments, Size::W640, &lists);
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
     // SAFETY: the model has no engine that accesses memory.
@@ -120,16 +123,18 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         light: Some(&light),
         cull: true,
         shading: Shading::Smooth,
-        lists: Lists {
+        colour: None,
+        lists: Some(Lists {
             descriptors: 0x4600_0000,
             descriptor_limit: 77,
             lists: 0x4700_0000,
-        },
-        exceptions: 0x4710_0000,
-        exception_limit: 5,
+            list_shift: 9,
+            exceptions: 0x4710_0000,
+            exception_limit: 5,
+        }),
     };
     let mut engine = engine.unwrap();
-    let prepared = engine.prepare_geometry(&pass, 9).unwrap();
+    let prepared = engine.prepare_geometry(&pass).unwrap();
 
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
@@ -178,11 +183,44 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     assert_eq!(r.list_shift().read(), 9);
     let start = r.geometry().read();
     assert!(start.start() && start.cull() && start.smooth());
+    assert!(!start.append() && !start.mirror() && !start.recolour());
     assert_eq!(start.size(), Some(triangle::Size::W640));
     assert_eq!(
         block.borrow().writes.last().map(|write| write.0),
         Some(r.geometry().address())
     );
+}
+
+#[test]
+fn a_geometry_pass_continues_the_lists_of_the_pass_before() {
+    let (engine, block) = probe(IDENT);
+    let bytes = mesh();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
+    let mut frame = MeshSetup::new(&view, 640, 360, mesh.radius()).unwrap();
+    frame.mirrors = true;
+    let pass = Geometry {
+        mesh: &mesh,
+        frame: &frame,
+        light: None,
+        cull: false,
+        shading: Shading::Flat,
+        colour: Some(Rgb565(0x1234)),
+        lists: None,
+    };
+    let mut engine = engine.unwrap();
+    let prepared = engine.prepare_geometry(&pass).unwrap();
+    let r = registers();
+    let lists = [r.geometry_descriptors(), r.geometry_lists(), r.exceptions()]
+        .map(|register| register.address());
+    let kept = |(address, _): &(_, _)| !lists.contains(address);
+    assert!(block.borrow().writes.iter().all(kept), "their places hold");
+    // SAFETY: the model has no engine that accesses memory.
+    unsafe { engine.start_geometry(prepared) };
+    let start = r.geometry().read();
+    assert!(start.start() && start.append() && start.mirror() && start.recolour());
+    assert!(!start.cull() && !start.smooth());
+    assert_eq!(r.colour().read(), 0x1234);
 }
 
 #[test]
@@ -201,6 +239,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
         whole: false,
         depth: None,
         clear: 0xabcd,
+        list_shift: 11,
         sets: [Some(set(0)), None],
     };
     let r = registers();
@@ -237,6 +276,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
     );
     assert_eq!(r.depth().read(), 0x4140_0000);
     assert_eq!(r.clear().read(), 0xabcd);
+    assert_eq!(r.list_shift().read(), 11);
 }
 
 #[test]

@@ -74,13 +74,19 @@ struct Packer {
 impl Packer {
     /// Appends the lowest `width` bits of `value`, which must fit this width.
     fn put(&mut self, value: i64, width: usize) {
-        for i in 0..width {
-            let at = self.used + i;
-            if let Some(word) = self.words.get_mut(at / 32) {
-                *word |= ((value >> i & 1) as u32) << (at % 32);
+        let (mut value, mut left) = (value, width);
+        while left > 0 {
+            let shift = self.used % 32;
+            let count = left.min(32 - shift);
+            // The bits of this field in a word: `count` ones from `shift` on.
+            let mask = u32::MAX >> (32 - count) << shift;
+            if let Some(word) = self.words.get_mut(self.used / 32) {
+                *word |= (value as u32) << shift & mask;
             }
+            value >>= count;
+            left -= count;
+            self.used += count;
         }
-        self.used += width;
     }
 
     /// Appends a plane whose start is moved `back` columns to the left.
@@ -127,16 +133,31 @@ pub const fn list_shift(width: u32, words: usize) -> u32 {
     (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
 }
 
+/// Lengths of band lists and number of descriptors that a [`ListWriter`] has written.
+#[derive(Clone, Debug)]
+pub struct ListCounts {
+    lengths: [u32; LENGTHS],
+    descriptors: u32,
+    is_full: bool,
+}
+
+impl ListCounts {
+    /// Empty lists.
+    pub const EMPTY: Self = Self {
+        lengths: [0; LENGTHS],
+        descriptors: 0,
+        is_full: false,
+    };
+}
+
 /// Writes descriptors and band lists in the format of the geometry pass.
 pub struct ListWriter<'a> {
     descriptors: &'a mut [u32],
     lists: &'a mut [u32],
-    lengths: [u32; LENGTHS],
-    count: u32,
+    counts: &'a mut ListCounts,
     band_rows: u32,
     list_shift: u32,
     capability: Shading,
-    is_full: bool,
 }
 
 /// Error: no room for a descriptor or a list entry.
@@ -144,11 +165,12 @@ pub struct ListWriter<'a> {
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Starts an empty set of descriptors and band lists in two regions of memory, for a picture of this width and gateware
-    /// whose best shading is `capability`. A list has room for 4 << `list_shift` entries.
+    /// Continues a set of descriptors and band lists in two regions of memory, of which `counts` are written, for a picture of this
+    /// width and gateware whose best shading is `capability`. A list has room for 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],
+        counts: &'a mut ListCounts,
         width: u32,
         list_shift: u32,
         capability: Shading,
@@ -156,12 +178,10 @@ impl<'a> ListWriter<'a> {
         Self {
             descriptors,
             lists,
-            lengths: [0; LENGTHS],
-            count: 0,
+            counts,
             band_rows: band_rows(width),
             list_shift,
             capability,
-            is_full: false,
         }
     }
 
@@ -169,9 +189,10 @@ impl<'a> ListWriter<'a> {
     pub fn put(&mut self, setup: &Setup, colour: Rgb565) {
         let descriptor = Descriptor::new(setup, colour);
         let words = descriptor.words(self.capability);
-        let at = self.count as usize * words.len();
+        let counts = &mut *self.counts;
+        let at = counts.descriptors as usize * words.len();
         let Some(to) = self.descriptors.get_mut(at..at + words.len()) else {
-            self.is_full = true;
+            counts.is_full = true;
             return;
         };
         to.copy_from_slice(words);
@@ -179,30 +200,30 @@ impl<'a> ListWriter<'a> {
         // The bounds are in the picture and not empty.
         let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
         for band in top / rows..=(bottom - 1) / rows {
-            let Some(length) = self.lengths.get_mut(band as usize) else {
+            let Some(length) = counts.lengths.get_mut(band as usize) else {
                 continue;
             };
             let at = 4 * list_word(band, shift) as usize + *length as usize;
             match self.lists.get_mut(at) {
                 Some(entry) if *length < 4 << shift => {
-                    *entry = self.count;
+                    *entry = counts.descriptors;
                     *length += 1;
                 }
-                _ => self.is_full = true,
+                _ => counts.is_full = true,
             }
         }
-        self.count += 1;
+        counts.descriptors += 1;
     }
 
-    /// Writes the table of lengths and returns the number of descriptors.
+    /// Writes the table of lengths and returns the number of descriptors in the set.
     ///
     /// # Errors
     /// [`Full`] if a region of memory was too small.
     pub fn finish(self) -> Result<u32, Full> {
         match self.lists.first_chunk_mut() {
-            Some(table) if !self.is_full => {
-                *table = self.lengths;
-                Ok(self.count)
+            Some(table) if !self.counts.is_full => {
+                *table = self.counts.lengths;
+                Ok(self.counts.descriptors)
             }
             _ => Err(Full),
         }

@@ -146,18 +146,23 @@ impl MeshSetup {
     /// # Errors
     /// [`RenderError::Far`] for a far plane at the near plane or nearer.
     pub fn with_clip(self, clip: Clip) -> Result<Self, RenderError> {
-        let volume = match clip {
-            Clip::Guard => Volume::Guard,
+        let volume = self.volume_of(clip)?;
+        Ok(Self { volume, ..self })
+    }
+
+    /// The volume of a clipping, as [`with_clip`](Self::with_clip).
+    pub(crate) fn volume_of(&self, clip: Clip) -> Result<Volume, RenderError> {
+        match clip {
+            Clip::Guard => Ok(Volume::Guard),
             Clip::View { far } => {
                 let distance = (far.to_bits() as i64) << 9;
                 if distance <= self.near_plane {
                     return Err(RenderError::Far(far));
                 }
                 let far = distance - self.depth.origin.unwrap_or_default();
-                Volume::View { far }
+                Ok(Volume::View { far })
             }
-        };
-        Ok(Self { volume, ..self })
+        }
     }
 }
 

@@ -4,7 +4,6 @@ use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q8_24, U4_28, U8_28};
 use glint_core::matrix::{Matrix, Normals};
 
-use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::volume::Volume;
@@ -113,84 +112,128 @@ impl Placement {
     /// # Errors
     /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object;
     /// [`RenderError::Width`] if the picture of an orthographic camera is too narrow for them.
-    #[inline(never)]
     pub fn setup(
         &self,
         view: &View,
         camera: &MeshSetup,
         radius: u32,
     ) -> Result<MeshSetup, RenderError> {
+        let mut setup = *camera;
+        self.update(&mut setup, view, camera, radius, camera.volume)?;
+        Ok(setup)
+    }
+
+    /// Computes the frame constants as [`setup`](Self::setup) does, for another volume of the camera, in place: to copy them takes the soft
+    /// core long.
+    ///
+    /// # Errors
+    /// As [`setup`](Self::setup); `setup` must then not be used.
+    #[inline(never)]
+    pub(crate) fn update(
+        &self,
+        setup: &mut MeshSetup,
+        view: &View,
+        camera: &MeshSetup,
+        radius: u32,
+        volume: Volume,
+    ) -> Result<(), RenderError> {
         // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after the first rounding.
-        let [u, v, n] = [&camera.u, &camera.v, &camera.n].map(|row| product(row, &self.columns));
+        multiply(&mut setup.u, &camera.u, &self.columns);
+        multiply(&mut setup.v, &camera.v, &self.columns);
+        multiply(&mut setup.n, &camera.n, &self.columns);
+        // The light has the axes of the mesh, or, if its normals are turned, those of the world.
+        if self.normals.is_some() {
+            setup.light = camera.light;
+        } else {
+            multiply(&mut setup.light, &camera.light, &self.rotation);
+        }
         let [x, y, z] = self.origin(camera);
         let reach = self.reach(radius);
         // A part of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
-        let mut k = excess(largest(&n)).max(halvings(((z.abs() + (reach >> 1)) >> 41) as u32));
-        let mut f = camera.scale_shift;
-        let is_perspective = camera.projection == Projection::Perspective;
-        if is_perspective {
-            f += k;
-        } else {
-            // The vertex stage has depths of up to 16 world units, for which ke is 5.
-            k = k.max((camera.depth.exponent - 5).max(0) as u32);
-        }
-        // The rows u and v get as many fraction bits as fit: f − cut.
+        setup.translation = [x, y, z];
+        setup.width = camera.width;
+        setup.height = camera.height;
+        setup.scale_shift = camera.scale_shift;
+        setup.projection = camera.projection;
+        setup.near = camera.near;
+        setup.near_plane = camera.near_plane;
+        setup.depth = camera.depth;
+        setup.volume = volume;
+        setup.is_placed = true;
+        setup.mirrors = self.matrix.mirrors();
+        // Most objects fit the formats of the vertex stage as they are.
+        let rows = magnitude(&setup.u) | magnitude(&setup.v) | magnitude(&setup.n);
         let widest = x.abs().max(y.abs()) + reach;
-        let cut = excess(largest(&u).max(largest(&v)))
-            .max(halvings((widest >> 42) as u32))
-            .max(f.saturating_sub(18));
-        let scale_shift = f.saturating_sub(cut);
-        let near = camera.near >> k;
-        if is_perspective {
-            // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
-            let lead = 40_u32.saturating_sub(scale_shift).max(30);
-            if near >> lead == 0 {
-                let least = u32::try_from((1_u64 << (lead + k)) >> 9);
-                return Err(RenderError::Near {
-                    near: view.near(),
-                    least: U4_28::from_bits(least.unwrap_or(u32::MAX)),
-                });
-            }
-        } else if f < cut + LEAST_SHIFT {
-            let width = view.half_width().to_bits() << 1;
-            return Err(RenderError::Width {
-                width: U8_28::from_bits(width),
-                least: U8_28::from_bits(width << (cut + LEAST_SHIFT - f)),
+        let deepest = z.abs() + (reach >> 1);
+        let is_perspective = camera.projection == Projection::Perspective;
+        if rows + MOST_ROUNDING < 1 << 24
+            && widest >> 42 == 0
+            && deepest >> 41 == 0
+            && is_perspective
+        {
+            return Ok(());
+        }
+        fit(setup, view, camera, [widest, deepest])
+    }
+}
+
+/// Multiplies the homogeneous coordinates of an object by 2^−k and its rows by the power of two that fits, where `setup` has the constants
+/// without these factors. `widest` and `deepest` are the largest |X|, |Y| and |Z|.
+///
+/// Not inlined, as few objects need it.
+#[inline(never)]
+fn fit(
+    setup: &mut MeshSetup,
+    view: &View,
+    camera: &MeshSetup,
+    [widest, deepest]: [i64; 2],
+) -> Result<(), RenderError> {
+    let MeshSetup { u, v, n, .. } = *setup;
+    let mut k = excess(largest(&n)).max(halvings((deepest >> 41) as u32));
+    let mut f = camera.scale_shift;
+    let is_perspective = camera.projection == Projection::Perspective;
+    if is_perspective {
+        f += k;
+    } else {
+        // The vertex stage has depths of up to 16 world units, for which ke is 5.
+        k = k.max((camera.depth.exponent - 5).max(0) as u32);
+    }
+    // The rows u and v get as many fraction bits as fit: f − cut.
+    let cut = excess(largest(&u).max(largest(&v)))
+        .max(halvings((widest >> 42) as u32))
+        .max(f.saturating_sub(18));
+    let scale_shift = f.saturating_sub(cut);
+    let near = camera.near >> k;
+    if is_perspective {
+        // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
+        let lead = 40_u32.saturating_sub(scale_shift).max(30);
+        if near >> lead == 0 {
+            let least = u32::try_from((1_u64 << (lead + k)) >> 9);
+            return Err(RenderError::Near {
+                near: view.near(),
+                least: U4_28::from_bits(least.unwrap_or(u32::MAX)),
             });
         }
-        Ok(MeshSetup {
-            width: camera.width,
-            height: camera.height,
-            scale_shift,
-            projection: camera.projection,
-            u: halved(u, cut),
-            v: halved(v, cut),
-            n: halved(n, k),
-            translation: [shifted(x, cut), shifted(y, cut), shifted(z, k)],
-            near,
-            near_plane: camera.near_plane,
-            depth: DepthScale {
-                exponent: camera.depth.exponent - k as i32,
-                ..camera.depth
-            },
-            volume: match camera.volume {
-                Volume::Guard => Volume::Guard,
-                Volume::View { far } => Volume::View { far: far >> k },
-            },
-            is_placed: true,
-            light: self.light(&camera.light),
-            mirrors: self.matrix.mirrors(),
-        })
+    } else if f < cut + LEAST_SHIFT {
+        let width = view.half_width().to_bits() << 1;
+        return Err(RenderError::Width {
+            width: U8_28::from_bits(width),
+            least: U8_28::from_bits(width << (cut + LEAST_SHIFT - f)),
+        });
     }
-
-    /// The row of the light, turned to the axes of the mesh, s2.23; unchanged if the normals are turned to the world.
-    fn light(&self, row: &[i32; 3]) -> [i32; 3] {
-        if self.normals.is_some() {
-            return *row;
-        }
-        product(row, &self.rotation)
+    let [x, y, z] = setup.translation;
+    setup.scale_shift = scale_shift;
+    setup.u = halved(u, cut);
+    setup.v = halved(v, cut);
+    setup.n = halved(n, k);
+    setup.translation = [shifted(x, cut), shifted(y, cut), shifted(z, k)];
+    setup.near = near;
+    setup.depth.exponent -= k as i32;
+    if let Volume::View { far } = &mut setup.volume {
+        *far >>= k;
     }
+    Ok(())
 }
 
 /// The exact scalar product; below 2^62 for the numbers of rows, matrices and places.
@@ -198,16 +241,25 @@ impl Placement {
 /// Not inlined, because code that is executed once takes longer to load into the instruction cache than to run.
 #[inline(never)]
 fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
-    i64::from(a[0]) * i64::from(b[0])
-        + i64::from(a[1]) * i64::from(b[1])
-        + i64::from(a[2]) * i64::from(b[2])
+    wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
 }
 
 /// Multiplies a row by a matrix, given by its columns with 24 fraction bits, and rounds to nearest.
+///
+/// Not inlined, as [`dot`]; the scalar products are, because the row then stays in registers.
 #[inline(never)]
-fn product(row: &[i32; 3], columns: &[[i32; 3]; 3]) -> [i32; 3] {
+fn multiply(result: &mut [i32; 3], row: &[i32; 3], columns: &[[i32; 3]; 3]) {
+    let &[x, y, z] = row;
     let [a, b, c] = columns;
-    [a, b, c].map(|column| ((dot(row, column) + (1 << 23)) >> 24) as i32)
+    *result = [a, b, c].map(|&[i, j, k]| {
+        let sum = wide(x, i) + wide(y, j) + wide(z, k);
+        ((sum + (1 << 23)) >> 24) as i32
+    });
+}
+
+/// The exact product.
+const fn wide(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
 }
 
 fn transposed([a, b, c]: [[i32; 3]; 3]) -> [[i32; 3]; 3] {
@@ -223,6 +275,11 @@ const fn halvings(x: u32) -> u32 {
         count += 1;
     }
     count
+}
+
+/// A number at least as large as the magnitude of each entry of a row, and less than twice as large as the largest one.
+fn magnitude(&[x, y, z]: &[i32; 3]) -> u32 {
+    x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs()
 }
 
 /// The largest magnitude of a row; below 2^30.

@@ -11,6 +11,7 @@ use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners, vertex_light};
 use crate::triangle::raster;
+use crate::triangle::setup::Setup;
 use crate::triangle::shade::{Light, Lit};
 use crate::triangle::vertex::{Projected, ScreenVertex, project, transform};
 use crate::triangle::volume::Volume;
@@ -101,17 +102,17 @@ pub fn trace_frame(
     options: &Options,
     mut show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
-    let mut part = |_| {
-        Ok(Part {
-            mesh: *mesh,
-            frame,
-            options: *options,
-        })
+    let part = Part {
+        mesh: *mesh,
+        frame,
+        options: *options,
     };
-    draw_parts(1, &mut part, options.clear, target, scratch, &mut show)
+    let mut part = |number| Ok((number == 0).then_some(part));
+    draw_parts(&mut part, options.clear, target, scratch, &mut show)
 }
 
 /// A mesh of a frame: its frame constants and options.
+#[derive(Clone, Copy, Debug)]
 pub struct Part<'a> {
     /// The mesh.
     pub mesh: Mesh<'a>,
@@ -121,50 +122,90 @@ pub struct Part<'a> {
     pub options: Options<'a>,
 }
 
-/// Draws the `count` parts of a frame, that `part` returns by their numbers, over the colour `clear`. `part` is called twice for a part
-/// with triangles to clip.
-///
-/// Unclipped triangles are drawn by part and index, then clipped triangles by part and index, as the gateware does with the lists of
-/// its passes.
-///
-/// Compiled once, with the optimisation of this crate.
+/// Draws the parts of a frame over the colour `clear`, from which [`set_up_parts`] makes triangles. Calls `show` with each triangle
+/// before it is drawn.
 ///
 /// # Errors
-/// [`RenderError`]. After an error of `part` the frame is incomplete; after any other the frame buffer is unchanged.
-#[inline(never)]
+/// As [`set_up_parts`], or the size of a part differs from that of the frame buffer. If no triangle was drawn before, the frame buffer is
+/// unchanged.
 pub fn draw_parts<'a>(
-    count: usize,
-    part: &mut dyn FnMut(usize) -> Result<Part<'a>, RenderError>,
+    part: &mut dyn FnMut(usize) -> Result<Option<Part<'a>>, RenderError>,
     clear: u16,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
     show: &mut dyn FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
     target.check()?;
+    let size = (target.width, target.height);
+    let mut pixels = Stats::default();
+    let mut is_clear = false;
+    let mut draw = |triangle: &DrawnTriangle, setup: &Setup| {
+        if !is_clear {
+            target.clear(clear);
+            is_clear = true;
+        }
+        show(triangle);
+        let coverage = raster::draw(setup, triangle.colour, target);
+        pixels.pixels_tested += u64::from(coverage.tested);
+        pixels.pixels_covered += u64::from(coverage.covered);
+        pixels.pixels_drawn += u64::from(coverage.drawn);
+    };
+    let stats = set_up_parts(part, size, scratch, &mut draw)?;
+    if !is_clear {
+        target.clear(clear);
+    }
+    Ok(Stats {
+        pixels_tested: pixels.pixels_tested,
+        pixels_covered: pixels.pixels_covered,
+        pixels_drawn: pixels.pixels_drawn,
+        ..stats
+    })
+}
+
+/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each and its setup. `part` returns each part by
+/// its number, and `None` after the last one; it is called twice for a part with triangles to clip. The counts of pixels in the result
+/// are 0.
+///
+/// Unclipped triangles come by part and index, then clipped triangles by part and index, as the gateware draws them from the lists of
+/// its passes.
+///
+/// Compiled once, with the optimisation of this crate.
+///
+/// # Errors
+/// [`RenderError`]; after an error of `part` some triangles may have been emitted.
+#[inline(never)]
+pub fn set_up_parts<'a>(
+    part: &mut dyn FnMut(usize) -> Result<Option<Part<'a>>, RenderError>,
+    (width, height): (u32, u32),
+    scratch: &mut [Projected],
+    emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
+) -> Result<Stats, RenderError> {
     let mut stats = Stats::default();
     // Number of the first part with triangles to clip, of all such parts, and of the part whose vertices are in the scratch memory.
     let (mut first, mut projected) = (None, 0);
-    for number in 0..count {
-        let Part {
-            mesh,
-            frame,
-            options,
-        } = part(number)?;
-        target.check_size((frame.width, frame.height))?;
+    let mut number = 0;
+    while let Some(Part {
+        mesh,
+        frame,
+        options,
+    }) = part(number)?
+    {
+        if (frame.width, frame.height) != (width, height) {
+            return Err(RenderError::Size {
+                width: frame.width,
+                height: frame.height,
+            });
+        }
         let (expected, found) = (mesh.largest_chunk(), scratch.len());
         let scratch = scratch
             .get_mut(..expected)
             .ok_or(RenderError::Scratch { expected, found })?;
-        if number == 0 {
-            target.clear(clear);
-        }
         stats.triangles_in += mesh.triangle_count();
         let clipped = stats.clipped;
         let mut renderer = Renderer {
             frame,
             options,
-            target,
-            show,
+            emit,
             stats,
         };
         renderer.regular(&mesh, scratch);
@@ -173,31 +214,31 @@ pub fn draw_parts<'a>(
             first = Some(number);
         }
         projected = number;
-    }
-    if count == 0 {
-        target.clear(clear);
+        number += 1;
     }
     let mut left = stats.clipped;
-    for number in first.unwrap_or(count)..count {
-        if left == 0 {
-            break;
-        }
-        let Part {
+    for number in first.unwrap_or(number)..number {
+        let Some(Part {
             mesh,
             frame,
             options,
-        } = part(number)?;
+        }) = part(number)?
+        else {
+            break;
+        };
         let mut renderer = Renderer {
             frame,
             options,
-            target,
-            show,
+            emit,
             stats,
         };
         // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
         let is_projected = number == projected && mesh.chunks().nth(1).is_none();
         left = renderer.exceptions(&mesh, scratch, is_projected, left);
         stats = renderer.stats;
+        if left == 0 {
+            break;
+        }
         projected = number;
     }
     stats.culled = stats.triangles_in - stats.drawn;
@@ -214,17 +255,16 @@ enum Path<'a> {
     Exception,
 }
 
-/// Draws the triangles of one mesh.
+/// Makes the triangles of one mesh.
 struct Renderer<'a, 'b> {
     frame: MeshSetup,
     options: Options<'a>,
-    target: &'a mut FrameBuffer<'b>,
-    show: &'a mut dyn FnMut(&DrawnTriangle),
+    emit: &'b mut dyn FnMut(&DrawnTriangle, &Setup),
     stats: Stats,
 }
 
 impl Renderer<'_, '_> {
-    /// Draws the triangles that need no clipping, and counts those that do.
+    /// Makes the triangles that need no clipping, and counts those that do.
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {
@@ -252,7 +292,7 @@ impl Renderer<'_, '_> {
         }
     }
 
-    /// Draws the triangles that need clipping, of which the frame has `left`. With `is_projected` the vertices of the mesh are in the
+    /// Makes the triangles that need clipping, of which the frame has `left`. With `is_projected` the vertices of the mesh are in the
     /// scratch memory. Returns the number of those that other meshes have.
     fn exceptions(
         &mut self,
@@ -334,7 +374,7 @@ impl Renderer<'_, '_> {
         off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
     }
 
-    /// Clips a triangle and draws its parts. Returns whether a part reached the walker.
+    /// Clips a triangle and sets up its parts. Returns whether a part reached the walker.
     fn clip(&mut self, index: u32, triangle: &Triangle, chunk: &Chunk) -> bool {
         let (frame, options) = (self.frame, self.options);
         let mut any = false;
@@ -351,7 +391,7 @@ impl Renderer<'_, '_> {
         any
     }
 
-    /// Sets up, shades and walks one triangle on the screen. Returns whether the triangle reached the walker.
+    /// Sets up and shades one triangle on the screen. Returns whether the triangle reaches the walker.
     fn draw(
         &mut self,
         index: u32,
@@ -364,18 +404,15 @@ impl Renderer<'_, '_> {
         else {
             return false;
         };
-        (self.show)(&DrawnTriangle {
+        let triangle = DrawnTriangle {
             index,
             vertices: placed.oriented.vertices,
             facing: placed.oriented.facing,
             colour: placed.colour,
             lit: placed.lit,
             clipped,
-        });
-        let coverage = raster::draw(&placed.setup(), placed.colour, self.target);
-        self.stats.pixels_tested += u64::from(coverage.tested);
-        self.stats.pixels_covered += u64::from(coverage.covered);
-        self.stats.pixels_drawn += u64::from(coverage.drawn);
+        };
+        (self.emit)(&triangle, &placed.setup());
         true
     }
 }

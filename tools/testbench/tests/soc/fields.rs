@@ -75,7 +75,7 @@ fn eyes() -> [Option<Stereo>; 3] {
     ]
 }
 
-fn board() -> SimulatedBoard {
+pub fn board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }
 
@@ -133,7 +133,7 @@ fn compare_rays(replies: &Replies, name: &str, stats: &Stats) {
     assert_eq!(evaluations, rays.evaluations, "{name}: evaluations");
 }
 
-fn compare_picture(
+pub fn compare_picture(
     console: &mut Console<SimulatedBoard>,
     replies: &Replies,
     name: &str,
@@ -235,7 +235,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
 }
 
 /// Copies a mesh into the board's staging memory; returns the `load` command that takes the mesh from there.
-fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
+pub fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let staging = send(console, &["info".to_owned()]).address("staging");
     let memory = console.board().memory().unwrap();

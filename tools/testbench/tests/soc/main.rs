@@ -12,6 +12,7 @@
 //! ```
 
 mod fields;
+mod objects;
 
 use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};

@@ -123,7 +123,7 @@ fn a_build_without_lines_refuses_them() {
         let mut bench = Bench::of(name, 48, 5);
         bench.limits.lines = lines;
         let mut errors = [0; 10];
-        for _ in 0..1000 {
+        for _ in 0..1500 {
             bench.passes = [GEOMETRY, RASTER].map(|which| some_pass(&mut random, which));
             let of_lines = random.random();
             bench.passes[GEOMETRY]
@@ -151,7 +151,7 @@ fn a_build_without_triangles_refuses_meshes() {
     let mut bench = Bench::of("triangle_control_fields_alone", 48, 4);
     bench.limits.triangles = false;
     let mut errors = [0; 9];
-    for _ in 0..2000 {
+    for _ in 0..3000 {
         bench.passes = [GEOMETRY, RASTER].map(|which| some_pass(&mut random, which));
         bench.list_shift = random.random_range(0..20);
         let starts = bench.counts.map(|counts| counts[1]);

@@ -2,12 +2,15 @@
 //! equal. The model clips triangles for the engine, as the firmware does on the board.
 
 mod bench;
+mod expected;
 mod fields;
 mod gathered;
 mod light;
 mod lines;
+mod objects;
 
-use bench::{Bench, CLEAR, SIZES, expected, expected_on, expected_smooth};
+use bench::Bench;
+use expected::{CLEAR, SIZES, expected, expected_on, expected_smooth};
 use glint::{convert, generate};
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q32_32, Turns};

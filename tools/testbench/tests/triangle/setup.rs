@@ -85,7 +85,13 @@ impl Types {
 /// Returns the two payloads (ports) of the descriptor that the module must produce; `None` for a culled triangle.
 fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
-    if frame.cull && oriented.facing == Facing::Back {
+    let facing = oriented.facing;
+    let seen = if frame.mirror {
+        facing.opposite()
+    } else {
+        facing
+    };
+    if frame.cull && seen == Facing::Back {
         return None;
     }
     let (width, height) = frame.size;
@@ -94,13 +100,12 @@ fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
         Rgb565(input.colour),
         frame
             .light
-            .shares(intensity(input.normal, &frame.light.row, oriented.facing)),
+            .shares(intensity(input.normal, &frame.light.row, seen)),
     );
-    let facing = oriented.facing;
     let setup = match frame.shading {
         Shading::Flat => Setup::new(&oriented, bounds),
         Shading::Smooth => {
-            let lit = facing.order(input.light.map(|light| light.to(facing)));
+            let lit = facing.order(input.light.map(|light| light.to(seen)));
             Setup::smooth(&oriented, bounds, &lit)
         }
     };
@@ -150,6 +155,7 @@ impl Bench {
         self.module.drive("width", frame.size.0);
         self.module.drive("height", frame.size.1);
         self.module.drive("cull_back", frame.cull);
+        self.module.drive("mirror", frame.mirror);
         let light = &frame.light;
         self.module.drive_all("row_light", light.row);
         self.module.drive_all("light_colour", light.colour);
@@ -369,6 +375,7 @@ fn corners(shading: Shading) {
             let frame = Frame {
                 size,
                 cull,
+                mirror: false,
                 light: WHITE,
                 shading,
             };
@@ -420,6 +427,7 @@ fn clocks(shading: Shading) {
     let frame = Frame {
         size: SIZES[0],
         cull: true,
+        mirror: false,
         light: WHITE,
         shading,
     };

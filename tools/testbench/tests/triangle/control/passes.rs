@@ -98,7 +98,14 @@ impl Pass {
             Self {
                 flags: Flags {
                     size: 1,
-                    others: vec![("cull", true), ("smooth", false), ("lines", false)],
+                    others: vec![
+                        ("cull", true),
+                        ("smooth", false),
+                        ("append", false),
+                        ("mirror", false),
+                        ("recolour", false),
+                        ("lines", false),
+                    ],
                 },
                 ports: geometry.to_vec(),
             },

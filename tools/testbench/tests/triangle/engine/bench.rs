@@ -1,16 +1,13 @@
-//! Test bench of the triangle engine, with a memory, and the expected frames.
+//! Test bench of the triangle engine, with a memory.
 
-use glint_core::camera::{Projection, View};
+use glint_core::camera::Projection;
 use glint_core::mesh::Mesh;
 use glint_model::triangle::descriptor::{Descriptor, band_rows, list_word, words};
-use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex_cache;
-use glint_model::{
-    DrawnTriangle, FrameBuffer, MeshLight, MeshSetup, Options, Projected, Shading, Stats, trace,
-};
+use glint_model::{MeshLight, MeshSetup, Options, Shading};
 use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePort};
 
-pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
+use super::expected::{Expected, SIZES};
 
 // Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: the engine writes the first one,
 // and the clipper (firmware on the board, here the model) the second one.
@@ -28,125 +25,23 @@ const BEHIND: usize = 4096;
 /// Largest number of exceptions (triangles left to the clipper) that the engine may write. There is also room for this number
 /// of descriptors of three words each; a descriptor for smooth shading takes six.
 const LIMIT: u32 = 80_000;
-pub const CLEAR: u16 = 0x1234;
 
-/// A frame drawn by the model.
-pub struct Expected {
-    pub size: (u32, u32),
-    options: Options<'static>,
-    pub colour: Vec<u16>,
-    pub depth: Vec<u32>,
-    frame: MeshSetup,
-    clipped: Vec<DrawnTriangle>,
-    pub stats: Stats,
-}
-
-/// Draws a frame with the model.
-pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
-    expected_on(CLEAR, mesh, view, size, cull)
-}
-
-/// Draws a frame with the model; pixels without a triangle have the colour `clear`.
-pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
-    let options = Options {
-        cull,
-        clear,
-        ..Options::default()
-    };
-    expected_with(options, mesh, view, size)
-}
-
-/// Draws a frame with the model, with smooth shading.
-pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
-    let options = Options {
-        cull,
-        clear: CLEAR,
-        shading: Shading::Smooth,
-        ..Options::default()
-    };
-    expected_with(options, mesh, view, size)
-}
-
-/// Draws a frame with the model, with any options.
-pub fn expected_with(
-    options: Options<'static>,
-    mesh: &[u8],
-    view: &View,
-    size: (u32, u32),
-) -> Expected {
-    let mesh = &Mesh::new_checked(mesh).unwrap();
-    let pixels = (size.0 * size.1) as usize;
-    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
-    let vertices = mesh.chunks().map(|chunk| chunk.vertex_count()).max();
-    let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
-    let mut target = FrameBuffer {
-        width: size.0,
-        height: size.1,
-        colour: &mut colour,
-        depth: &mut depth,
-    };
-    let mut clipped = Vec::new();
-    let stats = trace(
-        mesh,
-        view,
-        &mut target,
-        &mut scratch,
-        &options,
-        |triangle| {
-            if triangle.clipped {
-                clipped.push(*triangle);
-            }
-        },
-    )
-    .unwrap();
-    let mut frame = MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap();
-    if let Some(light) = options.light {
-        frame.light = light.row;
-    }
-    Expected {
-        size,
-        options,
-        colour,
-        depth,
-        frame,
-        clipped,
-        stats,
-    }
-}
-
-/// Makes an expected frame of colours and depth codes that were drawn otherwise, without triangles.
-pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>) -> Expected {
-    Expected {
-        size,
-        options: Options {
-            clear: CLEAR,
-            ..Options::default()
-        },
-        colour,
-        depth,
-        frame: MeshSetup::new(view, size.0, size.1, 0).unwrap(),
-        clipped: vec![],
-        stats: Stats::default(),
-    }
+/// Returns the byte address of a word of 16 bytes.
+fn bytes(word: u32) -> u64 {
+    u64::from(word) * 16
 }
 
 /// Writes the lists and descriptors of the clipped triangles to memory, as the firmware does. `ability` is the shading
 /// that the engine was built for.
 fn write_clipped(memory: &mut Memory, expected: &Expected, ability: Shading) {
-    let (width, height) = expected.size;
-    let rows = band_rows(width);
+    let rows = band_rows(expected.size.0);
     let mut lists = vec![Vec::new(); 64];
-    for (number, triangle) in (0_u32..).zip(&expected.clipped) {
-        let oriented = Oriented::new(triangle.vertices).unwrap();
-        let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
-        let setup = match &triangle.lit {
-            None => Setup::new(&oriented, bounds),
-            Some(lit) => Setup::smooth(&oriented, bounds, lit),
-        };
-        let descriptor = Descriptor::new(&setup, triangle.colour);
+    for (number, (setup, colour)) in (0_u32..).zip(&expected.clipped) {
+        let descriptor = Descriptor::new(setup, *colour);
         let words = descriptor.words(ability);
         let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
         memory.write(DESCRIPTORS[1] + bytes.len() as u32 / 16 * number, &bytes);
+        let bounds = setup.bounds;
         for band in bounds.top as u32 / rows..=(bounds.bottom as u32 - 1) / rows {
             lists[band as usize].extend(number.to_le_bytes());
         }
@@ -294,17 +189,19 @@ impl Bench {
 
     /// Sets the engine's parameters: mesh, frame constants, memory map.
     pub fn configure(&mut self, mesh: &[u8], expected: &Expected) {
+        let Expected { frame, options, .. } = expected;
+        self.configure_geometry(mesh, frame, options);
+        self.set("geometry_flags.append", 0);
+        self.configure_raster(expected);
+    }
+
+    /// Sets the parameters of a geometry pass: mesh, frame constants, options, memory map.
+    pub fn configure_geometry(&mut self, mesh: &[u8], frame: &MeshSetup, options: &Options) {
         self.memory.write(MESH, mesh);
-        let frame = &expected.frame;
         let size = SIZES
             .iter()
-            .position(|&size| size == expected.size)
+            .position(|&size| size == (frame.width, frame.height))
             .unwrap() as u64;
-        let whole = self.left[self.slot]
-            .is_some_and(|left| left != (expected.size, expected.options.clear));
-        let frame_slot = self.slot as u64;
-        let options = &expected.options;
-        let bytes = |word: u32| u64::from(word) * 16;
         for (path, value) in [
             // The engine gets the address after the mesh's header, which has two words.
             ("geometry.mesh", bytes(MESH + 2)),
@@ -331,17 +228,15 @@ impl Bench {
                 "geometry_flags.orthographic",
                 (frame.projection == Projection::Orthographic).into(),
             ),
+            ("geometry_flags.mirror", frame.mirrors.into()),
+            ("geometry_flags.recolour", options.colour.is_some().into()),
+            (
+                "geometry.colour",
+                options.colour.unwrap_or_default().0.into(),
+            ),
             ("view.scale_shift", frame.engine_shift().into()),
             ("view.near_z", frame.near as u64),
             ("view.depth_mantissa", frame.depth.mantissa.into()),
-            ("raster_flags.size", size),
-            ("raster_flags.depth", self.with_depth.into()),
-            ("raster_flags.slot", frame_slot),
-            ("raster_flags.whole", whole.into()),
-            ("raster.frame", bytes(FRAMES[self.slot])),
-            ("raster.depth", bytes(DEPTH)),
-            ("raster.clear", options.clear.into()),
-            ("raster.list_shift", LIST_SHIFT.into()),
         ] {
             self.set(path, value);
         }
@@ -360,6 +255,25 @@ impl Bench {
         }
         self.module
             .drive("view.depth_exponent", frame.depth.exponent);
+    }
+
+    /// Sets the parameters of a raster pass.
+    fn configure_raster(&mut self, expected: &Expected) {
+        let Expected { size, options, .. } = expected;
+        let code = SIZES.iter().position(|s| s == size).unwrap() as u64;
+        let whole = self.left[self.slot].is_some_and(|left| left != (*size, options.clear));
+        for (path, value) in [
+            ("raster_flags.size", code),
+            ("raster_flags.depth", self.with_depth.into()),
+            ("raster_flags.slot", self.slot as u64),
+            ("raster_flags.whole", whole.into()),
+            ("raster.frame", bytes(FRAMES[self.slot])),
+            ("raster.depth", bytes(DEPTH)),
+            ("raster.clear", options.clear.into()),
+            ("raster.list_shift", LIST_SHIFT.into()),
+        ] {
+            self.set(path, value);
+        }
         self.module.drive_all("raster.lists", LISTS.map(bytes));
         self.module
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
@@ -389,6 +303,12 @@ impl Bench {
         let wanted = [0, 0, stats.triangles_in.into(), stats.clipped.into()];
         assert_eq!(counts, wanted, "{name}: error, full, triangles, exceptions");
 
+        self.draw_lists(name, expected, geometry)
+    }
+
+    /// Draws the frame of the lists of geometry passes, which took `geometry` clocks, and compares it with the expected one.
+    pub fn draw_lists(&mut self, name: &str, expected: &Expected, geometry: u64) -> Clocks {
+        self.configure_raster(expected);
         write_clipped(&mut self.memory, expected, self.ability);
         let counts = [
             self.read("results.descriptor_count"),
@@ -409,6 +329,13 @@ impl Bench {
             read: self.reads[2].given - read,
             written: self.frame_words() - written,
         }
+    }
+
+    /// The numbers of the exceptions that geometry passes have listed.
+    pub fn exceptions(&self) -> Vec<u32> {
+        let count = self.read("results.exception_count") as u32;
+        let entry = |index| self.memory.entry(EXCEPTIONS, index);
+        (0..count).map(entry).collect()
     }
 
     /// Waits for the end of the raster pass, and compares its frame with the expected one. Returns the number of clocks.

@@ -15,7 +15,8 @@ use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
 
-use super::bench::{Bench, CLEAR, Expected, picture};
+use super::bench::Bench;
+use super::expected::{CLEAR, Expected, picture};
 
 /// The picture of a field, and the pixels of each band.
 struct Picture {

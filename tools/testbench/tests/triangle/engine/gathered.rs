@@ -6,7 +6,8 @@ use glint_model::triangle::descriptor::list_word;
 use glint_testbench::Bits;
 use glint_vectors::meshes::ahead;
 
-use super::bench::{Bench, CLEAR, DESCRIPTORS, Expected, LIST_SHIFT, LISTS, MESH, picture};
+use super::bench::{Bench, DESCRIPTORS, LIST_SHIFT, LISTS, MESH};
+use super::expected::{CLEAR, Expected, picture};
 
 impl Expected {
     /// A frame with nothing drawn.

@@ -8,7 +8,8 @@ use glint_vectors::scenes::scenes;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use super::bench::{Bench, CLEAR, Expected, SIZES, expected_with};
+use super::bench::Bench;
+use super::expected::{CLEAR, Expected, SIZES, expected_with};
 use super::generated;
 
 /// Draws a frame with the model in the given lighting, with `shading`. Engine and model have the same pictures if back faces are culled,

@@ -8,7 +8,8 @@ use glint_vectors::segments::{difficult, of_50_pixels, random};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-use super::bench::{Bench, Expected, SIZES, expected};
+use super::bench::Bench;
+use super::expected::{Expected, SIZES, expected};
 use super::gathered::Gathered;
 use super::generated;
 

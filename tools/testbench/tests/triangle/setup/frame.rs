@@ -4,11 +4,12 @@ use glint_model::{MeshLight, SIZES, Shading};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Frame constants: the picture's size, culling of back faces, the light, and the shading.
+/// Frame constants: the picture's size, culling of back faces, whether the mesh is mirrored, the light, and the shading.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     pub size: (u32, u32),
     pub cull: bool,
+    pub mirror: bool,
     pub light: MeshLight,
     pub shading: Shading,
 }
@@ -32,6 +33,7 @@ pub fn frame(random: &mut Pcg64Mcg, round: usize) -> Frame {
     Frame {
         size: SIZES[round % 3],
         cull: round.is_multiple_of(2),
+        mirror: round % 8 > 4,
         light: if round % 4 < 2 {
             MeshLight { row, ..WHITE }
         } else {

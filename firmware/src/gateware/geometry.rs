@@ -1,0 +1,247 @@
+//! The geometry passes of a frame: one for each mesh, and clipping by the CPU.
+//!
+//! While the pass of a mesh runs, the CPU clips the exceptions of the mesh before, computes the constants of the mesh after, and
+//! writes them to the registers of the engine, which has copied those of the running pass.
+//!
+//! Some options of meshes need the CPU for all steps before the raster pass, which it then does for all meshes of the frame.
+
+use glint_core::colour::{Shading, Winding};
+use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
+use glint_model::triangle::descriptor::{ListCounts, ListWriter};
+use glint_model::triangle::setup::Setup;
+use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, clip_exceptions};
+use litex_pac::cpu;
+
+use super::buffers::Buffers;
+use super::fallback::Fallback;
+use crate::memory::Scratch;
+
+/// Number of triangles that the CPU makes between two calls of [`Cpu::progress`].
+const TRIANGLES_A_CALL: u32 = 32;
+
+/// Means of the CPU for steps that the gateware lacks.
+pub struct Cpu<'a> {
+    /// Memory for projected vertices.
+    pub scratch: &'a mut Scratch,
+    /// Called at short intervals.
+    pub progress: &'a mut dyn FnMut(),
+}
+
+/// A frame, and what its geometry passes use.
+pub struct Job<'a> {
+    /// The frame.
+    pub frame: &'a Frame<'a>,
+    /// Frame constants of all meshes.
+    pub constants: &'a FrameConstants,
+    /// The engine.
+    pub engine: &'a mut TriangleEngine,
+    /// The memory of the frame.
+    pub buffers: &'a mut Buffers,
+}
+
+/// The state of the geometry passes.
+pub struct GeometryPasses {
+    /// Best shading of the engine.
+    shading: Shading,
+    /// Number of the mesh whose pass was started last.
+    number: usize,
+    /// Frame constants of this object and of the next one, each at its number modulo 2. A mesh that is no object has those of the
+    /// frame.
+    setups: [Option<MeshSetup>; 2],
+    /// The pass of the next mesh, whose registers have been written.
+    prepared: Option<Prepared>,
+    /// Whether the CPU makes the descriptors of all meshes, without geometry passes.
+    by_cpu: bool,
+}
+
+impl GeometryPasses {
+    /// Passes of an engine whose best shading is `shading`.
+    pub const fn new(shading: Shading) -> Self {
+        Self {
+            shading,
+            number: 0,
+            setups: [None; 2],
+            prepared: None,
+            by_cpu: false,
+        }
+    }
+
+    /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
+    pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
+        self.prepared = None;
+        self.by_cpu = needs_cpu(job.frame);
+        if self.by_cpu {
+            return Ok(());
+        }
+        self.prepare_mesh(job, 0)
+    }
+
+    /// Writes the registers of the geometry pass of the mesh with this number, if the frame has it.
+    fn prepare_mesh(&mut self, job: &mut Job, number: usize) -> Result<(), Fallback> {
+        let Some((subject, options)) = job
+            .frame
+            .subject
+            .numbered_mesh(number, job.constants.light())
+        else {
+            return Ok(());
+        };
+        let constants = job.constants.mesh();
+        let constants = constants.ok_or(EngineError::from(Error::Size))?;
+        let own = &mut self.setups[number % 2];
+        let setup = job.frame.mesh_setup(constants, number, own)?;
+        let pass = Geometry {
+            mesh: &subject.mesh,
+            frame: setup,
+            light: job.constants.light(),
+            cull: options.cull,
+            shading: options.shading,
+            colour: options.colour,
+            lists: (number == 0).then(|| job.buffers.lists(self.shading, setup.width)),
+        };
+        self.prepared = Some(job.engine.prepare_geometry(&pass)?);
+        Ok(())
+    }
+
+    /// Starts the prepared geometry pass of the first mesh, and prepares that of the second one. Returns whether a pass runs: there may be
+    /// no mesh, or the CPU has made all descriptors.
+    pub fn start(&mut self, job: &mut Job, cpu: &mut Cpu) -> Result<bool, Fallback> {
+        job.buffers.clear();
+        if self.by_cpu {
+            self.set_up(job, cpu)?;
+            return Ok(false);
+        }
+        self.number = 0;
+        let starts = self.start_prepared(job);
+        if starts {
+            self.prepare_mesh(job, 1)?;
+        }
+        Ok(starts)
+    }
+
+    /// Starts the prepared geometry pass. Returns whether there is one.
+    fn start_prepared(&mut self, job: &mut Job) -> bool {
+        let Some(pass) = self.prepared.take() else {
+            return false;
+        };
+        // SAFETY: the buffers belong to the renderer, are not used by an earlier frame, and are read after the end of this pass; the
+        // mesh stays while the renderer is busy.
+        unsafe { job.engine.start_geometry(pass) };
+        true
+    }
+
+    /// Continues after the end of a geometry pass: starts that of the next mesh, collects the results of this one, and prepares the
+    /// pass after the next. Returns whether there is a next mesh.
+    pub fn advance(&mut self, job: &mut Job) -> Result<bool, Fallback> {
+        let (number, counts) = (self.number, job.engine.counts());
+        let starts = self.start_prepared(job);
+        self.collect(job, number, counts)?;
+        if starts {
+            self.number = number + 1;
+            self.prepare_mesh(job, number + 2)?;
+        }
+        Ok(starts)
+    }
+
+    /// Adds the results of the geometry pass of a mesh to those of the frame: the counts, and the triangles that need clipping, which
+    /// are clipped.
+    fn collect(&mut self, job: &mut Job, number: usize, counts: Counts) -> Result<(), EngineError> {
+        let buffers = &mut *job.buffers;
+        let listed = buffers.stats.clipped;
+        let drawn_before = buffers.sets[0].map_or(0, |set| set.count);
+        buffers.sets[0] = Some(buffers.set(counts.descriptors));
+        let mut drawn = counts.descriptors.saturating_sub(drawn_before);
+        if counts.exceptions > listed {
+            let subject = job
+                .frame
+                .subject
+                .numbered_mesh(number, job.constants.light());
+            let setup = match job.frame.subject.objects() {
+                Some(_) => self.setups[number % 2].as_ref(),
+                None => job.constants.mesh(),
+            };
+            let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
+            if buffers.sets[1].is_none() {
+                buffers.clipped_counts = ListCounts::EMPTY;
+            }
+            cpu::flush_data_cache();
+            let listed = listed as usize..counts.exceptions as usize;
+            let list_shift = buffers.list_shift(setup.width);
+            let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
+            let mut numbers = exceptions.iter().copied();
+            let mut writer = ListWriter::new(
+                buffers.clipped_descriptors,
+                buffers.clipped_lists,
+                &mut buffers.clipped_counts,
+                setup.width,
+                list_shift,
+                self.shading,
+            );
+            let mut put = |setup: &_, colour| writer.put(setup, colour);
+            drawn += clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
+            let count = writer.finish().map_err(|_| Error::Full)?;
+            buffers.sets[1] = Some(buffers.clipped_set(count));
+        }
+        let stats = &mut buffers.stats;
+        stats.triangles_in += counts.triangles;
+        stats.culled += counts.triangles.saturating_sub(drawn);
+        stats.clipped = counts.exceptions;
+        stats.drawn += drawn;
+        Ok(())
+    }
+
+    /// Makes the descriptors and lists of all meshes by the CPU.
+    fn set_up(&self, job: &mut Job, cpu: &mut Cpu) -> Result<(), Fallback> {
+        let (constants, frame) = (job.constants, job.frame);
+        let width = frame.size.width();
+        let buffers = &mut *job.buffers;
+        let list_shift = buffers.list_shift(width);
+        let mut whole = ListCounts::EMPTY;
+        buffers.clipped_counts = ListCounts::EMPTY;
+        let mut whole = ListWriter::new(
+            buffers.descriptors,
+            buffers.lists,
+            &mut whole,
+            width,
+            list_shift,
+            self.shading,
+        );
+        let mut clipped = ListWriter::new(
+            buffers.clipped_descriptors,
+            buffers.clipped_lists,
+            &mut buffers.clipped_counts,
+            width,
+            list_shift,
+            self.shading,
+        );
+        let scratch = cpu.scratch.vertices(frame.scratch_vertices());
+        let mut put = |triangle: &DrawnTriangle, setup: &Setup| {
+            if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
+                (cpu.progress)();
+            }
+            let writer = if triangle.clipped {
+                &mut clipped
+            } else {
+                &mut whole
+            };
+            writer.put(setup, triangle.colour);
+        };
+        let stats = frame.set_up_meshes(constants, scratch, &mut put)?;
+        let full = |_| EngineError::from(Error::Full);
+        let whole = whole.finish().map_err(full)?;
+        let clipped = clipped.finish().map_err(full)?;
+        buffers.sets = [
+            Some(buffers.set(whole)),
+            (clipped > 0).then(|| buffers.clipped_set(clipped)),
+        ];
+        buffers.stats = stats;
+        Ok(())
+    }
+}
+
+/// Whether the geometry pass lacks an option of one of the meshes of a frame.
+fn needs_cpu(frame: &Frame) -> bool {
+    let mut meshes = (0..).map_while(|number| frame.subject.numbered_mesh(number, None));
+    meshes.any(|(subject, options)| {
+        subject.clip != Clip::Guard || options.winding != Winding::Mesh || options.normals.is_some()
+    })
+}

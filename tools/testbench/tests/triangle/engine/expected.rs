@@ -1,0 +1,137 @@
+//! Frames that the model draws, which the triangle engine must draw equally.
+
+use glint_core::camera::View;
+use glint_core::mesh::{Mesh, Rgb565};
+use glint_model::triangle::setup::{Bounds, Oriented, Setup};
+use glint_model::triangle::{Part, draw_parts};
+use glint_model::{DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats};
+
+pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
+pub const CLEAR: u16 = 0x1234;
+
+/// A frame drawn by the model.
+pub struct Expected {
+    pub size: (u32, u32),
+    /// Frame constants and options of the mesh, of several ones those of the first one.
+    pub frame: MeshSetup,
+    pub options: Options<'static>,
+    pub colour: Vec<u16>,
+    pub depth: Vec<u32>,
+    /// Setups and colours of the clipped triangles.
+    pub clipped: Vec<(Setup, Rgb565)>,
+    pub stats: Stats,
+}
+
+/// Draws a frame with the model.
+pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    expected_on(CLEAR, mesh, view, size, cull)
+}
+
+/// Draws a frame with the model; pixels without a triangle have the colour `clear`.
+pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear,
+        ..Options::default()
+    };
+    expected_with(options, mesh, view, size)
+}
+
+/// Draws a frame with the model, with smooth shading.
+pub fn expected_smooth(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
+    let options = Options {
+        cull,
+        clear: CLEAR,
+        shading: Shading::Smooth,
+        ..Options::default()
+    };
+    expected_with(options, mesh, view, size)
+}
+
+/// Draws a frame with the model, with any options.
+pub fn expected_with(
+    options: Options<'static>,
+    mesh: &[u8],
+    view: &View,
+    size: (u32, u32),
+) -> Expected {
+    let mesh = Mesh::new_checked(mesh).unwrap();
+    let mut frame = MeshSetup::new(view, size.0, size.1, mesh.radius()).unwrap();
+    if let Some(light) = options.light {
+        frame.light = light.row;
+    }
+    expected_parts(size, &[(mesh, frame, options)])
+}
+
+/// Draws a frame of several meshes with the model, from the frame constants and the options of each.
+pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'static>)]) -> Expected {
+    let pixels = (size.0 * size.1) as usize;
+    let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let vertices = parts.iter().map(|(mesh, ..)| mesh.largest_chunk()).max();
+    let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
+    let mut target = FrameBuffer {
+        width: size.0,
+        height: size.1,
+        colour: &mut colour,
+        depth: &mut depth,
+    };
+    let mut clipped = Vec::new();
+    let mut show = |triangle: &DrawnTriangle| {
+        if triangle.clipped {
+            clipped.push(setup(triangle, size));
+        }
+    };
+    let mut part = |number: usize| {
+        let part = parts.get(number).map(|&(mesh, frame, options)| Part {
+            mesh,
+            frame,
+            options,
+        });
+        Ok(part)
+    };
+    let (_, frame, options) = parts[0];
+    let stats = draw_parts(
+        &mut part,
+        options.clear,
+        &mut target,
+        &mut scratch,
+        &mut show,
+    )
+    .unwrap();
+    Expected {
+        size,
+        frame,
+        options,
+        colour,
+        depth,
+        clipped,
+        stats,
+    }
+}
+
+/// The setup and the colour of a triangle.
+fn setup(triangle: &DrawnTriangle, (width, height): (u32, u32)) -> (Setup, Rgb565) {
+    let oriented = Oriented::new(triangle.vertices).unwrap();
+    let bounds = Bounds::new(&oriented.vertices, width, height).unwrap();
+    let setup = match &triangle.lit {
+        None => Setup::new(&oriented, bounds),
+        Some(lit) => Setup::smooth(&oriented, bounds, lit),
+    };
+    (setup, triangle.colour)
+}
+
+/// Makes an expected frame of colours and depth codes that were drawn otherwise, without triangles.
+pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>) -> Expected {
+    Expected {
+        size,
+        frame: MeshSetup::new(view, size.0, size.1, 0).unwrap(),
+        options: Options {
+            clear: CLEAR,
+            ..Options::default()
+        },
+        colour,
+        depth,
+        clipped: vec![],
+        stats: Stats::default(),
+    }
+}
