@@ -1,6 +1,6 @@
 // Proof of the control of the stage `cull`, with a FIFO of 8 places at its end, for any triangles in any order. The limits count
-// only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 10 such clocks.
-// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 12 such clocks. The FIFO does not
+// only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 12 such clocks.
+// Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 21 such clocks. The FIFO does not
 // overflow.
 
 `default_nettype none
@@ -37,7 +37,7 @@ module cull_proof (
     );
 
     logic [3:0] inside = '0;
-    logic [3:0] waited = '0, stood = '0;
+    logic [4:0] waited = '0, stood = '0;
     logic       culled_before = 1'b0;
 
     assign held_up = out_valid && !out_ready;
@@ -46,7 +46,7 @@ module cull_proof (
     always_ff @(posedge clk) if (!rst) begin
         inside <= inside + 4'(in_valid && in_ready) - 4'(culled) - 4'(out_valid && out_ready);
 
-        if (in_valid && !in_ready) waited <= waited + 4'(!held_up);
+        if (in_valid && !in_ready) waited <= waited + 5'(!held_up);
         else                       waited <= '0;
 
         if (leaves || inside == '0) stood <= '0;
@@ -54,8 +54,8 @@ module cull_proof (
 
         if (culled) culled_before <= 1'b1;
 
-        taken_in_time:     assert (waited <= 4'd10);
-        leaves_in_time:    assert (stood <= 4'd12);
+        taken_in_time:     assert (waited <= 5'd12);
+        leaves_in_time:    assert (stood <= 5'd21);
         nothing_too_many:  assert (inside <= 4'd7);
         nothing_made_up:   assert (!leaves || inside != '0);
         busy_while_inside: assert (busy == (inside != '0));

@@ -170,7 +170,8 @@ class TriangleEngine(LiteXModule):
         results = {
             "triangles": "Triangles of the mesh.",
             "unseen": "Triangles behind the near plane or beyond one side of the picture.",
-            "culled": "Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds.",
+            "culled": "Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds, "
+                      "and tiny ones that cover no pixel.",
             "descriptor_count": "Descriptors written, with `append` those of the passes before included.",
             "exception_count": "Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` those "
                                "of the passes before included.",

@@ -3174,7 +3174,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50b8) }
         }
 
-        /// `culled`, 32 bits: Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds.
+        /// `culled`, 32 bits: Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds, and tiny ones that cover no pixel.
         #[inline]
         #[must_use]
         pub const fn culled(&self) -> Register<u32, ReadOnly> {

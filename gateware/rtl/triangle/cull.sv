@@ -1,16 +1,18 @@
 // The first part of the triangle setup: computes the area, the facing, the bounds in pixels, and the start group (the eight
 // pixels in which rasterization begins). A triangle is dropped, with a pulse of `culled`, if it has no area, if it is a back
 // face while `cull_back` is high, or if its bounds contain no pixel centre. The bounds of a triangle beyond one side of the
-// picture are empty. `mirror` exchanges front and back faces.
+// picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of them. `mirror`
+// exchanges front and back faces.
 //
-// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 9 or 12. Two triangles are inside, in
+// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 18 or 21. Two triangles are inside, in
 // different stages; `phase` counts the 3 clocks of a stage:
 //
-//   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─▶ FIFO ─▶ out
-//        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │
+//   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─┬▶ FIFO ───────────────▶ drop or out
+//        │ area, minima, maxima; or twice 3 │  │ bounds, start; then verdict │ └▶ centre_test ─▶ FIFO ───▲
 //
 // The stages cannot be stopped. A triangle moves in only if the FIFO has room for all triangles inside, so culled triangles leave
 // while earlier ones wait for `out`, as many as the FIFO has places: the later parts of the setup take longer for a triangle.
+// The result of centre_test comes when the triangle is in the FIFO; a dropped triangle leaves the FIFO in one clock.
 // `in_ready` is a register, decided a clock ahead.
 
 `default_nettype none
@@ -18,7 +20,7 @@
 module cull #(
     parameter bit SMOOTH = 1'b0,
     // Places of the FIFO at the end, a power of two.
-    parameter int unsigned PLACES = 32,
+    parameter int unsigned PLACES = 128,
     localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
     localparam int unsigned LIT_BITS   = SMOOTH ? 40 : 1
 ) (
@@ -59,14 +61,15 @@ module cull #(
 
     // `tall`: a product of `first` needs both halves of its height, in two turns of 3 clocks; `second` marks the last turn.
     logic [1:0] phase;
-    logic       room, queue_idle, verdict, drop, tall, second, again;
+    logic       room, queue_idle, verdict, drop, kept, skip, tall, second, again;
     logic       first_valid, last_valid, first_x_21;
     triangle_t  first, last;
 
     assign tall    = !fits(first.y01[20:17]) || !fits(first.y20[20:17]);
     assign again   = first_valid && tall && !second;
     assign verdict = phase == 2'd2 && last_valid;
-    assign culled  = verdict && drop;
+    assign kept    = verdict && !drop;
+    assign culled  = verdict && drop || skip;
     assign busy    = first_valid || last_valid || !queue_idle;
 
     function automatic logic precedes(input logic [20:0] a, input logic [20:0] b);
@@ -143,7 +146,7 @@ module cull #(
     // Left and top of the bounds, then right and bottom: selected in phases 0 and 1, rounded up to a pixel's centre one clock
     // later, and then clamped to the picture.
     logic [20:0] extreme_x, extreme_y, rounded_x, rounded_y;
-    logic [12:0] pixel_x, pixel_y;
+    logic [12:0] pixel_x, pixel_y, first_x, first_y, columns, rows;
     logic [10:0] cut_x, cut_y, left, right;
     logic [9:0]  top, bottom;
 
@@ -175,7 +178,7 @@ module cull #(
 
     // The reasons to cull the triangle, and the values that depend on its facing, registered for phase 2.
     // `swap`: vertices 1 and 2 change places, so that the vertices are clockwise on the screen.
-    logic        swap, front, no_area, no_column, no_row;
+    logic        swap, front, no_area, no_column, no_row, tiny;
     logic [39:0] magnitude;
     logic [9:0]  group_top;
     logic [7:0]  group_left, group_right;
@@ -183,6 +186,9 @@ module cull #(
     logic [10:0] right_last;
 
     assign right_last = right - 1'b1;
+    // Numbers of pixel centres in the bounds before the cut to the picture.
+    assign columns    = pixel_x - first_x;
+    assign rows       = pixel_y - first_y;
 
     always_comb begin
         // `topmost` is the number of the highest vertex on the screen, after the swap of vertices 1 and 2.
@@ -201,12 +207,15 @@ module cull #(
         pixel_y   <= rounded_y[20:8];
         unique case (phase)
             2'd2: begin
-                left <= cut_x;
-                top  <= cut_y[9:0];
+                left    <= cut_x;
+                top     <= cut_y[9:0];
+                first_x <= pixel_x;
+                first_y <= pixel_y;
             end
             2'd0: begin
                 right  <= cut_x;
                 bottom <= cut_y[9:0];
+                tiny   <= columns <= 13'd2 && rows <= 13'd2;
             end
             default: begin
                 swap         <= area[43];
@@ -274,13 +283,40 @@ module cull #(
         wire _unused = &{1'b0, in_light};
     end
 
+    logic queued, tested, covers, pop;
+
+    assign out_valid = queued && tested && covers;
+    assign skip      = queued && tested && !covers && !verdict;
+    assign pop       = out_valid && out_ready || skip;
+
     // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
     pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
-        .clk, .rst, .idle(queue_idle), .room, .in_valid(verdict && !drop), .in_data({lit, oriented}),
-        .out_valid, .out_ready, .out_data({out_lit, out_triangle})
+        .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({lit, oriented}),
+        .out_valid(queued), .out_ready(pop), .out_data({out_lit, out_triangle})
     );
 
-    wire _unused = &{1'b0, area[42:40], rounded_x[7:0], rounded_y[7:0], right_last[2:0], cut_y[10]};
+    logic             result_valid, result, result_room;
+    logic [2:0][10:0] step_x, step_y;
+
+    always_comb begin
+        // Each difference of the vertices 1 and 2 is a single sum, because a swap of them inverts both operands.
+        step_x = {oriented.y20[10:0], (last.v1.y[10:0] ^ {11{swap}}) + ~(last.v2.y[10:0] ^ {11{swap}}) + 11'd1, oriented.y01[10:0]};
+        step_y = {oriented.x02[10:0], (last.v2.x[10:0] ^ {11{swap}}) + ~(last.v1.x[10:0] ^ {11{swap}}) + 11'd1, oriented.x10[10:0]};
+    end
+
+    centre_test centre_test (
+        .clk, .rst, .in_valid(kept), .in_tiny(tiny), .in_step_x(step_x), .in_step_y(step_y),
+        .in_px({first_x[2:0], 8'h80} - last.v0.x[10:0]), .in_py({first_y[2:0], 8'h80} - last.v0.y[10:0]),
+        .out_valid(result_valid), .out_covers(result)
+    );
+
+    // Never full: each result in it belongs to a triangle in the queue.
+    fifo #(.WIDTH(1), .DEPTH(PLACES)) results (
+        .clk, .rst, .in_valid(result_valid), .in_ready(result_room), .in_data(result),
+        .out_valid(tested), .out_ready(pop), .out_data(covers)
+    );
+
+    wire _unused = &{1'b0, area[42:40], rounded_x[7:0], rounded_y[7:0], right_last[2:0], cut_y[10], result_room};
 endmodule
 
 `default_nettype wire

@@ -5,7 +5,7 @@
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 76 clocks, or 186. A
+// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 86 clocks, or 196. A
 // beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the
 // last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
 // last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits

@@ -89,7 +89,7 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Prepares a triangle; `None` for a culled back face, and for a triangle without a pixel centre in its bounds.
+    /// Prepares a triangle; `None` for a culled back face, and for a triangle without bounds ([`Bounds::new`]).
     pub fn new(
         frame: &MeshSetup,
         options: &Options,

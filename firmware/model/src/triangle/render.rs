@@ -22,7 +22,7 @@ pub struct Stats {
     /// Triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
     /// Triangles that did not reach the walker, the stage that finds pixels: back faces, triangles without area, behind
-    /// the near plane or off the picture, and triangles without a pixel centre in their bounds.
+    /// the near plane or off the picture, and triangles without a pixel centre in their bounds, or tiny and without a covered one.
     pub culled: u32,
     /// Triangles that went through the clipper, with or without a visible part.
     pub clipped: u32,

@@ -1,5 +1,7 @@
 //! Triangle setup: facing, bounds, edge functions and the planes of depth and light.
 
+use core::ops::Range;
+
 pub use crate::triangle::facing::Facing;
 use crate::triangle::reciprocal::Reciprocal;
 use crate::triangle::rounding::nearest;
@@ -82,31 +84,49 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the bounds of the pixels in the picture whose centres c have min ≤ c < max in both directions, where min
-    /// and max are the limits of the vertices; `None` if there is no such pixel.
+    /// and max are the limits of the vertices, which are clockwise; `None` if there is no such pixel. `None` also for a triangle
+    /// that covers no pixel and has at most 2×2 such centres, inside or outside of the picture.
     ///
     /// The upper limits are exclusive, because under the top-left rule a pixel centre counts as moved slightly to the
     /// right and, by even less, down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
-        let (left, right) = columns(vertices.map(|v| v.x), width);
-        let (top, bottom) = columns(vertices.map(|v| v.y), height);
-        (left < right && top < bottom).then_some(Self {
-            left,
-            right,
-            top,
-            bottom,
-        })
+        let [x, y] = [
+            columns(vertices.map(|v| v.x)),
+            columns(vertices.map(|v| v.y)),
+        ];
+        let bounds = Self {
+            left: x.start.max(0),
+            right: x.end.min(width as i32),
+            top: y.start.max(0),
+            bottom: y.end.min(height as i32),
+        };
+        let has_pixel = bounds.left < bounds.right && bounds.top < bounds.bottom;
+        let is_tiny = x.len() <= 2 && y.len() <= 2;
+        (has_pixel && !(is_tiny && covers_none(vertices, [x.start, y.start]))).then_some(bounds)
     }
 }
 
-/// Returns the first, and one past the last, of the pixels i in 0 ≤ i < `size` with min ≤ 256·i + 128 < max, where min and
-/// max are the limits of the three coordinates.
-fn columns([a, b, c]: [i32; 3], size: u32) -> (i32, i32) {
+/// Returns the pixels i, in the picture or not, with min ≤ 256·i + 128 < max, where min and max are the limits of the three
+/// coordinates.
+fn columns([a, b, c]: [i32; 3]) -> Range<i32> {
     let first_at_or_after = |x: i32| (x + 127) >> 8;
-    let (min, max) = (a.min(b).min(c), a.max(b).max(c));
-    (
-        first_at_or_after(min).max(0),
-        first_at_or_after(max).min(size as i32),
-    )
+    first_at_or_after(a.min(b).min(c))..first_at_or_after(a.max(b).max(c))
+}
+
+/// Whether a triangle covers none of 2×2 pixels, of which `first` is the upper left one, given by column and row.
+///
+/// Not inlined, because most triangles of most meshes are larger.
+#[inline(never)]
+fn covers_none(&[v0, v1, v2]: &[ScreenVertex; 3], first: [i32; 2]) -> bool {
+    let edges = [(v0, v1), (v1, v2), (v2, v0)].map(|(a, b)| Edge::new(a, b, first));
+    let covers = |column: i64, row: i64| {
+        edges.iter().all(|edge| {
+            edge.start + column * i64::from(edge.step_x) + row * i64::from(edge.step_y) >= 0
+        })
+    };
+    ![(0, 0), (1, 0), (0, 1), (1, 1)]
+        .iter()
+        .any(|&(column, row)| covers(column, row))
 }
 
 /// An edge function E': its value at the start pixel and its steps. A pixel is inside the edge where E' ≥ 0.

@@ -1,0 +1,121 @@
+// Tests whether a tiny triangle covers one of 2×2 pixel centres: evaluates its three edge functions there (docs/formats.md,
+// "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are below 3 pixels,
+// and 11 bits hold each difference of coordinates. Other triangles pass.
+//
+// P is the upper left centre, (px, py) its position relative to the vertex at which an edge begins, E = dx·py − dy·px the edge
+// function at P. Edges 0 → 1 and 2 → 0 are evaluated from vertex 0, edge 1 → 2 from vertex 1.
+//
+//            E · ─── · E − 256·dy
+//              │     │                     in_valid ─▶ 0 → 1 ─▶ 1 → 2 ─▶ 2 → 0 ─▶ … ─▶ out_valid
+//   E + 256·dx · ─── · E + 256·(dx − dy)
+//
+// Throughput a triangle in 3 clocks, an edge a clock; latency 10 clocks, and nothing stops it. The inputs are the steps of the
+// three edge functions by a pixel to the right (−dy) and down (dx), and (px, py) of vertex 0, s3.8. The vertices are clockwise on
+// the screen.
+
+`default_nettype none
+
+module centre_test (
+    input  wire         clk,
+    input  wire         rst,
+    input  wire         in_valid,
+    input  wire         in_tiny,
+    input  wire  [2:0][10:0] in_step_x,
+    input  wire  [2:0][10:0] in_step_y,
+    input  wire  [10:0] in_px,
+    input  wire  [10:0] in_py,
+    output logic        out_valid,
+    output logic        out_covers
+);
+    logic [2:0][10:0] steps_x, steps_y;
+    logic [10:0]      px_0, py_0;
+    // Whether the edge of this clock is the first one, and the second one.
+    logic [1:0]       now;
+
+    always_ff @(posedge clk) begin
+        if (in_valid) begin
+            steps_x <= in_step_x;
+            steps_y <= in_step_y;
+            px_0    <= in_px;
+            py_0    <= in_py;
+        end
+        now <= {now[0], in_valid};
+    end
+
+    logic signed [10:0] step_x, step_y, px, py, later_py, later_step_y;
+    logic               bias, bias_1, bias_2;
+
+    always_comb begin
+        step_x = now[0] ? steps_x[0] : now[1] ? steps_x[1] : steps_x[2];
+        step_y = now[0] ? steps_y[0] : now[1] ? steps_y[1] : steps_y[2];
+        // dx and −dy of the edge from vertex 0 lead to vertex 1.
+        px     = px_0 - (now[1] ? steps_y[0] : '0);
+        py     = py_0 + (now[1] ? steps_x[0] : '0);
+        bias   = step_x[10] || step_x == '0 && step_y[10];
+    end
+
+    always_ff @(posedge clk) begin
+        bias_1       <= bias;
+        bias_2       <= bias_1;
+        later_py     <= py;
+        later_step_y <= step_y;
+    end
+
+    // The functions at P less their biases. The product of the second multiplier comes a clock after that of the first.
+    logic signed [24:0] at_first, at_p;
+
+    multiply_add #(.BITS(25)) along (
+        .clk, .enable(1'b1), .a(25'(step_x)), .b(18'(px)), .c({25{bias_2}}), .p(at_first)
+    );
+    multiply_add #(.BITS(25)) down (
+        .clk, .enable(1'b1), .a(25'(later_step_y)), .b(18'(later_py)), .c(at_first), .p(at_p)
+    );
+
+    // The steps of the edge whose function comes next, in flip-flops (`keep`), since shift registers would take LUTs.
+    (* keep *) logic signed [10:0] step_x_1, step_x_2, step_x_3, step_x_4, step_y_1, step_y_2, step_y_3, step_y_4;
+    logic signed [11:0] both;
+
+    always_ff @(posedge clk) begin
+        step_x_1 <= step_x;
+        step_x_2 <= step_x_1;
+        step_x_3 <= step_x_2;
+        step_x_4 <= step_x_3;
+        step_y_1 <= step_y;
+        step_y_2 <= step_y_1;
+        step_y_3 <= step_y_2;
+        step_y_4 <= step_y_3;
+        both     <= 12'(step_x_3) + 12'(step_y_3);
+    end
+
+    // Whether a centre is outside of one of the edges so far: P, right of it, below it, and both. A centre is inside an edge where
+    // the function is at least its bias; centres are 256 units apart, so the low 8 bits have no part in it.
+    logic signed [13:0] value, right, below, across;
+    logic [3:0]         beyond, outside;
+
+    always_comb begin
+        value  = at_p[21:8];
+        right  = value + 14'(step_x_4);
+        below  = value + 14'(step_y_4);
+        across = value + 14'(both);
+    end
+
+    // Bit k of `since` is high when a triangle came k + 1 clocks ago, and bit k of `tiny` when it is tiny.
+    logic [8:0] since, tiny;
+
+    always_ff @(posedge clk) begin
+        since      <= {since[7:0], in_valid};
+        tiny      <= {tiny[7:0], in_tiny};
+        beyond     <= {across[13], below[13], right[13], value[13]};
+        outside    <= (since[5] ? '0 : outside) | beyond;
+        out_valid  <= since[8];
+        out_covers <= !tiny[8] || outside != '1;
+        if (rst) begin
+            since     <= '0;
+            out_valid <= 1'b0;
+        end
+    end
+
+    wire _unused = &{1'b0, at_p[24:22], at_p[7:0], right[12:0], below[12:0], across[12:0]};
+endmodule
+
+`default_nettype wire
