@@ -30,7 +30,9 @@ impl<'l> AppearanceCommands<'l> for Machine {
             }
             Some(light) => change(self, &mut |appearance| match light {
                 // The list has room, as checked above.
-                Some(light) => drop(appearance.lights.push(light)),
+                Some(light) => {
+                    let _ = appearance.lights.push(light);
+                }
                 None => appearance.lights.clear(),
             }),
             None => {

@@ -4,6 +4,7 @@ mod control;
 mod engine;
 mod lists;
 mod raster;
+mod reciprocal;
 mod setup;
 mod vertex;
 mod vertex_cache;
