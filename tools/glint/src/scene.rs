@@ -1,6 +1,7 @@
 //! The built-in scenes, which the firmware has too.
 
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::shape::{MAX_BYTES, Shape};
@@ -35,20 +36,22 @@ impl Scene {
         }
     }
 
-    /// Calls `draw` with the frame of the scene, seen by its camera or from `view`.
+    /// Calls `draw` with the frame of the scene, seen by its camera or from `view`, with the shading of the scene or with `shading`.
     ///
     /// # Errors
     /// None for the built-in scenes.
     pub fn draw<T>(
         self,
         view: Option<View>,
+        shading: Option<Shading>,
         size: Size,
         draw: impl FnOnce(&Frame) -> T,
     ) -> Result<T, SceneError> {
-        let settings = match self {
+        let mut settings = match self {
             Self::Objects | Self::Wireframe => Settings::objects()?,
             Self::SimpleGpu => Settings::simplegpu()?,
         };
+        settings.shading = shading.unwrap_or(settings.shading);
         let frame = |subject| Frame {
             lighting: settings.lighting,
             ..Frame::new(subject, view.unwrap_or(settings.view), size)
@@ -100,7 +103,9 @@ mod tests {
     #[test]
     fn every_scene_has_its_content() {
         let stats = |scene: Scene| {
-            let drawn = scene.draw(None, Size::W320, |frame| render::on_model(frame).unwrap());
+            let drawn = scene.draw(None, None, Size::W320, |frame| {
+                render::on_model(frame).unwrap()
+            });
             drawn.unwrap().stats
         };
         let objects = stats(Scene::Objects);

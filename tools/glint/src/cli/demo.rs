@@ -12,9 +12,11 @@ use glint::picture::{Image, write_animation};
 use glint::render::{
     self, BoardRenderer, FieldSubject, Frame, Route, Stats, Subject, size_command, view_command,
 };
+use glint::scene::Scene;
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::colour::Shading;
 use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::mesh::Mesh;
@@ -121,13 +123,14 @@ impl DemoArguments {
     }
 
     /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
-    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge.
+    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge, and shows the built-in
+    /// scenes.
     fn second_board(
         &self,
         first: &Named,
         models: &[Named],
         firmware: &[u8],
-    ) -> anyhow::Result<(Vec<Row>, [String; 2])> {
+    ) -> anyhow::Result<(Vec<Row>, Vec<String>)> {
         let mut board = SimulatedBoard::fast(firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
@@ -149,7 +152,14 @@ impl DemoArguments {
         let cycles = self.sponge(&mut renderer, &path)?;
         let towards = format!("{} frames towards {SPONGE}, for two eyes", self.sponge);
         let sponge = line(&path, &towards, SIZE, cycles, clock);
-        Ok((rows, [orbit, sponge]))
+        let mut lines = vec![orbit, sponge];
+        for scene in Scene::ALL {
+            let path = self.out.join(scene.name()).with_extension("png");
+            let cycles = show_scene(&mut renderer, scene, &path)?;
+            let what = format!("scene {}", scene.name());
+            lines.push(line(&path, &what, SIZE, cycles, clock));
+        }
+        Ok((rows, lines))
     }
 
     /// Shows a model on the board, saves the monitor's picture, and checks that it equals the picture of the bit-exact model.
@@ -271,6 +281,32 @@ impl DemoArguments {
         })?;
         Ok(cycles / u64::from(self.sponge.max(1)))
     }
+}
+
+/// Shows a built-in scene on the board with flat shading, which the gateware has in every build, checks that its picture equals that
+/// of the bit-exact model, and writes it to `path`. Returns the number of cycles of the frame.
+fn show_scene(
+    renderer: &mut BoardRenderer<SimulatedBoard>,
+    scene: Scene,
+    path: &Path,
+) -> anyhow::Result<u64> {
+    renderer.console().command(&size_command(SIZE))?;
+    let commands = [&*format!("scene {}", scene.name()), "shading flat"];
+    let stats = renderer.render_after(&commands)?;
+    let image = Image {
+        colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
+        ..Image::empty(SIZE)
+    };
+    let expected = scene
+        .draw(None, Some(Shading::Flat), SIZE, render::on_model)
+        .map_err(anyhow::Error::from_boxed)??;
+    anyhow::ensure!(
+        stats.backend.as_deref() == Some("gateware") && image.colour == expected.image.colour,
+        "scene {}: the picture differs from the model's, or was drawn by the soft core",
+        scene.name()
+    );
+    write_whole(path, |out| image.picture().write_png(out))?;
+    Ok(stats.cycles.unwrap_or_default())
 }
 
 /// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, `clock` the frequency of the board's

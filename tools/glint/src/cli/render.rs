@@ -165,7 +165,7 @@ impl RenderArguments {
         if let Some(scene) = self.scene {
             let has_camera = self.camera.is_some() || self.look_at.is_some() || self.view.is_some();
             let view = has_camera.then(|| self.camera()).transpose()?;
-            let drawn = scene.draw(view, size, |frame| self.write(frame));
+            let drawn = scene.draw(view, None, size, |frame| self.write(frame));
             return drawn.map_err(|error| anyhow::anyhow!(error))?;
         }
         let view = self.camera()?;
