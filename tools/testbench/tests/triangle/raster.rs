@@ -34,7 +34,7 @@ fn random_triangles_smooth() {
     for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
         let mut random = Random::new(seed.into());
         let mut bench = Bench::smooth(seed, source_stalls, sink_stalls);
-        for (name, size, count) in [("small", SMALL, 120), ("large", LARGE, 12)] {
+        for (name, size, count) in [("small", SMALL, 120), ("large", LARGE, 36)] {
             let triangles = (0..count).map(|_| random.triangle(size).map(visible));
             let triangles: Vec<Triangle> = numbered(size, triangles.collect::<Vec<_>>())
                 .into_iter()
