@@ -37,7 +37,8 @@ class Parameter(CSRStorage):
 
 
 def without_reading(storage):
-    """Returns a register in place of the `CSRStorage` of a LiteX core, with the same content at the same address, that reads as 0."""
+    """Returns a register in place of the `CSRStorage` of a LiteX core: with the same content at the same address, but it reads
+    as 0."""
     register = Parameter(storage.size, name=storage.name, description=f"{storage.description}.")
     register.storage, register.re = storage.storage, storage.re
     if hasattr(storage, "fields"):

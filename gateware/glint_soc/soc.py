@@ -40,9 +40,9 @@ class GlintSoC(SoCCore):
 
     `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. With the raymarcher but without the
     triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
-    registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the full build (see `register_map.build_id`). `smooth` builds
-    smooth shading into the triangle engine. `fields` are the build options of the raymarcher. `mode` is the video mode, which
-    also limits the picture sizes.
+    registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the
+    full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine. `fields` are the build
+    options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
     """
 
     csr_map = CSR_MAP

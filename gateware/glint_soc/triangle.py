@@ -47,8 +47,8 @@ class TriangleEngine(LiteXModule):
     (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
     `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
     sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
-    raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two writers; the registers
-    are the same.
+    raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two
+    writers; the registers are the same.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False):

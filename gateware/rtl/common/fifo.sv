@@ -15,7 +15,7 @@ module fifo #(
     parameter int unsigned WIDTH = 8,
     parameter int unsigned DEPTH = 16,
     parameter bit          BLOCK = 1'b0,
-    // The output needs no early part of the clock. On an FPGA whose LUTs make small memories only, the places go to block RAM
+    // The output may come late in the clock. On an FPGA whose LUTs make small memories only, the places then go to block RAM
     // (gateware/ecp5).
     parameter bit          BULK  = 1'b0
 ) (
@@ -75,7 +75,7 @@ module fifo #(
         end
     end
 
-    // Only an attribute has the parameter.
+    // Only an attribute uses BULK.
     wire _unused = &{1'b0, BULK};
 endmodule
 

@@ -16,16 +16,16 @@
 `default_nettype none
 
 module centre_test (
-    input  wire         clk,
-    input  wire         rst,
-    input  wire         in_valid,
-    input  wire         in_tiny,
+    input  wire              clk,
+    input  wire              rst,
+    input  wire              in_valid,
+    input  wire              in_tiny,
     input  wire  [2:0][10:0] in_step_x,
     input  wire  [2:0][10:0] in_step_y,
-    input  wire  [10:0] in_px,
-    input  wire  [10:0] in_py,
-    output logic        out_valid,
-    output logic        out_covers
+    input  wire  [10:0]      in_px,
+    input  wire  [10:0]      in_py,
+    output logic             out_valid,
+    output logic             out_covers
 );
     logic [2:0][10:0] steps_x, steps_y;
     logic [10:0]      px_0, py_0;
@@ -104,7 +104,7 @@ module centre_test (
 
     always_ff @(posedge clk) begin
         since      <= {since[7:0], in_valid};
-        tiny      <= {tiny[7:0], in_tiny};
+        tiny       <= {tiny[7:0], in_tiny};
         beyond     <= {across[13], below[13], right[13], value[13]};
         outside    <= (since[5] ? '0 : outside) | beyond;
         out_valid  <= since[8];

@@ -245,8 +245,8 @@ module cull #(
         oriented.group_start = $signed(group_top) < $signed({2'b0, group_left})  ? group_left
                              : $signed(group_top) > $signed({2'b0, group_right}) ? group_right : group_top[7:0];
         oriented.area        = magnitude;
-        // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but gives that of a minuend LUTs of
-        // its own.
+        // ~(a − b) = b + ~a: Yosys puts the selection of the last summand into the LUTs of a sum, but gives that of a minuend LUTs
+        // of its own.
         oriented.not_w10     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v2.w : last.v1.w};
         oriented.not_w20     = {1'b0, last.v0.w} + ~{1'b0, swap ? last.v1.w : last.v2.w};
         oriented.x10         = swap ? last.x20 : last.x10;

@@ -239,7 +239,8 @@ module setup #(
     );
 
     // Planes of light, one channel after the other. `round_ends` is high in the last clock of a round, and `light_enable` low
-    // while the last clock of the last round is repeated. A frame with flat shading has one round to a beat, without meaning.
+    // while the last clock of the last round is repeated. In a frame with flat shading a beat has one round, whose results are not
+    // used.
     if (SMOOTH) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIT_BITS-1:0] lit_1;
@@ -273,7 +274,9 @@ module setup #(
 
         wide_register #(.WIDTH(3 * LIT_BITS)) lit_stage (.clk, .next(beat_comes), .in(first_lit), .out(lit_1));
 
-        setup_light products (.clk, .enable, .beat, .count, .next_w0(first.w0), .w10(~t.not_w10), .w20(~t.not_w20), .lit(lit_1), .p0, .p10, .p20);
+        setup_light products (
+            .clk, .enable, .beat, .count, .next_w0(first.w0), .w10(~t.not_w10), .w20(~t.not_w20), .lit(lit_1), .p0, .p10, .p20
+        );
 
         // The channel whose normal this round computes.
         logic [24:0] w10, w20;

@@ -1,6 +1,5 @@
-// Step 5 of the vertex stage: y = recip(m), about 2^47/m, or 2^24 − m in orthographic projection; one result every 6 clocks. Up to
-// three vertices share one multiplier.
-// docs/formats.md, "The reciprocal", defines y0, y1, e0' and e1'.
+// Step 5 of the vertex stage: y = recip(m), about 2^47/m, or 2^24 − m in orthographic projection; one result every 6 clocks.
+// Up to three vertices share one multiplier. docs/formats.md, "The reciprocal", defines y0, y1, e0' and e1'.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
 //
@@ -24,8 +23,8 @@ module vertex_reciprocal (
         for (int i = 0; i < 256; i++) seeds[i] = 10'(((1 << 20) + 513 + 2 * i) / (2 * (513 + 2 * i)));
     end
 
-    // −m is valid from clock 10 on, `minus_m_later` from 16 on and `minus_m_last` from 22 on; y0 from 11 on; y1 from 18 and `y1_later` from 24 on. The seed
-    // comes from a block RAM, whose output is late in the clock, so y0 is a register behind it.
+    // −m is valid from clock 10 on, `minus_m_later` from 16 on and `minus_m_last` from 22 on; y0 from 11 on; y1 from 18 on and
+    // `y1_later` from 24 on. The seed comes from a block RAM, whose output is late in the clock, so y0 is a register behind it.
     logic signed [24:0] minus_m, minus_m_later;
     logic        [23:0] minus_m_last;
     logic        [9:0]  seed, y0;
