@@ -6,8 +6,8 @@
 //! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
 
 pub use ::fixed;
-use ::fixed::types::extra::{U11, U14, U20, U23, U24, U28, U30, U32};
-use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU32, FixedU64};
+use ::fixed::types::extra::{U11, U12, U14, U16, U20, U23, U24, U28, U30, U32};
+use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU16, FixedU32, FixedU64};
 
 /// Format of positions and normals: units of 2^−14, in [−2, 2).
 pub type Q2_14 = FixedI16<U14>;
@@ -27,6 +27,15 @@ pub type Q32_32 = FixedI64<U32>;
 pub type U4_28 = FixedU32<U28>;
 /// Format of the half width of a camera: units of 2^−28, in [0, 256).
 pub type U8_28 = FixedU64<U28>;
+
+/// Format of a place in a camera frame: units of 2^−12 pixels.
+pub type U20_12 = FixedU32<U12>;
+/// Format of a part of a whole: units of 2^−16, in [0, 1).
+pub type U0_16 = FixedU16<U16>;
+/// Format of frequencies in Hz, and of their products with a time: units of 2^−16, in [0, 65536).
+pub type U16_16 = FixedU32<U16>;
+/// Format of what a hand controls, turns or world units: units of 2^−28, in [−8, 8).
+pub type Q4_28 = FixedI32<U28>;
 
 /// An angle in units of 2^−32 turns, modulo one turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -19,6 +19,7 @@ pub mod console;
 pub mod field;
 pub mod fixed;
 pub mod follow;
+pub mod hand;
 pub mod i2c;
 pub mod imu;
 pub mod light;

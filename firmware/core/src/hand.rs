@@ -1,0 +1,31 @@
+//! A hand in front of an image sensor that moves the camera on a sphere about the origin.
+//!
+//! The gesture engine counts the pixels of the hand's colour in each camera frame, and adds up their coordinates
+//! ([`Statistics`]). From these numbers come centre, width and confidence ([`Blob`]), then a target for the camera ([`target`]):
+//!
+//! | hand | camera |
+//! |---|---|
+//! | x of the centre | azimuth θ, one turn over the frame's width |
+//! | y of the centre | polar angle φ, half a turn over the height, limited to [`POLE`] from both poles |
+//! | width, the square root of the area | distance r: 5 for [`WIDTHS`]`[0]` of the frame or less, 2 for [`WIDTHS`]`[1]` or more |
+//!
+//! [`Control`] filters the target, holds it when the hand is lost, and returns smoothly when the hand comes back. It also states
+//! the [`Setting`] of the engine for the next frame: the region around the hand, so that the rest of the frame does not count.
+//! [`calibrate`] finds the windows of the hand's colour from a small picture.
+//!
+//! Noise pixels that are spread over the frame pull the mean of all pixels to the frame's middle: 5 % of them, by 80 pixels for a
+//! hand of 500 pixels at the border. Therefore the engine drops runs of few pixels in a line, and counts in the region alone.
+
+mod blob;
+mod calibration;
+mod control;
+mod filter;
+mod target;
+
+pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
+pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
+pub use control::{
+    Control, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_SEARCHING, RUN_TRACKING, Setting,
+};
+pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain};
+pub use target::{POLE, WIDTHS, target};

@@ -1,0 +1,185 @@
+//! Centre, width and confidence of the hand in one camera frame.
+
+use core::fmt;
+
+use crate::fixed::{U0_16, U20_12};
+
+/// A rectangle of pixels of a camera frame. Its corners belong to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Coordinates x and y of the top left pixel.
+    pub first: [u16; 2],
+    /// Coordinates x and y of the bottom right pixel.
+    pub last: [u16; 2],
+}
+
+impl Region {
+    /// The whole frame, of any size.
+    pub const WHOLE: Self = Self {
+        first: [0; 2],
+        last: [u16::MAX; 2],
+    };
+
+    /// Width and height in pixels. They are 0 for a rectangle whose corners are exchanged.
+    pub const fn size(&self) -> [u32; 2] {
+        let [left, top] = self.first;
+        let [right, bottom] = self.last;
+        [
+            (right as u32 + 1).saturating_sub(left as u32),
+            (bottom as u32 + 1).saturating_sub(top as u32),
+        ]
+    }
+
+    /// Returns the rectangle enlarged on each side by the numbers of columns and rows `margin`, within a frame of `size`.
+    #[must_use]
+    pub fn grown(&self, margin: [u16; 2], size: [u16; 2]) -> Self {
+        let mut grown = *self;
+        for axis in [0, 1] {
+            grown.first[axis] = self.first[axis].saturating_sub(margin[axis]);
+            grown.last[axis] = self.last[axis]
+                .saturating_add(margin[axis])
+                .min(size[axis].saturating_sub(1));
+        }
+        grown
+    }
+}
+
+/// What the gesture engine counted in one camera frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Statistics {
+    /// Columns and rows of the frame, as received.
+    pub size: [u16; 2],
+    /// Number of pixels of the hand's colour.
+    pub count: u32,
+    /// Sums of the x and of the y coordinates of these pixels. The top left pixel of the frame is (0, 0).
+    pub sums: [u32; 2],
+    /// The smallest rectangle with all these pixels. It has no meaning if there are none.
+    pub bounds: Region,
+    /// Whether the frame was received without a fault.
+    pub is_whole: bool,
+}
+
+/// Reason why a camera frame does not show a hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Doubt {
+    /// The frame was received with a fault.
+    Faulty,
+    /// Fewer pixels than 1/1024 of the frame have the hand's colour.
+    Few,
+    /// More pixels than 7/8 of the frame have the hand's colour.
+    Most,
+    /// The statistics contradict themselves: the centre is outside the bounds, or there are more pixels than the bounds hold.
+    Contradiction,
+    /// The pixels fill little of their bounds, so they are more than one blob, or noise.
+    Scattered,
+    /// The area changed by more than a factor of 2 since the last frame.
+    Jump,
+}
+
+impl fmt::Display for Doubt {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Faulty => "the camera frame is faulty",
+            Self::Few => "no hand: too few pixels have its colour",
+            Self::Most => "no hand: most pixels of the frame have its colour",
+            Self::Contradiction => "the statistics of the frame contradict themselves",
+            Self::Scattered => "no single hand: the pixels of its colour are scattered",
+            Self::Jump => "the area of the hand jumped by more than a factor of 2",
+        })
+    }
+}
+
+/// A hand must have at least this part of the frame's pixels: 2^−10. This constant is the exponent.
+const LEAST_AREA: u32 = 10;
+/// A hand of 2^2 times the least area has full confidence. This constant is the exponent.
+const FULL_AREA: u32 = 2;
+/// Parts of the bounds that the pixels fill, in 1/256, at which the confidence begins and is full: 1/8 and 3/8. A hand fills
+/// about half of its bounds.
+const FILL: [u32; 2] = [32, 96];
+/// Smallest [`Blob::confidence`] with which a hand is accepted, in units of 1/256.
+pub const LEAST_CONFIDENCE: u8 = 64;
+
+/// The hand in one camera frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blob {
+    /// Number of its pixels.
+    pub count: u32,
+    /// Coordinates x and y of its centre of mass; the centre of the frame's top left pixel is (0, 0). Rounded down to 2^−12
+    /// pixels.
+    pub centre: [U20_12; 2],
+    /// The square root of its part of the frame's area: the side of a square of this area, as part of the frame's.
+    pub width: U0_16,
+    /// The smallest rectangle with all its pixels.
+    pub bounds: Region,
+    /// How certain it is that this is one hand, in units of 1/256. It grows with the area, from the least area to four times that,
+    /// and with the part of the bounds that the pixels fill, from 1/8 to 3/8.
+    pub confidence: u8,
+}
+
+impl Statistics {
+    /// Computes centre, width and confidence. Each quotient is a long division of 32-bit numbers in two steps.
+    ///
+    /// # Errors
+    /// The frame is faulty, has too few or too many pixels of the hand's colour, or the statistics contradict themselves.
+    pub fn blob(&self) -> Result<Blob, Doubt> {
+        if !self.is_whole {
+            return Err(Doubt::Faulty);
+        }
+        let count = self.count;
+        let area = u32::from(self.size[0]) * u32::from(self.size[1]);
+        // The counts below are shifted by up to 12 bits. No supported frame has 2^20 pixels.
+        if area >= 1 << 20 || count > area {
+            return Err(Doubt::Contradiction);
+        }
+        let least = (area >> LEAST_AREA).max(1);
+        if count < least {
+            return Err(Doubt::Few);
+        }
+        if count > area - area / 8 {
+            return Err(Doubt::Most);
+        }
+        let [columns, rows] = self.bounds.size();
+        // The product of two numbers of at most 2^16 saturates; a larger one is no reason for doubt here.
+        let within = columns.saturating_mul(rows);
+        let centre = self.sums.map(|sum| U20_12::from_bits(quotient(sum, count)));
+        let outside = [0, 1].iter().any(|&axis| {
+            let place = centre[axis].to_num::<u32>();
+            place < u32::from(self.bounds.first[axis]) || place > u32::from(self.bounds.last[axis])
+        });
+        if outside || count > within {
+            return Err(Doubt::Contradiction);
+        }
+        // The quotient has 24 fraction bits and is below 1; the root of 32 fraction bits has 16.
+        let part = (quotient(count, area) << 12) | fraction((count << 12) % area, area);
+        let certain = ramp(count / (least >> 2).max(1), [4, 4 << FULL_AREA]);
+        // A rectangle beyond 2^24 pixels is filled by less than 1/16, because the frame is smaller than 2^20 pixels.
+        let filled = ramp((count << 8) / within.clamp(1, 1 << 24), FILL);
+        Ok(Blob {
+            count,
+            centre,
+            width: U0_16::from_bits((part << 8).isqrt() as u16),
+            bounds: self.bounds,
+            confidence: ((certain * filled) >> 8) as u8,
+        })
+    }
+}
+
+/// Computes the quotient of `number` and `divisor` with 12 fraction bits, rounded down. The divisor is from 1 to 2^20 − 1. A
+/// quotient of 2^20 or more saturates.
+fn quotient(number: u32, divisor: u32) -> u32 {
+    let whole = number / divisor;
+    if whole >= 1 << 20 {
+        return u32::MAX;
+    }
+    whole << 12 | fraction(number % divisor, divisor)
+}
+
+/// Computes 12 fraction bits of the quotient of `rest` and `divisor`; the rest is below the divisor, which is below 2^20.
+const fn fraction(rest: u32, divisor: u32) -> u32 {
+    (rest << 12) / divisor
+}
+
+/// Returns 0 below the first limit, 255 from the second one on, and the linear interpolation between them. Limits are below 2^24.
+fn ramp(number: u32, [low, high]: [u32; 2]) -> u32 {
+    (number.clamp(low, high) - low) * 255 / (high - low)
+}

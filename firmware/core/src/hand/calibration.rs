@@ -1,0 +1,169 @@
+//! The window of the hand's colour, found from a small picture of a hand in the middle of the frame.
+
+use core::fmt;
+
+/// The accepted values of a chroma channel. Both ends belong to the window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// The smallest value.
+    pub lower: u8,
+    /// The largest value.
+    pub upper: u8,
+}
+
+impl Window {
+    /// Whether the window holds the value.
+    pub const fn holds(self, value: u8) -> bool {
+        self.lower <= value && value <= self.upper
+    }
+}
+
+/// The result of a calibration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Calibrated {
+    /// The windows of Cr and Cb.
+    pub windows: [Window; 2],
+    /// Samples in the box that are in both windows, in percent.
+    pub inside: u8,
+    /// Samples outside the box that are in both windows, in percent.
+    pub outside: u8,
+}
+
+/// Reason why a calibration failed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CalibrationError {
+    /// The picture has fewer samples than its size says, or fewer than [`LEAST_SAMPLES`] are in the box.
+    Samples,
+    /// The box does not show one colour: the middle 80 % of a channel's values, which is given, span more than [`WIDEST`].
+    Colours(u8),
+    /// Too few samples of the box are in both windows, in percent: the box shows several colours.
+    Inside(u8),
+    /// Too many samples outside the box have the hand's colour, in percent.
+    Outside(u8),
+}
+
+impl fmt::Display for CalibrationError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Samples => write!(
+                f,
+                "the picture is too small: expected at least {LEAST_SAMPLES} samples in its middle"
+            ),
+            Self::Colours(span) => write!(
+                f,
+                "the chroma in the middle spans {span} levels: expected at most {WIDEST}; fill the middle of the frame with the hand"
+            ),
+            Self::Inside(percent) => write!(
+                f,
+                "{percent} % of the middle have the hand's colour: expected at least {LEAST_INSIDE} %; fill the middle of the frame with the hand"
+            ),
+            Self::Outside(percent) => write!(
+                f,
+                "{percent} % of the background have the hand's colour: expected at most {MOST_OUTSIDE} %; change background or light"
+            ),
+        }
+    }
+}
+
+/// Smallest number of samples in the box.
+pub const LEAST_SAMPLES: u32 = 16;
+/// Largest span of the middle 80 % of a channel's values in the box.
+pub const WIDEST: u8 = 48;
+/// Smallest part of the box that must be in both windows, in percent.
+const LEAST_INSIDE: u8 = 70;
+/// Largest part of the rest that may be in both windows, in percent.
+const MOST_OUTSIDE: u8 = 25;
+/// The window reaches at least this far beyond the middle 80 % of the values.
+const MARGIN: u8 = 4;
+
+/// Finds the windows of Cr and Cb of a hand that covers the box in the middle of the frame: a quarter of its width and of its height.
+///
+/// `samples` are Cr and Cb of a picture of `columns` times `rows` samples, line by line from the top left; they are read twice. For
+/// each channel the window is the range of the box's values without the lowest and highest tenth, widened on both sides by half
+/// of its span, at least by 4. The values beyond the tenths are seams of the box, highlights and noise.
+///
+/// # Errors
+/// The box does not show one colour, or much of the background has this colour too.
+pub fn calibrate(
+    columns: u16,
+    rows: u16,
+    samples: impl Iterator<Item = [u8; 2]> + Clone,
+) -> Result<Calibrated, CalibrationError> {
+    let size = [u32::from(columns), u32::from(rows)];
+    let within = |number: u32, length: u32| (length * 3 / 8..length * 5 / 8).contains(&number);
+    let total = size[0] * size[1];
+    let placed = || {
+        let places = (0..rows.into()).flat_map(|y| (0..columns.into()).map(move |x| (x, y)));
+        places
+            .map(|(x, y)| within(x, size[0]) && within(y, size[1]))
+            .zip(samples.clone())
+    };
+
+    let mut histograms = [[0_u16; 256]; 2];
+    let (mut taken, mut boxed) = (0, 0_u16);
+    for (is_boxed, sample) in placed() {
+        taken += 1;
+        if is_boxed {
+            boxed = boxed.saturating_add(1);
+            for (histogram, value) in histograms.iter_mut().zip(sample) {
+                let bin = &mut histogram[usize::from(value)];
+                *bin = bin.saturating_add(1);
+            }
+        }
+    }
+    if taken < total || u32::from(boxed) < LEAST_SAMPLES {
+        return Err(CalibrationError::Samples);
+    }
+    let [cr, cb] = histograms.map(|histogram| window(&histogram, boxed / 10));
+    let windows = [cr?, cb?];
+
+    let [mut inside, mut outside] = [0_u32; 2];
+    for (is_boxed, sample) in placed() {
+        if core::iter::zip(windows, sample).all(|(window, value)| window.holds(value)) {
+            *(if is_boxed { &mut inside } else { &mut outside }) += 1;
+        }
+    }
+    let boxed = u32::from(boxed);
+    // The box is at most a fourth of a picture of at least 16 samples, so the rest is not empty.
+    let percent = |part: u32, whole: u32| (part * 100 / whole.max(1)) as u8;
+    let found = Calibrated {
+        windows,
+        inside: percent(inside, boxed),
+        outside: percent(outside, total - boxed),
+    };
+    if found.inside < LEAST_INSIDE {
+        return Err(CalibrationError::Inside(found.inside));
+    }
+    if found.outside > MOST_OUTSIDE {
+        return Err(CalibrationError::Outside(found.outside));
+    }
+    Ok(found)
+}
+
+/// Returns the window of a channel from the histogram of its values. `tail` is the number of values to leave out at each end.
+fn window(histogram: &[u16; 256], tail: u16) -> Result<Window, CalibrationError> {
+    let lower = end((0..=255).zip(histogram), tail);
+    let upper = end((0..=255).zip(histogram).rev(), tail);
+    let span = upper.saturating_sub(lower);
+    if span > WIDEST {
+        return Err(CalibrationError::Colours(span));
+    }
+    let margin = (span / 2).max(MARGIN);
+    Ok(Window {
+        lower: lower.saturating_sub(margin),
+        upper: upper.saturating_add(margin),
+    })
+}
+
+/// Returns the first value of a histogram after `tail` values were left out.
+fn end<'h>(bins: impl Iterator<Item = (u8, &'h u16)>, tail: u16) -> u8 {
+    let mut left = tail;
+    for (value, &count) in bins {
+        match left.checked_sub(count) {
+            Some(rest) => left = rest,
+            None => return value,
+        }
+    }
+    // Not reached: the histogram has more values than the tail.
+    0
+}

@@ -1,0 +1,335 @@
+//! The camera's control: presence of the hand, filters, hold and return.
+
+use core::fmt;
+
+use super::blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
+use super::filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
+use super::target::{DISTANCES, POLARS, target};
+use crate::camera::{View, ViewError};
+use crate::fixed::{Q4_28, Q32_32, Turns, U16_16};
+
+/// Smallest number of pixels in a run that the engine counts, in the whole frame: a run of noise pixels is so long in one of 1,000
+/// frames of 320×240 with 5 % of noise pixels.
+pub const RUN_SEARCHING: u8 = 6;
+/// The same in the region around the hand, where less noise comes in, and narrow parts of the hand are to count.
+pub const RUN_TRACKING: u8 = 4;
+/// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame.
+pub const PATIENCE: u64 = 250_000;
+/// Longest time between two frames after which tracking goes on, in µs. It is that of [`PATIENCE`].
+pub const LONGEST_GAP: u64 = PATIENCE;
+/// Number of successive frames that must show a hand before it moves the camera.
+const FRAMES: u8 = 3;
+
+/// Tuning for azimuth and polar angle, in turns.
+const ANGLE: Tuning = Tuning {
+    cutoff: U16_16::lit("1.5"),
+    slope: U16_16::lit("60"),
+    speed_cutoff: U16_16::lit("2"),
+};
+/// Tuning for the distance, in world units. The whole range is 3 units, so the slope is less than that of the angles.
+const DISTANCE: Tuning = Tuning {
+    cutoff: U16_16::lit("1"),
+    slope: U16_16::lit("4"),
+    speed_cutoff: U16_16::lit("1"),
+};
+/// Tunings and dead zones of azimuth, polar angle and distance: zones of 0.06° and 1/256 world unit.
+const CHANNELS: [(Tuning, Q4_28); 3] = [
+    (ANGLE, Q4_28::lit("0.000166")),
+    (ANGLE, Q4_28::lit("0.000166")),
+    (DISTANCE, Q4_28::lit("0.00390625")),
+];
+/// Corner frequency in Hz of the return to a hand that comes back, a time constant of 0.16 s.
+const RETURN: U16_16 = U16_16::lit("1");
+
+/// A place of the camera on a sphere about the origin, as [`View::spherical`] takes it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pose {
+    /// Azimuth.
+    pub theta: Turns,
+    /// Polar angle, at least [`POLE`](super::POLE) from 0 and from half a turn.
+    pub phi: Turns,
+    /// Distance from the origin in world units, in [2, 5].
+    pub r: Q32_32,
+}
+
+impl Pose {
+    /// Makes the camera at this place.
+    ///
+    /// # Errors
+    /// Numbers that do not come from a [`Control`] may be out of range.
+    pub fn view(&self) -> Result<View, ViewError> {
+        View::spherical(self.r, self.theta, self.phi)
+    }
+}
+
+/// Whether a hand steers the camera.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// No hand: the whole frame is searched, and the camera stays.
+    Absent,
+    /// A hand was seen in one or two frames; the camera stays.
+    Appearing,
+    /// The hand steers the camera.
+    Tracked,
+    /// The hand was lost just now and is awaited in its region; the camera stays.
+    Held,
+}
+
+impl fmt::Display for Presence {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Absent => "absent",
+            Self::Appearing => "appearing",
+            Self::Tracked => "tracked",
+            Self::Held => "held",
+        })
+    }
+}
+
+/// What the engine is to count in the next frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Setting {
+    /// Pixels outside do not count.
+    pub region: Region,
+    /// Runs of fewer pixels in a line do not count.
+    pub least_run: u8,
+}
+
+impl Setting {
+    /// The setting that searches the whole frame.
+    pub const SEARCHING: Self = Self {
+        region: Region::WHOLE,
+        least_run: RUN_SEARCHING,
+    };
+
+    /// The setting around a hand with the given bounds. On each side there is room for a sixteenth of the frame, the way of a fast
+    /// hand in two frames, and for a quarter of the hand.
+    fn around(bounds: &Region, size: [u16; 2]) -> Self {
+        let [columns, rows] = bounds.size();
+        // The bounds lie in the frame, so a quarter of their size fits 16 bits.
+        let margin = [
+            size[0] / 16 + (columns / 4) as u16,
+            size[1] / 16 + (rows / 4) as u16,
+        ];
+        Self {
+            region: bounds.grown(margin, size),
+            least_run: RUN_TRACKING,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Absent,
+    /// The hand of the last frame, and the number of frames that showed it.
+    Appearing(Blob, u8),
+    /// Number of the hand's pixels in the last frame.
+    Tracked(u32),
+    /// The same of the last frame with a hand, and the time of that frame in µs.
+    Held(u32, u64),
+}
+
+/// One of azimuth, polar angle and distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Channel {
+    filter: OneEuro,
+    zone: Backlash,
+    /// What is left of the way from the place where the camera was held to the place of the hand that came back.
+    offset: Q4_28,
+    output: Q4_28,
+}
+
+impl Channel {
+    const fn at(output: Q4_28) -> Self {
+        Self {
+            filter: OneEuro::new(output),
+            zone: Backlash::new(output),
+            offset: Q4_28::ZERO,
+            output,
+        }
+    }
+}
+
+/// The control of the camera by the hand: takes the statistics of each camera frame, and states the camera's place and the
+/// engine's setting for the next frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    state: State,
+    /// Time of the last frame in µs.
+    time: Option<u64>,
+    setting: Setting,
+    /// Azimuth, polar angle and distance.
+    channels: [Channel; 3],
+}
+
+impl Default for Control {
+    /// Without a hand the camera is at azimuth 0, in the equator's plane, at the distance 3.5.
+    fn default() -> Self {
+        let start = [Q4_28::ZERO, Q4_28::lit("0.25"), Q4_28::lit("3.5")];
+        Self {
+            state: State::Absent,
+            time: None,
+            setting: Setting::SEARCHING,
+            channels: start.map(Channel::at),
+        }
+    }
+}
+
+impl Control {
+    /// The camera's place.
+    pub fn pose(&self) -> Pose {
+        let [theta, phi, r] = self.channels.map(|channel| channel.output.to_bits());
+        Pose {
+            // The shift drops whole turns.
+            theta: Turns((theta as u32) << 4),
+            phi: Turns((phi as u32) << 4),
+            r: Q32_32::from_bits(i64::from(r) << 4),
+        }
+    }
+
+    /// What the engine is to count in the next frame.
+    pub const fn setting(&self) -> Setting {
+        self.setting
+    }
+
+    /// Whether a hand steers the camera.
+    pub const fn presence(&self) -> Presence {
+        match self.state {
+            State::Absent => Presence::Absent,
+            State::Appearing(..) => Presence::Appearing,
+            State::Tracked(_) => Presence::Tracked,
+            State::Held(..) => Presence::Held,
+        }
+    }
+
+    /// Takes the statistics of a new camera frame and its time in µs, and returns the hand that it shows.
+    ///
+    /// A hand appears when three frames in a row show one with enough confidence, of nearly the same area and place. The camera then
+    /// moves to it within some tenths of a second, the shorter way around; the same holds when it comes back to its region. A frame
+    /// that is not later than the last one is ignored.
+    ///
+    /// # Errors
+    /// The frame does not show the hand; the camera stays.
+    pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
+        let gap = match self.time.replace(time) {
+            None => LONGEST_GAP,
+            Some(before) if before < time => time - before,
+            Some(before) => {
+                self.time = Some(before);
+                return statistics.blob();
+            }
+        };
+        let waited = match self.state {
+            State::Held(_, since) => time.saturating_sub(since),
+            _ => gap,
+        };
+        if waited > PATIENCE && self.state != State::Absent {
+            // The statistics of this frame may be those of the hand's region alone, so the search begins with the next one.
+            self.search();
+        }
+        let seen = statistics.blob();
+        match (self.state, seen) {
+            (State::Absent | State::Appearing(..), Ok(blob))
+                if blob.confidence < LEAST_CONFIDENCE =>
+            {
+                self.search();
+                return Err(Doubt::Scattered);
+            }
+            (State::Absent, Ok(blob)) => self.state = State::Appearing(blob, 1),
+            (State::Appearing(before, frames), Ok(blob)) => {
+                self.state = State::Appearing(blob, 1);
+                if is_near(&before, &blob, statistics.size) {
+                    self.state = State::Appearing(blob, frames + 1);
+                    if frames + 1 == FRAMES {
+                        self.enter(&blob, statistics.size);
+                    }
+                }
+            }
+            (State::Tracked(count) | State::Held(count, _), Ok(blob)) if !is_like(count, &blob) => {
+                self.hold(count, time);
+                return Err(Doubt::Jump);
+            }
+            (State::Held(..), Ok(blob)) => self.enter(&blob, statistics.size),
+            (State::Tracked(_), Ok(blob)) => {
+                self.state = State::Tracked(blob.count);
+                self.setting = Setting::around(&blob.bounds, statistics.size);
+                // A gap in tracking is at most `PATIENCE`.
+                self.steer(target(&blob, statistics.size), Step::new(gap as u32));
+            }
+            (State::Tracked(count) | State::Held(count, _), Err(_)) => self.hold(count, time),
+            (State::Absent | State::Appearing(..), Err(_)) => self.search(),
+        }
+        seen
+    }
+
+    fn search(&mut self) {
+        self.state = State::Absent;
+        self.setting = Setting::SEARCHING;
+    }
+
+    /// Waits for the hand in its region, from the first frame without it on.
+    fn hold(&mut self, count: u32, time: u64) {
+        if !matches!(self.state, State::Held(..)) {
+            self.state = State::Held(count, time);
+        }
+    }
+
+    /// Begins to follow a hand: the filters start at its place, and the way from the camera's place to it becomes the offset.
+    fn enter(&mut self, blob: &Blob, size: [u16; 2]) {
+        self.state = State::Tracked(blob.count);
+        self.setting = Setting::around(&blob.bounds, size);
+        for (channel, target) in self.channels.iter_mut().zip(target(blob, size)) {
+            let offset = channel.output.saturating_sub(target);
+            *channel = Channel {
+                offset,
+                output: channel.output,
+                ..Channel::at(target)
+            };
+        }
+        // The azimuth goes the shorter way around: the difference of two azimuths loses its whole turns.
+        let [azimuth, ..] = &mut self.channels;
+        azimuth.offset = within_a_turn(azimuth.offset);
+    }
+
+    /// Moves the camera towards the place of the hand.
+    fn steer(&mut self, target: [Q4_28; 3], step: Step) {
+        let back = low_pass_gain(RETURN, step);
+        let channels = self.channels.iter_mut().zip(&CHANNELS).zip(target);
+        for ((channel, (tuning, zone)), target) in channels {
+            let filtered = channel.filter.next(target, tuning, step);
+            let offset = towards(channel.offset.to_bits(), 0, back);
+            channel.offset = Q4_28::from_bits(offset);
+            channel.output = channel
+                .zone
+                .next(filtered, *zone)
+                .saturating_add(channel.offset);
+        }
+        let [azimuth, polar, distance] = &mut self.channels;
+        azimuth.output = within_a_turn(azimuth.output);
+        polar.output = polar.output.clamp(POLARS[0], POLARS[1]);
+        distance.output = distance.output.clamp(DISTANCES[0], DISTANCES[1]);
+    }
+}
+
+/// Drops the whole turns of an angle: the result is in [−1/2, 1/2).
+const fn within_a_turn(angle: Q4_28) -> Q4_28 {
+    Q4_28::from_bits((angle.to_bits() << 4) >> 4)
+}
+
+/// Whether an area differs from that of the hand in an earlier frame by at most a factor of 2. Areas are below 2^20 pixels.
+const fn is_like(count: u32, blob: &Blob) -> bool {
+    blob.count <= 2 * count && count <= 2 * blob.count
+}
+
+/// Whether a hand may be that of the frame before: of nearly the same area, and at most an eighth of the frame away.
+fn is_near(before: &Blob, blob: &Blob, size: [u16; 2]) -> bool {
+    let moved = |axis: usize| {
+        before.centre[axis]
+            .abs_diff(blob.centre[axis])
+            .to_num::<u32>()
+    };
+    is_like(before.count, blob)
+        && [0, 1]
+            .iter()
+            .all(|&axis| moved(axis) <= u32::from(size[axis] / 8))
+}

@@ -1,0 +1,488 @@
+//! Tests of the camera's control by a hand.
+
+use glint_core::fixed::{Q4_28, Q32_32, Turns, U16_16};
+use glint_core::hand::{
+    Backlash, Blob, CalibrationError, Control, Doubt, OneEuro, PATIENCE, POLE, Presence, Region,
+    Setting, Statistics, Step, Tuning, Window, calibrate, target,
+};
+use proptest::prelude::*;
+
+const SIZE: [u16; 2] = [320, 240];
+/// Time between two camera frames in µs.
+const FRAME: u64 = 16_667;
+
+/// Statistics of a rectangle of the hand's colour.
+fn rectangle(first: [u16; 2], last: [u16; 2]) -> Statistics {
+    let bounds = Region { first, last };
+    let [columns, rows] = bounds.size();
+    let count = columns * rows;
+    let sums = [0, 1].map(|axis| (u32::from(first[axis]) + u32::from(last[axis])) * count / 2);
+    Statistics {
+        size: SIZE,
+        count,
+        sums,
+        bounds,
+        is_whole: true,
+    }
+}
+
+/// Statistics of a square hand with its centre at a pixel.
+fn hand(x: u16, y: u16, half: u16) -> Statistics {
+    rectangle([x - half, y - half], [x + half, y + half])
+}
+
+/// Statistics of a frame without pixels of the hand's colour.
+const EMPTY: Statistics = Statistics {
+    size: SIZE,
+    count: 0,
+    sums: [0; 2],
+    bounds: Region {
+        first: [2_047; 2],
+        last: [0; 2],
+    },
+    is_whole: true,
+};
+
+/// A control and the time of its last frame.
+struct Run {
+    control: Control,
+    time: u64,
+}
+
+impl Run {
+    fn new() -> Self {
+        let control = Control::default();
+        Self { control, time: 0 }
+    }
+
+    fn frame(&mut self, statistics: &Statistics) -> Result<Blob, Doubt> {
+        self.time += FRAME;
+        self.control.on_frame(self.time, statistics)
+    }
+
+    fn frames(&mut self, number: u32, statistics: &Statistics) {
+        for _ in 0..number {
+            let _ = self.frame(statistics);
+        }
+    }
+
+    /// Azimuth and polar angle in degrees, and distance.
+    fn pose(&self) -> [f64; 3] {
+        let pose = self.control.pose();
+        let degrees = |angle: Turns| angle.to_signed_degrees().to_num();
+        [degrees(pose.theta), degrees(pose.phi), pose.r.to_num()]
+    }
+}
+
+#[test]
+fn the_centre_is_the_mean_of_the_pixels() {
+    let blob = rectangle([10, 20], [11, 229]).blob().expect("a hand");
+    assert_eq!(blob.centre.map(|x| x.to_num::<f64>()), [10.5, 124.5]);
+    assert_eq!(blob.count, 420);
+    // The largest frame, with as many pixels as a hand may have.
+    let size = [1_280, 720];
+    let blob = Statistics {
+        size,
+        ..rectangle([0, 0], [1_119, 719])
+    }
+    .blob()
+    .expect("a hand");
+    assert_eq!(blob.centre.map(|x| x.to_num::<f64>()), [559.5, 359.5]);
+    assert_eq!(
+        blob.width.to_num::<f64>(),
+        (0.875_f64.sqrt() * 65_536.0).floor() / 65_536.0
+    );
+    assert_eq!(blob.confidence, 254);
+}
+
+#[test]
+fn frames_without_a_hand_are_refused() {
+    let good = hand(100, 100, 12);
+    for (what, statistics, doubt) in [
+        (
+            "faulty",
+            Statistics {
+                is_whole: false,
+                ..good
+            },
+            Doubt::Faulty,
+        ),
+        ("no pixel", EMPTY, Doubt::Few),
+        ("one pixel", rectangle([7, 9], [7, 9]), Doubt::Few),
+        ("all pixels", rectangle([0, 0], [319, 239]), Doubt::Most),
+        (
+            "sums too large",
+            Statistics {
+                sums: [u32::MAX; 2],
+                ..good
+            },
+            Doubt::Contradiction,
+        ),
+        (
+            "centre outside",
+            Statistics {
+                sums: [0; 2],
+                ..good
+            },
+            Doubt::Contradiction,
+        ),
+        (
+            "bounds too small",
+            Statistics {
+                count: 700,
+                sums: [70_000; 2],
+                ..good
+            },
+            Doubt::Contradiction,
+        ),
+        (
+            "no frame",
+            Statistics {
+                size: [0; 2],
+                ..good
+            },
+            Doubt::Contradiction,
+        ),
+        (
+            "huge frame",
+            Statistics {
+                size: [u16::MAX; 2],
+                ..good
+            },
+            Doubt::Contradiction,
+        ),
+    ] {
+        assert_eq!(statistics.blob(), Err(doubt), "{what}");
+    }
+    // Two hands, or noise, fill little of their bounds.
+    let scattered = Statistics {
+        bounds: Region {
+            first: [10, 20],
+            last: [310, 230],
+        },
+        ..good
+    };
+    assert_eq!(scattered.blob().map(|blob| blob.confidence), Ok(0));
+    assert_eq!(Run::new().frame(&scattered), Err(Doubt::Scattered));
+}
+
+#[test]
+fn place_and_width_become_a_place_on_the_sphere() {
+    let at = |statistics: &Statistics| {
+        let blob = statistics.blob().expect("a hand");
+        target(&blob, statistics.size).map(|x| x.to_num::<f64>())
+    };
+    let near = |found: [f64; 3], expected: [f64; 3]| {
+        assert!(
+            core::iter::zip(found, expected).all(|(a, b)| (a - b).abs() < 1e-4),
+            "{found:?} is not {expected:?}"
+        );
+    };
+    // A hand of a quarter of the width and of the height in the middle.
+    let middle = rectangle([120, 90], [199, 149]);
+    near(at(&middle), [0.0, 0.25, 5.0 - 8.0 * (0.25 - 0.0625)]);
+    // At the borders, and beyond the limits of the width.
+    let pole = POLE.to_num::<f64>();
+    let corner = rectangle([0, 0], [9, 9]);
+    near(at(&corner), [5.0 / 320.0 - 0.5, pole.max(5.0 / 480.0), 5.0]);
+    let corner = rectangle([310, 230], [319, 239]);
+    near(at(&corner), [0.5 - 5.0 / 320.0, 0.5 - pole, 5.0]);
+    near(
+        at(&rectangle([0, 0], [319, 199])),
+        [0.0, 100.0 / 480.0, 2.0],
+    );
+}
+
+const TUNING: Tuning = Tuning {
+    cutoff: U16_16::lit("2"),
+    slope: U16_16::lit("10"),
+    speed_cutoff: U16_16::lit("2"),
+};
+
+#[test]
+fn the_lag_behind_a_steady_motion_is_that_of_the_corner_frequency() {
+    for speed in [0.0625, 0.25, 1.0] {
+        for rate in [30.0, 60.0, 120.0] {
+            let step = Step::new((1e6 / rate) as u32);
+            let mut filter = OneEuro::new(Q4_28::ZERO);
+            let mut lag = 0.0;
+            for frame in 0..(2.0 * rate) as u32 {
+                let input = speed * f64::from(frame) / rate;
+                let output: f64 = filter.next(Q4_28::from_num(input), &TUNING, step).to_num();
+                lag = (input - output) / speed;
+            }
+            let expected = 1.0 / (std::f64::consts::TAU * (2.0 + 10.0 * speed));
+            assert!(
+                (lag / expected - 1.0).abs() < 2e-3,
+                "{speed} at {rate}: {lag} s, not {expected} s"
+            );
+        }
+    }
+}
+
+#[test]
+fn steps_are_followed_without_overshoot_to_the_end() {
+    for micros in [1, 1_000, 8_333, 33_333, 100_000, u32::MAX] {
+        let step = Step::new(micros);
+        let mut filter = OneEuro::new(Q4_28::lit("-7.5"));
+        let mut last = Q4_28::lit("-7.5");
+        for _ in 0..20_000 {
+            let output = filter.next(Q4_28::lit("7.5"), &TUNING, step);
+            assert!(last <= output && output <= Q4_28::lit("7.5"), "{micros} µs");
+            last = output;
+        }
+        assert!(last >= Q4_28::lit("7.4999"), "{micros} µs: {last}");
+    }
+}
+
+#[test]
+fn a_dead_zone_is_drawn_along() {
+    let zone = Q4_28::lit("0.25");
+    let mut backlash = Backlash::new(Q4_28::ZERO);
+    for (input, output) in [
+        ("0.2", "0"),
+        ("-0.25", "0"),
+        ("1", "0.75"),
+        ("0.6", "0.75"),
+        ("0.25", "0.5"),
+        ("-8", "-7.75"),
+    ] {
+        let read = |text: &str| text.parse::<Q4_28>().expect("a number");
+        assert_eq!(backlash.next(read(input), zone), read(output), "{input}");
+    }
+}
+
+#[test]
+fn a_hand_in_three_frames_steers_the_camera() {
+    let mut run = Run::new();
+    assert_eq!(
+        (run.control.presence(), run.control.setting()),
+        (Presence::Absent, Setting::SEARCHING)
+    );
+    let start = run.pose();
+    assert_eq!(start, [0.0, 90.0, 3.5]);
+    for presence in [Presence::Appearing, Presence::Appearing, Presence::Tracked] {
+        assert!(run.frame(&hand(80, 60, 20)).is_ok());
+        assert_eq!(run.control.presence(), presence);
+        assert_eq!(run.pose(), start, "the camera has not moved yet");
+    }
+    let setting = run.control.setting();
+    assert_eq!(
+        (setting.region.first, setting.region.last),
+        ([30, 15], [130, 105])
+    );
+    run.frames(120, &hand(80, 60, 20));
+    let [theta, phi, r] = run.pose();
+    let expected = [
+        (80.5 / 320.0 - 0.5) * 360.0,
+        60.5 / 240.0 * 180.0,
+        5.0 - 8.0 * (41.0 / 76_800_f64.sqrt() - 0.0625),
+    ];
+    assert!((theta - expected[0]).abs() < 0.1, "{theta}");
+    assert!((phi - expected[1]).abs() < 0.1, "{phi}");
+    assert!((r - expected[2]).abs() < 0.01, "{r}");
+    assert!(run.control.pose().view().is_ok());
+}
+
+#[test]
+fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
+    let mut run = Run::new();
+    run.frames(120, &hand(60, 60, 20));
+    let held = run.pose();
+    let region = run.control.setting();
+    run.frames(5, &EMPTY);
+    assert_eq!(run.control.presence(), Presence::Held);
+    assert_eq!((run.pose(), run.control.setting()), (held, region));
+    // Back within the region: at once, without a jump.
+    assert!(run.frame(&hand(70, 60, 20)).is_ok());
+    assert_eq!(
+        (run.control.presence(), run.pose()),
+        (Presence::Tracked, held)
+    );
+    run.frames(120, &hand(60, 60, 20));
+    // Absent for long: the whole frame is searched.
+    run.frames(PATIENCE.div_ceil(FRAME) as u32 + 1, &EMPTY);
+    assert_eq!(
+        (run.control.presence(), run.control.setting()),
+        (Presence::Absent, Setting::SEARCHING)
+    );
+    let held = run.pose();
+    // Back at the other side: the camera goes the shorter way around, over 180°.
+    let mut last = held;
+    let mut largest: f64 = 0.0;
+    for _ in 0..240 {
+        assert!(run.frame(&hand(290, 60, 20)).is_ok());
+        let pose = run.pose();
+        let turned = (pose[0] - last[0] + 540.0).rem_euclid(360.0) - 180.0;
+        assert!(turned <= 1e-6, "the camera turns by {turned}°");
+        largest = largest.max(-turned);
+        last = pose;
+    }
+    assert!(
+        (last[0] - (290.5 / 320.0 - 0.5) * 360.0).abs() < 0.1,
+        "{last:?}"
+    );
+    // The way is 101°; the return begins with 10 % of it in a frame at 60 frames a second.
+    assert!(largest < 11.0, "{largest}° in a frame");
+}
+
+#[test]
+fn a_jump_of_the_area_holds_until_it_lasts() {
+    let mut run = Run::new();
+    run.frames(120, &hand(160, 120, 20));
+    let held = run.pose();
+    assert_eq!(run.frame(&hand(160, 120, 12)), Err(Doubt::Jump));
+    assert_eq!((run.control.presence(), run.pose()), (Presence::Held, held));
+    // The same area again.
+    assert!(run.frame(&hand(160, 120, 20)).is_ok());
+    assert_eq!(run.control.presence(), Presence::Tracked);
+    // The new area remains: accepted after the patience and three frames.
+    run.frames(PATIENCE.div_ceil(FRAME) as u32 + 4, &hand(160, 120, 12));
+    assert_eq!(run.control.presence(), Presence::Tracked);
+    let before = run.pose();
+    assert!((before[2] - held[2]).abs() < 0.2, "{before:?} {held:?}");
+    run.frames(240, &hand(160, 120, 12));
+    assert!((run.pose()[2] - (5.0 - 8.0 * (25.0 / 76_800_f64.sqrt() - 0.0625))).abs() < 0.01);
+}
+
+#[test]
+fn a_pause_of_the_frames_ends_tracking_and_old_frames_are_ignored() {
+    let mut run = Run::new();
+    run.frames(20, &hand(60, 60, 20));
+    let held = run.pose();
+    assert!(run.control.on_frame(run.time, &hand(200, 60, 20)).is_ok());
+    assert_eq!(
+        (run.control.presence(), run.pose()),
+        (Presence::Tracked, held)
+    );
+    run.time += 2 * PATIENCE;
+    assert!(run.frame(&hand(60, 60, 20)).is_ok());
+    assert_eq!(
+        (run.control.presence(), run.pose()),
+        (Presence::Appearing, held)
+    );
+}
+
+/// Samples of a picture of 40×30: the hand's colour in the middle, and another colour around it.
+fn picture(hand: impl Fn(usize) -> [u8; 2], rest: impl Fn(usize) -> [u8; 2]) -> Vec<[u8; 2]> {
+    (0..1_200)
+        .map(|place| {
+            let (x, y) = (place % 40, place / 40);
+            if (12..28).contains(&x) && (8..22).contains(&y) {
+                hand(place)
+            } else {
+                rest(place)
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn a_shown_hand_gives_the_windows_of_its_colour() {
+    let noise = |place: usize, most: usize| (place * 7919 % 101 % (2 * most + 1)) as u8;
+    let hand = |place| [145 + noise(place, 6), 95 + noise(place + 3, 6)];
+    let calibrated = calibrate(40, 30, picture(hand, |_| [128, 128]).into_iter()).expect("a hand");
+    let [cr, cb] = calibrated.windows;
+    assert!(
+        (135..=146).contains(&cr.lower) && (156..=168).contains(&cr.upper),
+        "{cr:?}"
+    );
+    assert!(
+        (85..=96).contains(&cb.lower) && (106..=118).contains(&cb.upper),
+        "{cb:?}"
+    );
+    assert_eq!(calibrated.inside, 100);
+    // The hand is larger than the box.
+    assert!(calibrated.outside < 20, "{calibrated:?}");
+    // One colour without noise gets the least window.
+    let flat =
+        calibrate(40, 30, picture(|_| [2, 254], |_| [128, 128]).into_iter()).expect("a hand");
+    let window = |lower, upper| Window { lower, upper };
+    assert_eq!(flat.windows, [window(0, 6), window(250, 255)]);
+}
+
+#[test]
+fn pictures_without_a_hand_are_refused() {
+    let grey = |_| [128, 128];
+    let run =
+        |samples: Vec<[u8; 2]>| calibrate(40, 30, samples.into_iter()).map(|found| found.windows);
+    assert_eq!(
+        run(picture(grey, grey)),
+        Err(CalibrationError::Outside(100))
+    );
+    let half = |place: usize| {
+        if place.is_multiple_of(2) {
+            [100, 128]
+        } else {
+            [180, 128]
+        }
+    };
+    assert_eq!(run(picture(half, grey)), Err(CalibrationError::Colours(80)));
+    assert_eq!(run(vec![[128, 128]; 1_199]), Err(CalibrationError::Samples));
+    assert_eq!(
+        calibrate(8, 8, std::iter::repeat([0, 0])).map(|found| found.windows),
+        Err(CalibrationError::Samples)
+    );
+    assert_eq!(
+        calibrate(0, 0, std::iter::empty()).map(|found| found.windows),
+        Err(CalibrationError::Samples)
+    );
+}
+
+fn statistics() -> impl Strategy<Value = Statistics> {
+    let place = 0..400_u16;
+    let corner = || [place.clone(), place.clone()];
+    let any_size = prop_oneof![8 => Just(SIZE), 1 => any::<[u16; 2]>()];
+    let count = prop_oneof![4 => 0..5_000_u32, 1 => any::<u32>()];
+    (
+        any_size,
+        count,
+        corner(),
+        corner(),
+        any::<[u32; 2]>(),
+        0..20_u8,
+    )
+        .prop_map(|(size, count, middle, first, sums, kind)| {
+            let plausible = middle.map(|x| u32::from(x).saturating_mul(count));
+            Statistics {
+                size,
+                count,
+                sums: if kind == 0 { sums } else { plausible },
+                bounds: Region {
+                    first,
+                    last: [0, 1].map(|i| first[i].saturating_add(300)),
+                },
+                is_whole: kind != 1,
+            }
+        })
+}
+
+proptest! {
+    #[test]
+    fn centres_are_rounded_down(count in 1..20_000_u32, x in 0..1_280_u32, y in 0..720_u32, rest in any::<u32>()) {
+        let sums = [x * count + rest % count, y * count + rest % count];
+        let bounds = Region { first: [0, 0], last: [1_279, 719] };
+        let statistics = Statistics { size: [320, 240], count, sums, bounds, is_whole: true };
+        if let Ok(blob) = statistics.blob() {
+            for (centre, sum) in blob.centre.into_iter().zip(sums) {
+                prop_assert_eq!(u64::from(centre.to_bits()), (u64::from(sum) << 12) / u64::from(count));
+            }
+            let width = (f64::from(count) / 76_800.0).sqrt();
+            prop_assert!((blob.width.to_num::<f64>() - width).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn no_statistics_move_the_camera_out_of_range(frames in proptest::collection::vec((statistics(), 0..300_000_u64), 1..60)) {
+        let mut control = Control::default();
+        let mut time = 0;
+        for (statistics, gap) in frames {
+            time += gap;
+            let _ = control.on_frame(time, &statistics);
+            let pose = control.pose();
+            prop_assert!(pose.view().is_ok(), "{:?}", pose);
+            prop_assert!(pose.phi >= Turns(POLE.to_bits() as u32 * 16) && pose.phi <= Turns::HALF);
+            prop_assert!((Q32_32::lit("2")..=Q32_32::lit("5")).contains(&pose.r));
+        }
+    }
+}
