@@ -21,6 +21,7 @@ pub mod fixed;
 pub mod follow;
 pub mod hand;
 pub mod i2c;
+pub mod image_sensor;
 pub mod imu;
 pub mod light;
 #[rustfmt::skip]

@@ -1,0 +1,260 @@
+//! Image sensors for the gesture engine: set-up of an OV7670 or OV5640 over SCCB, OmniVision's form of I2C.
+//!
+//! [`ImageSensor`] finds the chip over any [`I2c`], checks its identity, and writes a short list of registers: RGB565 over the
+//! parallel port, the high byte of a pixel first, a mirrored picture (a hand moves as in a mirror), automatic exposure, gain and
+//! white balance. All other registers keep the values of the chip's reset. The lists follow the data sheets OV7670 1.4 and OV5640
+//! 2.03.
+//!
+//! SCCB differs from I2C: a read is two transactions, because its chips know no repeated start. [`TwoWires`] is a bus of two
+//! wires that software moves.
+
+mod ov5640;
+mod ov7670;
+mod wires;
+
+use core::fmt;
+
+use embedded_hal_async::delay::DelayNs;
+use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c};
+
+pub use wires::{NoAcknowledge, TwoWires, Wires};
+
+/// Number of columns and rows of a camera frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FrameSize {
+    /// 320×240.
+    Qvga,
+    /// 640×480.
+    Vga,
+}
+
+impl FrameSize {
+    /// Columns and rows.
+    pub const fn pixels(self) -> [u16; 2] {
+        match self {
+            Self::Qvga => [320, 240],
+            Self::Vga => [640, 480],
+        }
+    }
+}
+
+/// The type of an image sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Model {
+    /// An OV7670: registers have numbers of 8 bits.
+    Ov7670,
+    /// An OV5640: registers have numbers of 16 bits.
+    Ov5640,
+}
+
+impl Model {
+    const ALL: [Self; 2] = [Self::Ov7670, Self::Ov5640];
+
+    /// The chip's address on the bus, without the bit that tells reads from writes.
+    pub const fn address(self) -> u8 {
+        match self {
+            Self::Ov7670 => 0x21,
+            Self::Ov5640 => 0x3c,
+        }
+    }
+
+    /// The contents of its two registers of the product number.
+    pub const fn product(self) -> u16 {
+        match self {
+            Self::Ov7670 => 0x7673,
+            Self::Ov5640 => 0x5640,
+        }
+    }
+
+    /// Whether VSYNC is low between frames, with the registers that [`ImageSensor::start`] writes. HREF is high during a line, and
+    /// data are to be sampled at the rising edge of PCLK.
+    pub const fn is_vsync_low(self) -> bool {
+        matches!(self, Self::Ov5640)
+    }
+
+    /// The number of the first register of the product number. The second one follows.
+    const fn product_register(self) -> u16 {
+        match self {
+            Self::Ov7670 => 0x0a,
+            Self::Ov5640 => 0x300a,
+        }
+    }
+
+    /// The steps of the set-up for a size.
+    const fn steps(self, size: FrameSize) -> [&'static [Step]; 3] {
+        match (self, size) {
+            (Self::Ov7670, FrameSize::Qvga) => [ov7670::RESET, ov7670::COMMON, ov7670::QVGA],
+            (Self::Ov7670, FrameSize::Vga) => [ov7670::RESET, ov7670::COMMON, ov7670::VGA],
+            (Self::Ov5640, FrameSize::Qvga) => [ov5640::RESET, ov5640::COMMON, ov5640::QVGA],
+            (Self::Ov5640, FrameSize::Vga) => [ov5640::RESET, ov5640::COMMON, ov5640::VGA],
+        }
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ov7670 => "OV7670",
+            Self::Ov5640 => "OV5640",
+        })
+    }
+}
+
+/// A step of a set-up.
+#[derive(Clone, Copy, Debug)]
+enum Step {
+    /// Writes a value to the register of this number.
+    Write(u16, u8),
+    /// Writes a value, reads it back, and fails if it differs.
+    Check(u16, u8),
+    /// Waits for a number of ms.
+    Wait(u32),
+}
+
+/// Reason why an image sensor was not set up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Error<E> {
+    /// Error of the bus.
+    Bus(E),
+    /// No chip answers at the addresses of the known chips.
+    Absent,
+    /// A chip answers, but has another product number.
+    Identity {
+        /// The known chip of this address.
+        model: Model,
+        /// The product number of the chip.
+        found: u16,
+    },
+    /// A register does not keep the written value.
+    Register {
+        /// Number of the register.
+        register: u16,
+        /// The written value.
+        expected: u8,
+        /// The value read.
+        found: u8,
+    },
+}
+
+impl<E> From<E> for Error<E> {
+    fn from(error: E) -> Self {
+        Self::Bus(error)
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for Error<E> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Bus(error) => error.fmt(f),
+            Self::Absent => {
+                f.write_str("no image sensor answers: expected")?;
+                let mut between = " ";
+                for model in Model::ALL {
+                    write!(f, "{between}an {model} at {:#04x}", model.address())?;
+                    between = " or ";
+                }
+                f.write_str("; check its supply, its clock XCLK and the wires SCL and SDA")
+            }
+            Self::Identity { model, found } => write!(
+                f,
+                "the chip at {:#04x} has the product number {found:#06x}: expected {:#06x} ({model})",
+                model.address(),
+                model.product()
+            ),
+            Self::Register {
+                register,
+                expected,
+                found,
+            } => write!(
+                f,
+                "register {register:#06x} is {found:#04x}: expected {expected:#04x} as written"
+            ),
+        }
+    }
+}
+
+/// A driver of an image sensor on an I2C bus. The chip answers only while its clock XCLK runs.
+///
+/// A set-up takes about 60 transactions. On the bus of a sensor that is read periodically
+/// ([`PeriodicI2c`](crate::i2c::PeriodicI2c)) each of them would end the periodic reads; do it before they begin, or on wires of
+/// its own.
+pub struct ImageSensor<B> {
+    bus: B,
+}
+
+impl<B: I2c> ImageSensor<B> {
+    /// Makes a driver for a chip on `bus`; [`start`](Self::start) finds the chip.
+    pub const fn new(bus: B) -> Self {
+        Self { bus }
+    }
+
+    /// Finds the chip, then resets it and sets it up for a size.
+    ///
+    /// # Errors
+    /// The chip is absent, unknown, or does not accept its set-up.
+    pub async fn start(
+        &mut self,
+        size: FrameSize,
+        delay: &mut impl DelayNs,
+    ) -> Result<Model, Error<B::Error>> {
+        let model = self.find().await?;
+        for &step in model.steps(size).into_iter().flatten() {
+            match step {
+                Step::Write(register, value) => self.write(model, register, value).await?,
+                Step::Check(register, expected) => {
+                    self.write(model, register, expected).await?;
+                    let found = self.read(model, register).await?;
+                    if found != expected {
+                        return Err(Error::Register {
+                            register,
+                            expected,
+                            found,
+                        });
+                    }
+                }
+                Step::Wait(time) => delay.delay_ms(time).await,
+            }
+        }
+        Ok(model)
+    }
+
+    /// Finds a known chip by its address and product number. A chip that is not known does not hide a known one.
+    async fn find(&mut self) -> Result<Model, Error<B::Error>> {
+        let mut reason = Error::Absent;
+        for model in Model::ALL {
+            match self.product(model).await {
+                Ok(found) if found == model.product() => return Ok(model),
+                Ok(found) => reason = Error::Identity { model, found },
+                Err(error) if matches!(error.kind(), ErrorKind::NoAcknowledge(_)) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(reason)
+    }
+
+    async fn product(&mut self, model: Model) -> Result<u16, B::Error> {
+        let register = model.product_register();
+        let high = self.read(model, register).await?;
+        let low = self.read(model, register + 1).await?;
+        Ok(u16::from_be_bytes([high, low]))
+    }
+
+    async fn write(&mut self, model: Model, register: u16, value: u8) -> Result<(), B::Error> {
+        let [high, low] = register.to_be_bytes();
+        match model {
+            Model::Ov7670 => self.bus.write(model.address(), &[low, value]).await,
+            Model::Ov5640 => self.bus.write(model.address(), &[high, low, value]).await,
+        }
+    }
+
+    async fn read(&mut self, model: Model, register: u16) -> Result<u8, B::Error> {
+        let [high, low] = register.to_be_bytes();
+        match model {
+            Model::Ov7670 => self.bus.write(model.address(), &[low]).await?,
+            Model::Ov5640 => self.bus.write(model.address(), &[high, low]).await?,
+        }
+        let mut value = [0];
+        self.bus.read(model.address(), &mut value).await?;
+        Ok(value[0])
+    }
+}
