@@ -22,6 +22,10 @@ def _fifo(old, new, fails):
     return Mutation("fifo.sv", old, new, fails)
 
 
+def _crossing(old, new, fails):
+    return Mutation("cdc_fifo.sv", old, new, fails)
+
+
 def _queue(old, new, fails):
     return Mutation("pipeline_fifo.sv", old, new, fails)
 
@@ -341,6 +345,16 @@ MUTATIONS = {
         _line_raster("assign idle = !active && valid", "assign idle = valid", "idle_when_empty"),
         _line_raster("valid <= {valid[1],", "if (in_valid) valid <= {valid[1],", "shown_in_time"),
         _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
+    ],
+    "cdc_fifo": [
+        _crossing("head_gray <= head_next ^ head_next >> 1;", "head_gray <= head_next;", "nothing_made_up"),
+        _crossing("if (in_valid && in_ready) places", "if (in_valid) places", "in_order"),
+        _crossing("holding  <= tail_gray != head_seen;", "holding  <= load;", "nothing_made_up"),
+        _crossing("pointer_t'(3) << (PLACE_BITS - 1);", "pointer_t'(1) << PLACE_BITS;", "nothing_too_many"),
+        _crossing("!holding || out_ready;", "1'b1;", "valid_stays"),
+        _crossing("!holding || out_ready;", "!holding || out_ready || tail_gray != head_seen;", "payload_stable"),
+        _crossing("        head_gray <=", "        if (!in_valid) head_gray <=", "shown_in_time"),
+        _crossing("head_gray != (tail_seen ^ FULL);", "head_gray == (tail_seen ^ FULL);", "taken_in_time"),
     ],
     "lanes": [
         _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),

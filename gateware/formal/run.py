@@ -31,19 +31,23 @@ _AT_A_TIME = 2
 
 
 # Replacements of modules in gateware/rtl, used by the proofs that name them.
-_STAND_INS = ("any_field", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
+_STAND_INS = ("any_field", "any_level", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
 
 @dataclass(frozen=True)
 class Proof:
-    """A proof: its top module with the properties, the number of clocks after reset that it covers, and its stand-ins."""
+    """A proof: its top module with the properties, the number of clocks after reset that it covers, and its stand-ins.
+
+    With `has_clocks`, several clocks tick in any order, and the depth is a number of steps: an edge of a clock takes one.
+    """
 
     name: str
     top: str
     depth: int
     stand_ins: tuple = ()
     parameters: dict = field(default_factory=dict)
+    has_clocks: bool = False
 
     @cached_property
     def sources(self):
@@ -75,6 +79,7 @@ PROOFS = [
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
     Proof("fifo in block RAM", "buffer_proof", 24, parameters={"DEPTH": 2, "BLOCK": 1}),
     Proof("credit_fifo", "buffer_proof", 28, parameters={"DEPTH": 2, "FLIGHT": 3}),
+    Proof("cdc_fifo", "cdc_fifo_proof", 40, ("any_level",), has_clocks=True),
     Proof("band_pipe", "band_pipe_proof", 14),
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
@@ -84,6 +89,7 @@ PROOFS = [
 _SBY = """[options]
 mode {mode}
 depth {depth}
+multiclock {multiclock}
 [engines]
 smtbmc --stbv --nomem bitwuzla
 [script]
@@ -108,7 +114,7 @@ def check(proof, mode, folder, sources=None, only=None):
     # work folder.
     config = folder.with_suffix(".sby")
     config.write_text(_SBY.format(
-        mode=mode, depth=proof.depth, top=proof.top,
+        mode=mode, depth=proof.depth, multiclock="on" if proof.has_clocks else "off", top=proof.top,
         names=" ".join(source.name for source in sources), paths="\n".join(map(str, sources)),
         parameters="\n".join(f"chparam -set {key} {value} {proof.top}" for key, value in proof.parameters.items()),
         removed="\n".join(f"delete */c:{label}" for label in set(proof.properties()) - {only}) if only else ""))

@@ -1,0 +1,26 @@
+// Stand-in for the module cdc_level in proofs with several clocks. A level that changes at about the time of the clock's edge is
+// seen before or after its change, as a flip-flop that goes metastable settles either way. Of several levels each one chooses by
+// itself.
+
+`default_nettype none
+
+module cdc_level (
+    input  wire  clk,
+    input  wire  level,
+    output logic synced
+);
+    (* anyseq *) logic early;
+
+    logic before = 1'b0, captured = 1'b0, settled = 1'b0;
+
+    always_ff @($global_clock) before <= level;
+
+    always_ff @(posedge clk) begin
+        captured <= early ? level : before;
+        settled  <= captured;
+    end
+
+    assign synced = settled;
+endmodule
+
+`default_nettype wire
