@@ -61,6 +61,11 @@ MODULES = [
                      "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_lines": _LINES,
                      "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
+    Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),
+    Module(top="colour_window"),
+    # A sensor's clock counts as stopped after 2^6 clocks.
+    Module(top="gesture_engine",
+           variants={"gesture_engine_hasty": {"MOMENTS": 1, "TIMEOUT_BITS": 6}}, measured=("gesture_engine",)),
     Module(top="line_setup"),
     Module(top="line_raster"),
     *(Module(top=f"field_{name}", measured=(f"field_{name}",)) for name in NAMES),

@@ -1,0 +1,34 @@
+// Types of the values that the modules of the gesture engine exchange. docs/formats.md, "Gestures", explains them.
+
+`default_nettype none
+
+package gesture_pkg;
+    /* verilator lint_off UNUSEDPARAM */
+    localparam logic [1:0] TOKEN_PIXEL = 2'd0;
+    localparam logic [1:0] TOKEN_LINE  = 2'd1; // the end of a line
+    localparam logic [1:0] TOKEN_FRAME = 2'd2; // the end of a frame, and the start of the next one
+    /* verilator lint_on UNUSEDPARAM */
+
+    // What the image sensor sent. `data` of a pixel is its colour, RGB565; of a line, bit 0 says that a byte was left over, bit 1
+    // that VSYNC cut it. `lost`: tokens before this one are missing.
+    typedef struct packed {
+        logic        lost;
+        logic [1:0]  kind;
+        logic [15:0] data;
+    } token_t;
+
+    // What a clock of the pipeline is for: one of the first five bits, or none. A line is followed by 14 clocks `blank` and one
+    // `next`, which stand for unmasked pixels behind its end; 15 clocks without any of them follow a frame.
+    typedef struct packed {
+        logic pixel;
+        logic line;
+        logic blank;
+        logic next;
+        logic frame;
+        logic lost;
+        logic odd;
+        logic cut;
+    } item_t;
+endpackage
+
+`default_nettype wire

@@ -1,0 +1,46 @@
+// Keeps the marked pixels of a line that belong to a run of at least `reach` + 1 of them, and drops all others: a horizontal
+// opening (docs/formats.md, "Gestures").
+//
+//   marked    . M . M M M M . .        reach 2
+//   run       0 1 0 1 2 3 3 0 0        marked pixels before this clock, at most 15
+//   full      . . . . . F F . .        the last of three marked pixels in a row
+//   kept      . . . . . K K K K  for columns two to the left: those of the run
+//
+// A pixel is judged when the `reach` pixels after it are known, so `out_x` is less by `reach`. The clocks `blank` and `next`
+// behind the end of a line are pixels that are not marked. No memory of the marks is needed: every pixel within `reach` of a full
+// run was marked. Latency one clock, throughput one pixel a clock.
+
+`default_nettype none
+
+module run_filter (
+    input  wire                       clk,
+    input  wire  [3:0]                reach,
+    input  wire  gesture_pkg::item_t  item,
+    input  wire                       marked,
+    input  wire  [10:0]               x,
+    input  wire  [10:0]               y,
+    output logic                      kept,
+    output logic [10:0]               out_x,
+    output logic [10:0]               out_y
+);
+    // Clocks in which pixels are kept after this one.
+    logic [3:0] run, more;
+    logic       moves, full;
+
+    assign moves = item.pixel || item.blank || item.next;
+    assign full  = item.pixel && marked && run >= reach;
+
+    always_ff @(posedge clk) begin
+        kept  <= full || moves && more != '0;
+        out_x <= x - 11'(reach);
+        out_y <= y;
+        if (moves) begin
+            run  <= item.pixel && marked ? run + 4'(run != '1) : '0;
+            more <= full ? reach : more - 4'(more != '0);
+        end
+    end
+
+    wire _unused = &{1'b0, item};
+endmodule
+
+`default_nettype wire
