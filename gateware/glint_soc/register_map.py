@@ -34,6 +34,7 @@ PINNED = {
     "scanout": Location(9, irq=3),
     "triangle": Location(10, irq=4),
     "raymarch": Location(11, irq=5),
+    "gesture": Location(12, irq=7),
     # The physical layers differ between boards, so the build id does not cover their registers.
     "ddrphy": Location(30),
     "uart_phy": Location(31),
@@ -45,7 +46,7 @@ BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 MEMORY_SPECIFIC = ("sdram",)
 
 # The optional blocks, each with the number of its bit in the register `identity_blocks`.
-OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2, "line": 3}
+OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2, "line": 3, "gesture": 4}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 

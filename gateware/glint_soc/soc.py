@@ -13,6 +13,7 @@ from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import csr_bus, wishbone
 from migen import Cat, Constant, Signal, log2_int
 
+from .gesture import GestureEngine
 from .i2c import I2CMaster
 from .identity import Identity
 from .raymarch import Fields, Raymarcher
@@ -90,6 +91,8 @@ class GlintSoC(SoCCore):
         self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
         self.switches = GPIOIn(self._inputs("switches", 16))
         self.leds = GPIOOut(self._outputs("leds", 16))
+        if "gesture" in self.blocks:
+            self.gesture = GestureEngine(platform, platform.request("camera"), sys_clk_freq)
 
     def do_finalize(self):
         # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.

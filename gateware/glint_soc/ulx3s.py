@@ -9,6 +9,7 @@ from migen import ClockDomain, ClockSignal, Signal
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
 from .ecp5_hdmi import Ecp5HDMI
+from .gesture import PIXEL_CLOCK
 from .soc import GlintSoC
 from .ulx3s_platform import Platform
 from .video import CEA_640X480
@@ -71,6 +72,8 @@ class Ulx3sSoC(GlintSoC):
         self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
         for name in {"triangle", "raymarch"} & self.blocks:
             self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
+        if "gesture" in self.blocks:
+            platform.add_period_constraint(self.gesture.pclk, 1e9 / PIXEL_CLOCK)
         self.comb += platform.request("wifi_gpio0").eq(1)
         if "scanout" in self.blocks:
             self.hdmi = Ecp5HDMI(self.scanout.video, platform.request("hdmi_out"), self.mode.sync_low)

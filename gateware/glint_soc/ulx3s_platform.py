@@ -28,6 +28,20 @@ _io = [
         Subsignal("scl", Pins("C11")),
         Misc("PULLMODE=UP"), _3V3),
 
+    # An image sensor at the following pins of the header, GP1 to GN8: its clock is at one of the pins that reach the FPGA's clock
+    # network.
+    ("camera", 0,
+        Subsignal("pclk", Pins("A10")),
+        Subsignal("xclk", Pins("A11"), Misc("DRIVE=4")),
+        Subsignal("href", Pins("A9")),
+        Subsignal("vsync", Pins("B10")),
+        Subsignal("d", Pins("B9 C10 A7 A8 C8 B8 C6 C7")),
+        Subsignal("sda", Pins("A6"), Misc("PULLMODE=UP")),
+        Subsignal("scl", Pins("B6"), Misc("PULLMODE=UP")),
+        Subsignal("reset_n", Pins("A4"), Misc("DRIVE=4")),
+        Subsignal("power_down", Pins("A5"), Misc("DRIVE=4")),
+        _3V3),
+
     # Only the positive pin of each pair is named: the FPGA drives the negative one with it.
     ("hdmi_out", 0,
         Subsignal("clk_p", Pins("A17"), *_TMDS),

@@ -7,6 +7,7 @@ from litex.soc.cores.clock import S7IDELAYCTRL, S7MMCM, S7PLL
 from litex.soc.cores.video import VideoS7HDMIPHY
 from migen import ClockDomain, Constant, Signal
 
+from .gesture import PIXEL_CLOCK
 from .scanout import VIDEO_LAYOUT
 from .soc import SYS_CLK_FREQ, GlintSoC
 from .urbana_platform import Platform
@@ -107,8 +108,26 @@ class UrbanaSoC(GlintSoC):
         self.add_dram(self.ddrphy, MT41K64M16(sys_clk_freq, "1:4"))
         for name in {"triangle", "raymarch"} & self.blocks:
             self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
+        if "gesture" in self.blocks:
+            self._constrain_camera(platform)
         if "scanout" in self.blocks:
             self.hdmi = VideoS7HDMIPHY(platform.request("hdmi_out"), clock_domain="pix")
             self.comb += self.hdmi.sink.valid.eq(1)
             self.comb += [getattr(self.hdmi.sink, name).eq(getattr(self.scanout.video, name))
                           for name, _ in VIDEO_LAYOUT]
+
+    def _constrain_camera(self, platform):
+        """Constrains the clock of the image sensor, and the paths between it and `sys`, which all go through crossings of rtl/common.
+
+        The bits of a pointer of `cdc_fifo` may arrive apart by less than a period of either clock, so the limit is the shorter
+        one. It is not known whether the pin can reach the clock network directly. The commands come before the placement, because
+        the XDC would have them before those that make the clocks.
+        """
+        platform.add_period_constraint(self.gesture.pclk, 1e9 / PIXEL_CLOCK)
+        limit = round(1e9 / max(PIXEL_CLOCK, self.sys_clk_freq), 2)
+        commands = platform.toolchain.pre_placement_commands
+        clocks = {"sys": self.crg.cd_sys.clk, "pclk": self.gesture.pclk}
+        for start, end in (("sys", "pclk"), ("pclk", "sys")):
+            commands.add(f"set_max_delay -datapath_only -from [get_clocks -of [get_nets {{{start}}}]] "
+                         f"-to [get_clocks -of [get_nets {{{end}}}]] {limit}", **clocks)
+        commands.add("set_property CLOCK_DEDICATED_ROUTE FALSE [get_nets camera_pclk_IBUF]")

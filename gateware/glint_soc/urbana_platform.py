@@ -32,6 +32,18 @@ _io = [
         Subsignal("scl", Pins("K14")),
         Misc("PULLUP=TRUE"), IOStandard("LVCMOS33")),
 
+    # An OV5640 or OV7670 on the camera adapter at PMOD A and JAB, which leaves PMOD B to the motion sensor. The adapter has neither
+    # the sensor's reset nor its power-down.
+    ("camera", 0,
+        Subsignal("d", Pins("J13 F14 J14 F15 E14 H13 E15 H14")),
+        Subsignal("pclk", Pins("D10")),
+        Subsignal("href", Pins("C12")),
+        Subsignal("vsync", Pins("C11")),
+        Subsignal("xclk", Pins("D11"), Misc("DRIVE=24")),
+        Subsignal("sda", Pins("E16"), Misc("PULLUP=TRUE")),
+        Subsignal("scl", Pins("G16"), Misc("PULLUP=TRUE")),
+        IOStandard("LVCMOS33")),
+
     # The clock of the flash has no entry: it is the pin CCLK, reached through the primitive STARTUPE2.
     ("spiflash4x", 0,
         Subsignal("cs_n", Pins("M13")),

@@ -26,6 +26,12 @@ _io = [
     ("i2c", 0,
         Subsignal("scl_out", Pins(1)), Subsignal("scl_in", Pins(1)),
         Subsignal("sda_out", Pins(1)), Subsignal("sda_in", Pins(1))),
+    # An image sensor with a parallel port; its bus like that of `i2c`.
+    ("camera", 0,
+        Subsignal("pclk", Pins(1)), Subsignal("href", Pins(1)), Subsignal("vsync", Pins(1)), Subsignal("d", Pins(8)),
+        Subsignal("xclk", Pins(1)), Subsignal("reset_n", Pins(1)), Subsignal("power_down", Pins(1)),
+        Subsignal("scl_out", Pins(1)), Subsignal("scl_in", Pins(1)),
+        Subsignal("sda_out", Pins(1)), Subsignal("sda_in", Pins(1))),
     ("buttons", 0, Pins(4)),
     ("switches", 0, Pins(16)),
     ("leds", 0, Pins(16)),
@@ -105,7 +111,9 @@ class VirtualSoC(GlintSoC):
         # The BIOS tests 2 MiB of memory by default, which would take minutes in the simulation.
         self.add_constant("MEMTEST_DATA_SIZE", 8 * 1024)
         self.add_constant("MEMTEST_ADDR_SIZE", 8 * 1024)
-        # The video pins exist in every build, so that one harness fits all builds.
+        # The pins of the video and of the image sensor exist in every build, so that one harness fits all builds.
+        if "gesture" not in self.blocks:
+            platform.request("camera")
         pads = platform.request("vga")
         if "scanout" in self.blocks:
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))

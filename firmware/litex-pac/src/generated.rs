@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x4138_d962;
+pub const BUILD_ID: u32 = 0x9b74_8482;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,11 +22,13 @@ pub enum Interrupt {
     Raymarch = 5,
     /// An enabled event of `i2c` is pending.
     I2c = 6,
+    /// An enabled event of `gesture` is pending.
+    Gesture = 7,
 }
 
 impl Interrupt {
     /// Every interrupt, by number.
-    pub const ALL: [Self; 7] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle, Self::Raymarch, Self::I2c];
+    pub const ALL: [Self; 8] = [Self::Uart, Self::Timer0, Self::Buttons, Self::Scanout, Self::Triangle, Self::Raymarch, Self::I2c, Self::Gesture];
 }
 
 /// Constants of the SoC.
@@ -40,7 +42,7 @@ pub mod constants {
     /// `config_clock_frequency`.
     pub const CONFIG_CLOCK_FREQUENCY: u32 = 81_250_000;
     /// `config_cpu_interrupts`.
-    pub const CONFIG_CPU_INTERRUPTS: u32 = 7;
+    pub const CONFIG_CPU_INTERRUPTS: u32 = 8;
     /// `config_cpu_reset_addr`.
     pub const CONFIG_CPU_RESET_ADDR: u32 = 0;
     /// `config_csr_alignment`.
@@ -87,6 +89,8 @@ pub struct Peripherals {
     pub triangle: triangle::Triangle,
     /// `raymarch`.
     pub raymarch: raymarch::Raymarch,
+    /// `gesture`.
+    pub gesture: gesture::Gesture,
 }
 
 impl Peripherals {
@@ -111,6 +115,7 @@ impl Peripherals {
                 scanout: scanout::Scanout::steal(),
                 triangle: triangle::Triangle::steal(),
                 raymarch: raymarch::Raymarch::steal(),
+                gesture: gesture::Gesture::steal(),
             }
         }
     }
@@ -238,7 +243,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`.
+        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`, 4 `gesture`.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {
@@ -5557,6 +5562,1257 @@ pub mod raymarch {
                 ("hits", self.hits),
                 ("misses", self.misses),
                 ("undecided", self.undecided),
+            ]
+            .into_iter()
+        }
+    }
+}
+
+/// The registers of `gesture`.
+pub mod gesture {
+    use crate::register::{ReadOnly, ReadWrite, Register, Value, WideRegister};
+
+    /// Access to `gesture`.
+    pub struct Gesture {
+        _private: (),
+    }
+
+    impl Gesture {
+        /// Address of the first register.
+        pub const BASE: usize = 0xf000_6000;
+
+        /// Value of `ident` where the block is present.
+        pub const IDENT: u32 = 0x4745_5354;
+
+        /// Words of the memory for a small picture.
+        pub const SNAPSHOT_WORDS: u32 = 2_048;
+
+        /// Another handle, beside the one that [`Peripherals::take`](crate::Peripherals::take) hands out.
+        ///
+        /// # Safety
+        /// The holders of the handles must tolerate each other's changes to the registers.
+        #[must_use]
+        pub const unsafe fn steal() -> Self {
+            Self { _private: () }
+        }
+
+        /// `ident`, 32 bits: `GEST` in ASCII; 0 where the block is absent.
+        #[inline]
+        #[must_use]
+        pub const fn ident(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6000) }
+        }
+
+        /// `caps`, 29 bits: Capabilities of this build.
+        #[inline]
+        #[must_use]
+        pub const fn caps(&self) -> Register<Caps, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6004) }
+        }
+
+        /// `control`, 5 bits: Operation. Software changes the fields other than `enable` while `enable` is 0.
+        #[inline]
+        #[must_use]
+        pub const fn control(&self) -> Register<Control, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6008) }
+        }
+
+        /// `camera`, 10 bits: Pins of the image sensor. Software moves the wires of its bus (SCCB).
+        #[inline]
+        #[must_use]
+        pub const fn camera(&self) -> Register<Camera, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_600c) }
+        }
+
+        /// `size`, 26 bits: Size of a whole frame. This register and those of windows, region and run are taken at the start of each frame. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn size(&self) -> Register<Size, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6010) }
+        }
+
+        /// `window_a`, 19 bits: First window of the hand's colour: a pixel is marked if its channels are in both windows. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn window_a(&self) -> Register<WindowA, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6014) }
+        }
+
+        /// `window_b`, 19 bits: Second window of the hand's colour: a pixel is marked if its channels are in both windows. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn window_b(&self) -> Register<WindowB, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6018) }
+        }
+
+        /// `region_x`, 27 bits: Columns of the region: pixels outside do not count. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn region_x(&self) -> Register<RegionX, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_601c) }
+        }
+
+        /// `region_y`, 27 bits: Lines of the region. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn region_y(&self) -> Register<RegionY, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6020) }
+        }
+
+        /// `least_run`, 4 bits: A marked pixel counts if it is one of at least this many in a row, in the region. 0 is 1. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn least_run(&self) -> Register<u8, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6024) }
+        }
+
+        /// `status`, 11 bits: State.
+        #[inline]
+        #[must_use]
+        pub const fn status(&self) -> Register<Status, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6028) }
+        }
+
+        /// `seen`, 27 bits: What the image sensor sends. A count stays at its largest value.
+        #[inline]
+        #[must_use]
+        pub const fn seen(&self) -> Register<Seen, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_602c) }
+        }
+
+        /// `ev_status`, 1 bit: Level of each event's trigger.
+        #[inline]
+        #[must_use]
+        pub const fn ev_status(&self) -> Register<EvStatus, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6030) }
+        }
+
+        /// `ev_pending`, 1 bit: Events that have occurred; writing a 1 clears an event.
+        #[inline]
+        #[must_use]
+        pub const fn ev_pending(&self) -> Register<EvPending, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6034) }
+        }
+
+        /// `ev_enable`, 1 bit: Events that raise the interrupt.
+        #[inline]
+        #[must_use]
+        pub const fn ev_enable(&self) -> Register<EvEnable, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6038) }
+        }
+
+        /// `sequence`, 16 bits: Whole frames since reset, modulo 2^16. Results are of one frame if this number is the same before and after reading them.
+        #[inline]
+        #[must_use]
+        pub const fn sequence(&self) -> Register<u16, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_603c) }
+        }
+
+        /// `count`, 20 bits: Pixels that count.
+        #[inline]
+        #[must_use]
+        pub const fn count(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6040) }
+        }
+
+        /// `sum_x`, 30 bits: Sum of their columns, the first column is 0.
+        #[inline]
+        #[must_use]
+        pub const fn sum_x(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6044) }
+        }
+
+        /// `sum_y`, 29 bits: Sum of their lines, the first line is 0.
+        #[inline]
+        #[must_use]
+        pub const fn sum_y(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6048) }
+        }
+
+        /// `box_x`, 27 bits: Columns of the box around them.
+        #[inline]
+        #[must_use]
+        pub const fn box_x(&self) -> Register<BoxX, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_604c) }
+        }
+
+        /// `box_y`, 27 bits: Lines of the box around them.
+        #[inline]
+        #[must_use]
+        pub const fn box_y(&self) -> Register<BoxY, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6050) }
+        }
+
+        /// `sum_xx`, 64 bits: Sum of the squares of their columns; 0 if it is not built (`moments`).
+        #[inline]
+        #[must_use]
+        pub const fn sum_xx(&self) -> WideRegister<ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { WideRegister::at(0xf000_6054) }
+        }
+
+        /// `sum_xy`, 64 bits: Sum of their columns times their lines; 0 if it is not built (`moments`).
+        #[inline]
+        #[must_use]
+        pub const fn sum_xy(&self) -> WideRegister<ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { WideRegister::at(0xf000_605c) }
+        }
+
+        /// `sum_yy`, 64 bits: Sum of the squares of their lines; 0 if it is not built (`moments`).
+        #[inline]
+        #[must_use]
+        pub const fn sum_yy(&self) -> WideRegister<ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { WideRegister::at(0xf000_6064) }
+        }
+
+        /// `snapshot`, 9 bits: Small picture of one frame.
+        #[inline]
+        #[must_use]
+        pub const fn snapshot(&self) -> Register<Snapshot, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_606c) }
+        }
+
+        /// `snapshot_state`, 32 bits: State of the small picture.
+        #[inline]
+        #[must_use]
+        pub const fn snapshot_state(&self) -> Register<SnapshotState, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6070) }
+        }
+
+        /// `snapshot_place`, 11 bits: Word of the small picture to read next. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn snapshot_place(&self) -> Register<u16, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6074) }
+        }
+
+        /// `snapshot_word`, 16 bits: Word of the small picture. A read moves on to the next word.
+        #[inline]
+        #[must_use]
+        pub const fn snapshot_word(&self) -> Register<u16, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6078) }
+        }
+
+        /// `frames`, 32 bits: Whole frames, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn frames(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_607c) }
+        }
+
+        /// `frames_dropped`, 32 bits: Frames with a fault, which leave the results as they are, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn frames_dropped(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6080) }
+        }
+
+        /// `lines_malformed`, 32 bits: Lines with a wrong number of bytes, or cut by VSYNC, in all frames, modulo 2^32.
+        #[inline]
+        #[must_use]
+        pub const fn lines_malformed(&self) -> Register<u32, ReadOnly> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6084) }
+        }
+    }
+
+    /// A value of `caps`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Caps(u32);
+
+    impl Value for Caps {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Caps {
+        /// `width`, bits 10 to 0: Most pixels of a line.
+        #[inline]
+        #[must_use]
+        pub const fn width(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// `height`, bits 21 to 12: Most lines of a frame.
+        #[inline]
+        #[must_use]
+        pub const fn height(self) -> u16 {
+            ((self.0 >> 12) & 0x3ff) as u16
+        }
+
+        /// `clock_divider`, bits 27 to 24: The sensor's input clock is the system clock divided by this.
+        #[inline]
+        #[must_use]
+        pub const fn clock_divider(self) -> u8 {
+            ((self.0 >> 24) & 0xf) as u8
+        }
+
+        /// `moments`, bit 28: The sums of products are built.
+        #[inline]
+        #[must_use]
+        pub const fn moments(self) -> bool {
+            (self.0 >> 28) & 1 != 0
+        }
+    }
+
+    /// A value of `control`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Control(u32);
+
+    impl Value for Control {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Control {
+        /// `enable`, bit 0: Take frames. The first one begins at the next VSYNC.
+        #[inline]
+        #[must_use]
+        pub const fn enable(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `enable`.
+        #[inline]
+        #[must_use]
+        pub const fn with_enable(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `vsync_low`, bit 1: VSYNC is low between frames, and high during a frame.
+        #[inline]
+        #[must_use]
+        pub const fn vsync_low(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `vsync_low`.
+        #[inline]
+        #[must_use]
+        pub const fn with_vsync_low(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
+        }
+
+        /// `href_low`, bit 2: HREF is low during a line.
+        #[inline]
+        #[must_use]
+        pub const fn href_low(self) -> bool {
+            (self.0 >> 2) & 1 != 0
+        }
+
+        /// This value with another `href_low`.
+        #[inline]
+        #[must_use]
+        pub const fn with_href_low(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        }
+
+        /// `swap`, bit 3: The first byte of a pixel is the low one.
+        #[inline]
+        #[must_use]
+        pub const fn swap(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `swap`.
+        #[inline]
+        #[must_use]
+        pub const fn with_swap(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
+        }
+
+        /// `falling`, bit 4: Sample the pins at the falling edge of the sensor's clock.
+        #[inline]
+        #[must_use]
+        pub const fn falling(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
+        /// This value with another `falling`.
+        #[inline]
+        #[must_use]
+        pub const fn with_falling(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+    }
+
+    /// A value of `camera`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Camera(u32);
+
+    impl Value for Camera {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Camera {
+        /// `clock`, bit 0: Drive the sensor's input clock.
+        #[inline]
+        #[must_use]
+        pub const fn clock(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `clock`.
+        #[inline]
+        #[must_use]
+        pub const fn with_clock(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
+        /// `reset`, bit 1: Hold the image sensor in reset, where the adapter has this pin.
+        #[inline]
+        #[must_use]
+        pub const fn reset(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `reset`.
+        #[inline]
+        #[must_use]
+        pub const fn with_reset(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
+        }
+
+        /// `power_down`, bit 2: Power the image sensor down, where the adapter has this pin.
+        #[inline]
+        #[must_use]
+        pub const fn power_down(self) -> bool {
+            (self.0 >> 2) & 1 != 0
+        }
+
+        /// This value with another `power_down`.
+        #[inline]
+        #[must_use]
+        pub const fn with_power_down(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        }
+
+        /// `scl`, bit 8: SCL of the sensor's bus: 0 pulls the wire low, 1 releases it.
+        #[inline]
+        #[must_use]
+        pub const fn scl(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+
+        /// This value with another `scl`.
+        #[inline]
+        #[must_use]
+        pub const fn with_scl(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
+        }
+
+        /// `sda`, bit 9: SDA of the sensor's bus, in the same way.
+        #[inline]
+        #[must_use]
+        pub const fn sda(self) -> bool {
+            (self.0 >> 9) & 1 != 0
+        }
+
+        /// This value with another `sda`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sda(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
+        }
+    }
+
+    /// A value of `size`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Size(u32);
+
+    impl Value for Size {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Size {
+        /// `width`, bits 10 to 0: Pixels of a line, 1 to 1280.
+        #[inline]
+        #[must_use]
+        pub const fn width(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// This value with another `width`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_width(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
+        /// `height`, bits 25 to 16: Lines of a frame, 1 to 720.
+        #[inline]
+        #[must_use]
+        pub const fn height(self) -> u16 {
+            ((self.0 >> 16) & 0x3ff) as u16
+        }
+
+        /// This value with another `height`: the low 10 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_height(self, value: u16) -> Self {
+            Self(self.0 & !(0x3ff << 16) | (value as u32 & 0x3ff) << 16)
+        }
+    }
+
+    /// A value of `window_a`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct WindowA(u32);
+
+    impl Value for WindowA {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl WindowA {
+        /// `lower`, bits 7 to 0: Least value in the window.
+        #[inline]
+        #[must_use]
+        pub const fn lower(self) -> u8 {
+            (self.0 & 0xff) as u8
+        }
+
+        /// This value with another `lower`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lower(self, value: u8) -> Self {
+            Self(self.0 & !0xff | value as u32 & 0xff)
+        }
+
+        /// `upper`, bits 15 to 8: Greatest value in the window.
+        #[inline]
+        #[must_use]
+        pub const fn upper(self) -> u8 {
+            ((self.0 >> 8) & 0xff) as u8
+        }
+
+        /// This value with another `upper`.
+        #[inline]
+        #[must_use]
+        pub const fn with_upper(self, value: u8) -> Self {
+            Self(self.0 & !(0xff << 8) | (value as u32 & 0xff) << 8)
+        }
+
+        /// `channel`, bits 18 to 16: Channel of the pixel.
+        #[inline]
+        #[must_use]
+        pub const fn channel(self) -> Option<Channel> {
+            Channel::from_bits(((self.0 >> 16) & 0x7) as u8)
+        }
+
+        /// This value with another `channel`.
+        #[inline]
+        #[must_use]
+        pub const fn with_channel(self, value: Channel) -> Self {
+            Self(self.0 & !(0x7 << 16) | (value as u32 & 0x7) << 16)
+        }
+    }
+
+    /// A value of `window_b`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct WindowB(u32);
+
+    impl Value for WindowB {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl WindowB {
+        /// `lower`, bits 7 to 0: Least value in the window.
+        #[inline]
+        #[must_use]
+        pub const fn lower(self) -> u8 {
+            (self.0 & 0xff) as u8
+        }
+
+        /// This value with another `lower`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lower(self, value: u8) -> Self {
+            Self(self.0 & !0xff | value as u32 & 0xff)
+        }
+
+        /// `upper`, bits 15 to 8: Greatest value in the window.
+        #[inline]
+        #[must_use]
+        pub const fn upper(self) -> u8 {
+            ((self.0 >> 8) & 0xff) as u8
+        }
+
+        /// This value with another `upper`.
+        #[inline]
+        #[must_use]
+        pub const fn with_upper(self, value: u8) -> Self {
+            Self(self.0 & !(0xff << 8) | (value as u32 & 0xff) << 8)
+        }
+
+        /// `channel`, bits 18 to 16: Channel of the pixel.
+        #[inline]
+        #[must_use]
+        pub const fn channel(self) -> Option<Channel> {
+            Channel::from_bits(((self.0 >> 16) & 0x7) as u8)
+        }
+
+        /// This value with another `channel`.
+        #[inline]
+        #[must_use]
+        pub const fn with_channel(self, value: Channel) -> Self {
+            Self(self.0 & !(0x7 << 16) | (value as u32 & 0x7) << 16)
+        }
+    }
+
+    /// A value of `region_x`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct RegionX(u32);
+
+    impl Value for RegionX {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl RegionX {
+        /// `first`, bits 10 to 0: First column.
+        #[inline]
+        #[must_use]
+        pub const fn first(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// This value with another `first`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_first(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
+        /// `last`, bits 26 to 16: Last column, which belongs to the region.
+        #[inline]
+        #[must_use]
+        pub const fn last(self) -> u16 {
+            ((self.0 >> 16) & 0x7ff) as u16
+        }
+
+        /// This value with another `last`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last(self, value: u16) -> Self {
+            Self(self.0 & !(0x7ff << 16) | (value as u32 & 0x7ff) << 16)
+        }
+    }
+
+    /// A value of `region_y`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct RegionY(u32);
+
+    impl Value for RegionY {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl RegionY {
+        /// `first`, bits 10 to 0: First line.
+        #[inline]
+        #[must_use]
+        pub const fn first(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// This value with another `first`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_first(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
+        /// `last`, bits 26 to 16: Last line, which belongs to the region.
+        #[inline]
+        #[must_use]
+        pub const fn last(self) -> u16 {
+            ((self.0 >> 16) & 0x7ff) as u16
+        }
+
+        /// This value with another `last`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last(self, value: u16) -> Self {
+            Self(self.0 & !(0x7ff << 16) | (value as u32 & 0x7ff) << 16)
+        }
+    }
+
+    /// A value of `status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Status(u32);
+
+    impl Value for Status {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Status {
+        /// `running`, bit 0: The sensor's clock has ticked in the last 4096 clocks.
+        #[inline]
+        #[must_use]
+        pub const fn running(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// `waiting`, bit 1: Enabled, and no frame has begun yet.
+        #[inline]
+        #[must_use]
+        pub const fn waiting(self) -> bool {
+            (self.0 >> 1) & 1 != 0
+        }
+
+        /// `vsync`, bit 2: State of VSYNC.
+        #[inline]
+        #[must_use]
+        pub const fn vsync(self) -> bool {
+            (self.0 >> 2) & 1 != 0
+        }
+
+        /// `href`, bit 3: State of HREF.
+        #[inline]
+        #[must_use]
+        pub const fn href(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// `scl`, bit 4: State of the bus's SCL.
+        #[inline]
+        #[must_use]
+        pub const fn scl(self) -> bool {
+            (self.0 >> 4) & 1 != 0
+        }
+
+        /// `sda`, bit 5: State of the bus's SDA.
+        #[inline]
+        #[must_use]
+        pub const fn sda(self) -> bool {
+            (self.0 >> 5) & 1 != 0
+        }
+
+        /// `fault`, bits 10 to 8: First fault of the last frame.
+        #[inline]
+        #[must_use]
+        pub const fn fault(self) -> Option<Fault> {
+            Fault::from_bits(((self.0 >> 8) & 0x7) as u8)
+        }
+    }
+
+    /// A value of `seen`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Seen(u32);
+
+    impl Value for Seen {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Seen {
+        /// `pixels`, bits 10 to 0: Pixels of the last line.
+        #[inline]
+        #[must_use]
+        pub const fn pixels(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// `lines`, bits 26 to 16: Lines of the last frame, whole or not.
+        #[inline]
+        #[must_use]
+        pub const fn lines(self) -> u16 {
+            ((self.0 >> 16) & 0x7ff) as u16
+        }
+    }
+
+    /// A value of `ev_status`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvStatus(u32);
+
+    impl Value for EvStatus {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvStatus {
+        /// `frame`, bit 0: Level of the `frame` event
+        #[inline]
+        #[must_use]
+        pub const fn frame(self) -> bool {
+            self.0 & 1 != 0
+        }
+    }
+
+    /// A value of `ev_pending`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvPending(u32);
+
+    impl Value for EvPending {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvPending {
+        /// `frame`, bit 0: The results of a whole frame are in the registers.
+        #[inline]
+        #[must_use]
+        pub const fn frame(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `frame`.
+        #[inline]
+        #[must_use]
+        pub const fn with_frame(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `ev_enable`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct EvEnable(u32);
+
+    impl Value for EvEnable {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl EvEnable {
+        /// `frame`, bit 0: Write a `1` to enable the `frame` Event
+        #[inline]
+        #[must_use]
+        pub const fn frame(self) -> bool {
+            self.0 & 1 != 0
+        }
+
+        /// This value with another `frame`.
+        #[inline]
+        #[must_use]
+        pub const fn with_frame(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+    }
+
+    /// A value of `box_x`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct BoxX(u32);
+
+    impl Value for BoxX {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl BoxX {
+        /// `first`, bits 10 to 0: Least column; 2047 without a pixel.
+        #[inline]
+        #[must_use]
+        pub const fn first(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// `last`, bits 26 to 16: Greatest column; 0 without a pixel.
+        #[inline]
+        #[must_use]
+        pub const fn last(self) -> u16 {
+            ((self.0 >> 16) & 0x7ff) as u16
+        }
+    }
+
+    /// A value of `box_y`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct BoxY(u32);
+
+    impl Value for BoxY {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl BoxY {
+        /// `first`, bits 10 to 0: Least line; 2047 without a pixel.
+        #[inline]
+        #[must_use]
+        pub const fn first(self) -> u16 {
+            (self.0 & 0x7ff) as u16
+        }
+
+        /// `last`, bits 26 to 16: Greatest line; 0 without a pixel.
+        #[inline]
+        #[must_use]
+        pub const fn last(self) -> u16 {
+            ((self.0 >> 16) & 0x7ff) as u16
+        }
+    }
+
+    /// A value of `snapshot`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Snapshot(u32);
+
+    impl Value for Snapshot {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl Snapshot {
+        /// `step`, bits 2 to 0: Keep every 2^step-th pixel of every 2^step-th line, 0 to 5.
+        #[inline]
+        #[must_use]
+        pub const fn step(self) -> u8 {
+            (self.0 & 0x7) as u8
+        }
+
+        /// This value with another `step`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_step(self, value: u8) -> Self {
+            Self(self.0 & !0x7 | value as u32 & 0x7)
+        }
+
+        /// `colour`, bit 3: Keep RGB565 colours, one a word. Otherwise marks before region and run, 16 a word, the first in the highest bit.
+        #[inline]
+        #[must_use]
+        pub const fn colour(self) -> bool {
+            (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `colour`.
+        #[inline]
+        #[must_use]
+        pub const fn with_colour(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
+        }
+
+        /// `start`, bit 8: Write 1 to keep a picture of the next whole frame.
+        #[inline]
+        #[must_use]
+        pub const fn start(self) -> bool {
+            (self.0 >> 8) & 1 != 0
+        }
+
+        /// This value with another `start`.
+        #[inline]
+        #[must_use]
+        pub const fn with_start(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
+        }
+    }
+
+    /// A value of `snapshot_state`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct SnapshotState(u32);
+
+    impl Value for SnapshotState {
+        fn from_bits(bits: u32) -> Self {
+            Self(bits)
+        }
+
+        fn bits(self) -> u32 {
+            self.0
+        }
+    }
+
+    impl SnapshotState {
+        /// `words`, bits 11 to 0: Words kept, valid with `ready`.
+        #[inline]
+        #[must_use]
+        pub const fn words(self) -> u16 {
+            (self.0 & 0xfff) as u16
+        }
+
+        /// `ready`, bit 12: The picture is complete.
+        #[inline]
+        #[must_use]
+        pub const fn ready(self) -> bool {
+            (self.0 >> 12) & 1 != 0
+        }
+
+        /// `sequence`, bits 31 to 16: `sequence` of its frame.
+        #[inline]
+        #[must_use]
+        pub const fn sequence(self) -> u16 {
+            ((self.0 >> 16) & 0xffff) as u16
+        }
+    }
+
+    /// Values of `window_a.channel` and `window_b.channel`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    pub enum Channel {
+        /// Red.
+        Red = 0,
+        /// Green.
+        Green = 1,
+        /// Blue.
+        Blue = 2,
+        /// Luma, 0.299 red + 0.587 green + 0.114 blue.
+        Luma = 3,
+        /// Chroma towards red, 128 for grey.
+        Cr = 4,
+        /// Chroma towards blue, 128 for grey.
+        Cb = 5,
+    }
+
+    impl Channel {
+        /// Every value, in the order of the gateware's description.
+        pub const ALL: [Self; 6] = [Self::Red, Self::Green, Self::Blue, Self::Luma, Self::Cr, Self::Cb];
+
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
+        #[inline]
+        #[must_use]
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
+                0 => Self::Red,
+                1 => Self::Green,
+                2 => Self::Blue,
+                3 => Self::Luma,
+                4 => Self::Cr,
+                5 => Self::Cb,
+                _ => return None,
+            })
+        }
+
+        /// Its name in the gateware's description.
+        #[must_use]
+        pub const fn name(self) -> &'static str {
+            match self {
+                Self::Red => "red",
+                Self::Green => "green",
+                Self::Blue => "blue",
+                Self::Luma => "luma",
+                Self::Cr => "cr",
+                Self::Cb => "cb",
+            }
+        }
+
+        /// Its text in the gateware's description.
+        #[must_use]
+        pub const fn text(self) -> &'static str {
+            match self {
+                Self::Red => "red",
+                Self::Green => "green",
+                Self::Blue => "blue",
+                Self::Luma => "luma, 0.299 red + 0.587 green + 0.114 blue",
+                Self::Cr => "chroma towards red, 128 for grey",
+                Self::Cb => "chroma towards blue, 128 for grey",
+            }
+        }
+    }
+
+    /// Values of `status.fault`.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    #[repr(u8)]
+    pub enum Fault {
+        /// The frame was whole.
+        None = 0,
+        /// A line was too short or too long.
+        Pixels = 1,
+        /// A line had an odd number of bytes.
+        Byte = 2,
+        /// The frame had too few or too many lines.
+        Lines = 3,
+        /// VSYNC came inside a line.
+        Cut = 4,
+        /// Pixels came faster than the engine takes them.
+        Lost = 5,
+        /// The sensor's clock stopped.
+        Stopped = 6,
+    }
+
+    impl Fault {
+        /// Every value, in the order of the gateware's description.
+        pub const ALL: [Self; 7] = [Self::None, Self::Pixels, Self::Byte, Self::Lines, Self::Cut, Self::Lost, Self::Stopped];
+
+        /// The value of a field's `bits`; `None` where the gateware has no name for them.
+        #[inline]
+        #[must_use]
+        pub const fn from_bits(bits: u8) -> Option<Self> {
+            Some(match bits {
+                0 => Self::None,
+                1 => Self::Pixels,
+                2 => Self::Byte,
+                3 => Self::Lines,
+                4 => Self::Cut,
+                5 => Self::Lost,
+                6 => Self::Stopped,
+                _ => return None,
+            })
+        }
+
+        /// Its name in the gateware's description.
+        #[must_use]
+        pub const fn name(self) -> &'static str {
+            match self {
+                Self::None => "none",
+                Self::Pixels => "pixels",
+                Self::Byte => "byte",
+                Self::Lines => "lines",
+                Self::Cut => "cut",
+                Self::Lost => "lost",
+                Self::Stopped => "stopped",
+            }
+        }
+
+        /// Its text in the gateware's description.
+        #[must_use]
+        pub const fn text(self) -> &'static str {
+            match self {
+                Self::None => "the frame was whole",
+                Self::Pixels => "a line was too short or too long",
+                Self::Byte => "a line had an odd number of bytes",
+                Self::Lines => "the frame had too few or too many lines",
+                Self::Cut => "VSYNC came inside a line",
+                Self::Lost => "pixels came faster than the engine takes them",
+                Self::Stopped => "the sensor's clock stopped",
+            }
+        }
+    }
+
+    /// A reading of the free-running counters of `gesture`.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Counters {
+        /// Whole frames, modulo 2^32.
+        pub frames: u32,
+        /// Frames with a fault, which leave the results as they are, modulo 2^32.
+        pub frames_dropped: u32,
+        /// Lines with a wrong number of bytes, or cut by VSYNC, in all frames, modulo 2^32.
+        pub lines_malformed: u32,
+    }
+
+    impl Counters {
+        /// Reads every counter, one after the other.
+        #[must_use]
+        pub fn read(registers: &Gesture) -> Self {
+            Self {
+                frames: registers.frames().read(),
+                frames_dropped: registers.frames_dropped().read(),
+                lines_malformed: registers.lines_malformed().read(),
+            }
+        }
+
+        /// The counts since the reading `earlier`, modulo 2^32.
+        #[must_use]
+        pub const fn since(&self, earlier: &Self) -> Self {
+            Self {
+                frames: self.frames.wrapping_sub(earlier.frames),
+                frames_dropped: self.frames_dropped.wrapping_sub(earlier.frames_dropped),
+                lines_malformed: self.lines_malformed.wrapping_sub(earlier.lines_malformed),
+            }
+        }
+
+        /// Name and value of each counter.
+        pub fn iter(&self) -> impl Iterator<Item = (&'static str, u32)> {
+            [
+                ("frames", self.frames),
+                ("frames_dropped", self.frames_dropped),
+                ("lines_malformed", self.lines_malformed),
             ]
             .into_iter()
         }

@@ -77,6 +77,8 @@ pub enum Block {
     Raymarch,
     /// The line engine, a part of the triangle engine
     Line,
+    /// The gesture engine
+    Gesture,
 }
 
 impl Block {
@@ -87,6 +89,7 @@ impl Block {
             Self::Triangle => "triangle",
             Self::Raymarch => "raymarch",
             Self::Line => "line",
+            Self::Gesture => "gesture",
         }
     }
 }
