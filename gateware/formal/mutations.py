@@ -90,6 +90,10 @@ def _generator(old, new, fails):
     return Mutation("ray_generator.sv", old, new, fails)
 
 
+def _crossbar(old, new, fails):
+    return Mutation("memory_crossbar.py", old, new, fails)
+
+
 def _paint(old, new, fails):
     return Mutation("ray_paint.sv", old, new, fails)
 
@@ -274,6 +278,19 @@ MUTATIONS = {
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
         _fifo("(read_valid || out_valid && !out_ready)", "read_valid", "shown.valid_stays"),
         _fifo("read_ready = !out_valid || out_ready", "read_ready = 1'b1", "shown.payload_stable"),
+    ],
+    "memory_crossbar": [
+        _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),
+        _crossbar("Array(allowed)[turn]", "allowed[0]", "as_it_came"),
+        # Fault: a port asks a second bank before the first one is done.
+        _crossbar("~level[0] & ~Array(owned", "~Array(owned", "in_order"),
+        _crossbar("Mux(stays, ~level[-1],", "Mux(stays, 1,", "room_in_queue"),
+        _crossbar("level[0] & (place == done)", "level[0]", "read_answered"),
+        _crossbar("ended & done_write, self.write_latency", "ended & done_write, self.write_latency + 1", "data_asked"),
+        _crossbar("Mux(ended, len(writers), 0)", "Mux(ended, 0, len(writers))", "data_pass"),
+        _crossbar("arbiter.ce.eq(1)", "arbiter.ce.eq(valid)", "idle_takes"),
+        # Fault: a port keeps its bank for ever.
+        _crossbar("owner & ~level[0] & ~(port.cmd.valid & stays)", "0", "taken_in_time"),
     ],
     "classify": [
         _classify("known        <= held && !leaves;", "known        <= held && !known;", "exception.valid_stays"),

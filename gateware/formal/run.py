@@ -20,6 +20,7 @@ from pathlib import Path
 FORMAL = Path(__file__).resolve().parent
 sys.path[:0] = [str(FORMAL.parent), str(FORMAL.parent / "tests")]
 
+import generated  # noqa: E402
 import mutations  # noqa: E402
 from glint_soc import rtl  # noqa: E402
 from tools import GATEWARE, ToolError, run  # noqa: E402
@@ -37,7 +38,8 @@ _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in 
 
 @dataclass(frozen=True)
 class Proof:
-    """A proof: its top module with the properties, the number of clocks after reset that it covers, and its stand-ins.
+    """A proof: its top module with the properties, the number of clocks after reset that it covers, its stand-ins, and the names of
+    modules that are written in Python (see `generated`).
 
     With `has_clocks`, several clocks tick in any order, and the depth is a number of steps: an edge of a clock takes one.
     """
@@ -48,11 +50,13 @@ class Proof:
     stand_ins: tuple = ()
     parameters: dict = field(default_factory=dict)
     has_clocks: bool = False
+    programs: tuple = ()
 
     @cached_property
     def sources(self):
-        """The SystemVerilog files that the proof reads."""
-        return rtl.sources(self.top, others=(*_PROPERTIES, *(FORMAL / f"{name}.sv" for name in self.stand_ins)))
+        """The files that the proof reads, SystemVerilog and Python."""
+        return [*rtl.sources(self.top, others=(*_PROPERTIES, *(FORMAL / f"{name}.sv" for name in self.stand_ins))),
+                *(GATEWARE / "glint_soc" / f"{name}.py" for name in self.programs)]
 
     def properties(self):
         """Returns the labels of all assertions of the proof."""
@@ -74,6 +78,7 @@ PROOFS = [
     Proof("lanes", "lanes_proof", 16),
     Proof("read_port", "read_port_proof", 16),
     Proof("write_port", "write_port_proof", 16),
+    Proof("memory_crossbar", "memory_crossbar_proof", 12, programs=("memory_crossbar",)),
     Proof("skid_buffer", "buffer_proof", 24),
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
@@ -107,9 +112,9 @@ def check(proof, mode, folder, sources=None, only=None):
 
     `sources` replaces the proof's source files. If `only` is given, only the assertions with this label are checked.
     """
-    sources = sources or proof.sources
     folder.parent.mkdir(parents=True, exist_ok=True)
     shutil.rmtree(folder, ignore_errors=True)
+    sources = [generated.write(source, folder.parent) if source.suffix == ".py" else source for source in sources or proof.sources]
     # The script names files without folders: Yosys accepts only relative paths, and SymbiYosys copies the sources to its
     # work folder.
     config = folder.with_suffix(".sby")

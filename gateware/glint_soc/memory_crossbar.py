@@ -4,7 +4,7 @@ from functools import reduce
 from operator import or_
 
 from litedram.core.crossbar import LiteDRAMCrossbar
-from migen import Array, Cat, If, Mux, Signal
+from migen import Array, Cat, If, Mux, Replicate, Signal
 from migen.genlib import roundrobin
 
 
@@ -53,31 +53,25 @@ class MemoryCrossbar(LiteDRAMCrossbar):
         turn = Signal(max=max(len(ports), 2))
         wanted, allowed, answered, released = [], [], [], []
         for number, port in enumerate(ports):
-            # The bank that the port owns, and the number of its commands there that are not done.
-            owner, place = Signal(), Signal(self.bank_bits)
-            count, empty, full = Signal(max=most + 1), Signal(reset=1), Signal()
+            # The bank that the port owns. Bit n of `level` is set while more than n of its commands there are not done.
+            owner, place, level = Signal(), Signal(self.bank_bits), Signal(most)
             bank, stays, may, taken, ended, leaves = Signal(self.bank_bits), Signal(), Signal(), Signal(), Signal(), Signal()
             self.comb += [
                 bank.eq(port.get_bank_address(self.bank_bits, column_bits)),
                 stays.eq(owner & (place == bank)),
-                may.eq(Mux(stays, ~full, empty & ~Array(owned[i] for i in range(self.nbanks))[bank])),
+                may.eq(Mux(stays, ~level[-1], ~level[0] & ~Array(owned[i] for i in range(self.nbanks))[bank])),
                 port.cmd.ready.eq((turn == number) & may),
                 taken.eq(port.cmd.valid & port.cmd.ready),
-                ended.eq(~empty & (place == done) & (done_read | done_write)),
+                ended.eq(level[0] & (place == done) & (done_read | done_write)),
                 # Without a command for its bank, the port leaves it to others.
-                leaves.eq(owner & empty & ~(port.cmd.valid & stays)),
+                leaves.eq(owner & ~level[0] & ~(port.cmd.valid & stays)),
             ]
+            # Written without clock enables: flip-flops with an enable of their own take a slice of the FPGA.
+            grown, shrunk = Cat(1, level[:-1]), Cat(level[1:], 0)
             self.sync += [
-                If(taken, place.eq(bank), owner.eq(1)).Elif(leaves, owner.eq(0)),
-                If(taken & ~ended,
-                    count.eq(count + 1),
-                    empty.eq(0),
-                    full.eq(count == most - 1),
-                ).Elif(ended & ~taken,
-                    count.eq(count - 1),
-                    empty.eq(count == 1),
-                    full.eq(0),
-                ),
+                If(taken, place.eq(bank)),
+                owner.eq(taken | (owner & ~leaves)),
+                level.eq((level | (grown & Replicate(taken & ~ended, most))) & (shrunk | ~Replicate(ended & ~taken, most))),
             ]
             wanted.append(bank)
             allowed.append(port.cmd.valid & may)

@@ -26,13 +26,14 @@ class _Settings:
         self.__dict__.update(members)
 
 
-def _crossbar(modes, read_latency, write_latency):
-    """Returns a crossbar with a port for each mode, the interface to the bank machines, and the ports."""
-    settings = ControllerSettings(cmd_buffer_depth=_DEPTH)
-    settings.phy = _Settings(nranks=1, dfi_databits=_BITS, nphases=1, read_latency=read_latency, write_latency=write_latency)
-    settings.geom = _Settings(rowbits=1, colbits=4, bankbits=2)
+def connect(crossbar, modes, latencies, depth, bits, column_bits, bank_bits):
+    """Returns a crossbar of the class `crossbar` with a port for each mode, the interface to the bank machines, and the ports.
+    `latencies` are those of reads and writes, `depth` that of the queues. The memory has `bits` a word, and two rows."""
+    settings = ControllerSettings(cmd_buffer_depth=depth)
+    settings.phy = _Settings(nranks=1, dfi_databits=bits, nphases=1, read_latency=latencies[0], write_latency=latencies[1])
+    settings.geom = _Settings(rowbits=1, colbits=column_bits, bankbits=bank_bits)
     controller = LiteDRAMInterface(0, settings)
-    crossbar = MemoryCrossbar(controller)
+    crossbar = crossbar(controller)
     ports = [crossbar.get_port(mode) for mode in modes]
     return crossbar, controller, ports
 
@@ -119,7 +120,7 @@ def _clients(ports, rng, pause, counts):
 def _run(modes, latencies, rate, pause):
     """Runs random traffic and returns the number of commands by port."""
     rng = random.Random(1)
-    crossbar, controller, ports = _crossbar(modes, *latencies)
+    crossbar, controller, ports = connect(MemoryCrossbar, modes, latencies, _DEPTH, _BITS, column_bits=4, bank_bits=2)
     counts = [0] * len(ports)
     run_simulation(crossbar, [_clients(ports, rng, pause, counts), _Memory(controller, rng, rate).run()])
     return counts

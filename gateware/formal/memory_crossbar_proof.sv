@@ -1,0 +1,159 @@
+// Proof of the crossbar of the memory between three ports (both ways, read, write) and two banks, for any commands, any times at
+// which banks complete theirs, at most one command in a clock, and any data. A model keeps the commands that each bank has not
+// completed. A command in a clock passes from one port to the queue of its bank, unchanged. No queue gets a command for which it
+// has no room. The answer of each command goes to its port, and the commands of a port are answered in their order. An idle memory
+// takes a command at once, and a port waits only for commands of the bank it asks for, for its own, and a few clocks for its turn.
+
+`default_nettype none
+
+module memory_crossbar_proof #(
+    localparam int unsigned PORTS   = 3,
+    localparam int unsigned BANKS   = 2,
+    localparam int unsigned PLACES  = 5,
+    // Upper bounds on the clocks in which a port waits for its turn, and in which no command passes though no bank has one.
+    localparam int unsigned WITHIN  = 5,
+    localparam int unsigned IDLE_WITHIN = 3,
+    localparam int unsigned COMMAND_BITS = 2 + 1 + 3
+) (
+    input wire                   clk,
+    input wire [PORTS-1:0]       cmd_valid,
+    input wire [PORTS-1:0]       cmd_we,
+    input wire [PORTS-1:0]       cmd_row,
+    input wire [PORTS-1:0]       cmd_bank,
+    input wire [PORTS-1:0][7:0]  wdata,
+    input wire [7:0]             memory_rdata,
+    input wire                   done,
+    input wire                   done_bank
+);
+    logic rst = 1'b1;
+    always_ff @(posedge clk) rst <= 1'b0;
+
+    logic [PORTS-1:0]       cmd_ready, wdata_ready, rdata_valid;
+    logic [PORTS-1:0][4:0]  cmd_addr;
+    logic [PORTS-1:0][7:0]  rdata;
+    logic [BANKS-1:0]       bank_valid, bank_we, bank_wdata_ready, bank_rdata_valid;
+    logic [BANKS-1:0][3:0]  bank_addr;
+    logic [7:0]             memory_wdata;
+
+    // The column of a command is its number among those of its port.
+    logic [PORTS-1:0][2:0] kept, went;
+
+    memory_crossbar dut (
+        .sys_clk(clk), .sys_rst(rst), .cmd_valid, .cmd_ready, .cmd_we, .cmd_addr, .wdata, .wdata_ready, .rdata, .rdata_valid,
+        .bank_valid, .bank_we, .bank_addr, .bank_wdata_ready, .bank_rdata_valid, .memory_wdata, .memory_rdata
+    );
+
+    for (genvar p = 0; p < PORTS; p++) begin : ports
+        assign cmd_addr[p] = {cmd_row[p], cmd_bank[p], kept[p]};
+
+        stream_checker #(.WIDTH(3), .GIVEN(1)) given (
+            .clk, .rst, .valid(cmd_valid[p]), .ready(cmd_ready[p]), .data({cmd_we[p], cmd_row[p], cmd_bank[p]})
+        );
+    end
+
+    // The port whose command is taken.
+    logic [PORTS-1:0] taken;
+    logic [1:0]       from;
+
+    assign taken = cmd_valid & cmd_ready;
+    assign from  = taken[2] ? 2'd2 : taken[1] ? 2'd1 : 2'd0;
+
+    // Commands that the banks have not completed, the oldest one in place 0: {port, write, number}.
+    typedef struct packed {
+        logic [1:0] port;
+        logic       write;
+        logic [2:0] number;
+    } command_t;
+
+    logic [BANKS-1:0][PLACES:0][COMMAND_BITS-1:0] queues;
+    logic [BANKS-1:0][2:0] levels;
+    logic [BANKS-1:0]      gets, gives;
+    command_t              oldest, new_one;
+
+    assign new_one = {from, cmd_we[from], kept[from]};
+    assign oldest  = queues[done_bank][0];
+
+    for (genvar b = 0; b < BANKS; b++) begin : banks
+        assign gets[b]  = taken != '0 && cmd_bank[from] == 1'(b);
+        assign gives[b] = done && done_bank == 1'(b);
+        assign bank_wdata_ready[b] = gives[b] && oldest.write;
+        assign bank_rdata_valid[b] = gives[b] && !oldest.write;
+
+        always_ff @(posedge clk) begin
+            for (int i = 0; i <= PLACES; i++) begin
+                if (gives[b] && i < PLACES) queues[b][i] <= queues[b][i+1];
+                if (gets[b] && levels[b] - 3'(gives[b]) == 3'(i)) queues[b][i] <= new_one;
+            end
+            levels[b] <= rst ? '0 : levels[b] + 3'(gets[b]) - 3'(gives[b]);
+        end
+    end
+
+    // The command that was done, one and two clocks ago.
+    logic [2:1] was_done;
+    command_t   done_1, done_2;
+
+    always_ff @(posedge clk) begin
+        was_done <= rst ? '0 : {was_done[1], done};
+        {done_2, done_1} <= {done_1, oldest};
+    end
+
+    // Waiting of each port. `blocked`: its bank has commands of another port, or one had the bank last and asks for it too; or the
+    // port itself has as many commands as it may, or some in another bank.
+    logic [PORTS-1:0][2:0] inside, waited;
+    logic [PORTS-1:0]      blocked, last_bank;
+    logic [2:0]            unused_for;
+
+    always_comb begin
+        for (int p = 0; p < PORTS; p++) begin
+            blocked[p] = inside[p] == 3'(PLACES) || inside[p] != '0 && last_bank[p] != cmd_bank[p];
+            for (int q = 0; q < PORTS; q++)
+                if (q != p && last_bank[q] == cmd_bank[p] && (inside[q] != '0 || cmd_valid[q] && cmd_bank[q] == cmd_bank[p]))
+                    blocked[p] = 1'b1;
+        end
+    end
+
+    logic too_many, too_late;
+
+    always_comb begin
+        {too_many, too_late} = '0;
+        for (int b = 0; b < BANKS; b++) too_many = too_many || levels[b] > 3'(PLACES);
+        for (int p = 0; p < PORTS; p++) too_late = too_late || waited[p] >= 3'(WITHIN);
+    end
+
+    always_ff @(posedge clk) begin
+        for (int p = 0; p < PORTS; p++) begin
+            kept[p]   <= kept[p] + 3'(taken[p]);
+            went[p]   <= went[p] + 3'(done && oldest.port == 2'(p));
+            inside[p] <= inside[p] + 3'(taken[p]) - 3'(done && oldest.port == 2'(p));
+            waited[p] <= cmd_valid[p] && !cmd_ready[p] && !blocked[p] ? waited[p] + 1'b1 : '0;
+            if (taken[p]) last_bank[p] <= cmd_bank[p];
+        end
+        unused_for <= cmd_valid != '0 && taken == '0 && levels == '0 ? unused_for + 1'b1 : '0;
+        if (rst) begin
+            {kept, went, inside, waited, last_bank} <= '0;
+            unused_for <= '0;
+        end
+    end
+
+    always_ff @(posedge clk) if (!rst) begin
+        assume (!done || levels[done_bank] != '0);
+        assume (!cmd_we[1] && cmd_we[2]);
+
+        one_at_a_time: assert ((taken & (taken - 1'b1)) == '0);
+        as_it_came:    assert (bank_valid == gets && (taken == '0 || bank_we[cmd_bank[from]] == cmd_we[from]
+                               && bank_addr[cmd_bank[from]] == {cmd_row[from], kept[from]}));
+        in_order:      assert (!done || oldest.number == went[oldest.port]);
+        read_answered: assert (rdata_valid == (was_done[2] && !done_2.write ? PORTS'(1) << done_2.port : '0));
+        data_asked:    assert (wdata_ready == (was_done[1] && done_1.write ? PORTS'(1) << done_1.port : '0));
+        data_pass:     assert (rdata[1:0] == {2{memory_rdata}} && (wdata_ready == '0 || memory_wdata == wdata[done_1.port]));
+        idle_takes:    assert (unused_for < 3'(IDLE_WITHIN));
+        room_in_queue: assert (!too_many);
+        taken_in_time: assert (!too_late);
+
+        full:     cover (levels[1] == 3'(PLACES) && cmd_valid[0]);
+        all_busy: cover (inside[0] != '0 && inside[1] != '0 && cmd_valid[2] && went[2] != '0);
+        changed:  cover (went[0] == 3'd3 && levels[1] != '0 && last_bank[0]);
+    end
+endmodule
+
+`default_nettype wire
