@@ -9,6 +9,8 @@ module buffer_proof #(
     parameter int unsigned DEPTH = 0,
     // The FIFO is in block RAM.
     parameter bit BLOCK = 1'b0,
+    // A clock without an item follows each item of that FIFO.
+    parameter bit PAUSE = 1'b0,
     // Clocks of the pipeline in front of the credit_fifo; 0 selects another buffer.
     parameter int unsigned FLIGHT = 0
 ) (
@@ -42,7 +44,7 @@ module buffer_proof #(
         );
         wire _unused = idle;
     end else begin : memory
-        fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK)) dut (
+        fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(PAUSE)) dut (
             .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
         );
     end
@@ -53,7 +55,9 @@ module buffer_proof #(
     stream_checker #(.WIDTH(WIDTH)) shown (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(out_data)
     );
-    order_checker #(.WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1 + BLOCK), .WITHIN(FLIGHT == 0 ? 2 + BLOCK : FLIGHT + 5)) order (
+    order_checker #(
+        .WIDTH(WIDTH), .PLACES(DEPTH == 0 ? 2 : DEPTH + 1 + (BLOCK && !PAUSE)), .WITHIN(FLIGHT == 0 ? 2 + BLOCK : FLIGHT + 5)
+    ) order (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 endmodule

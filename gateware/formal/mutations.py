@@ -30,6 +30,10 @@ def _queue(old, new, fails):
     return Mutation("pipeline_fifo.sv", old, new, fails)
 
 
+def _held(old, new, fails):
+    return Mutation("held_register.sv", old, new, fails)
+
+
 def _flush(old, new, fails):
     return Mutation("band_flush.sv", old, new, fails)
 
@@ -113,6 +117,11 @@ _FIFO = [
     _fifo("head != {~tail[PLACE_BITS], tail[PLACE_BITS-1:0]}", "head == '0", "order.taken_in_time"),
 ]
 
+_PAUSE = [
+    _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "shown.payload_stable"),
+    _fifo("PAUSE ? read_valid && !read_ready :", "PAUSE ? read_valid && !out_valid :", "shown.valid_stays"),
+]
+
 MUTATIONS = {
     "skid_buffer": [
         _skid("in_valid || !in_ready ||", "in_valid && in_ready ||", "order.shown_in_time"),
@@ -130,8 +139,13 @@ MUTATIONS = {
         _FIFO[0],
         *_FIFO[3:],
         _fifo("load     = !read_valid || read_ready", "load     = !read_valid || read_ready || stored", "order.in_order"),
-        _fifo("read_ready = !out_valid || out_ready", "read_ready = !out_valid || out_ready || read_valid", "shown.payload_stable"),
-        _fifo("(read_valid || out_valid && !out_ready)", "read_valid", "shown.valid_stays"),
+        _fifo(": !out_valid || out_ready;", ": !out_valid || out_ready || read_valid;", "shown.payload_stable"),
+        _fifo(": read_valid || out_valid && !out_ready)", ": read_valid)", "shown.valid_stays"),
+    ],
+    "fifo with pauses": [
+        _FIFO[0],
+        *_FIFO[3:],
+        *_PAUSE,
     ],
     "credit_fifo": [
         *_FIFO[:4],
@@ -276,8 +290,7 @@ MUTATIONS = {
         _cull("!covers && !verdict;", "!covers;", "busy_while_inside"),
         _cull("room && !again;", "room;", "busy_while_inside"),
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
-        _fifo("(read_valid || out_valid && !out_ready)", "read_valid", "shown.valid_stays"),
-        _fifo("read_ready = !out_valid || out_ready", "read_ready = 1'b1", "shown.payload_stable"),
+        *_PAUSE,
     ],
     "memory_crossbar": [
         _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),
@@ -293,14 +306,14 @@ MUTATIONS = {
         _crossbar("owner & ~level[0] & ~(port.cmd.valid & stays)", "0", "taken_in_time"),
     ],
     "classify": [
-        _classify("known        <= held && !leaves;", "known        <= held && !known;", "exception.valid_stays"),
-        _classify("if (in_ready) regular_side", "if (1'b1) regular_side", "in_order"),
-        _classify("                regular_vertices[i] <= vertex.place;", "", "regular.payload_stable"),
+        _classify("known        <= !in_ready && !leaves;", "known        <= !in_ready && !known;", "exception.valid_stays"),
+        _held("if (enables[i / LOADS])", "if (1'b1)", "in_order"),
+        _held("if (enables[i / LOADS])", "if (1'b1)", "regular.payload_stable"),
         _classify("if (leaves) count", "if (known) count", "counted"),
         _classify("if (leaves) count", "if (known) count", "exception.payload_stable"),
         _classify("known && !to_regular && !to_exception;", "known && !to_regular;", "leaves_one_way"),
         _classify("unseen           = known &&", "unseen           =", "nothing_made_up"),
-        _classify("assign idle           = !held;", "assign idle           = !known;", "idle_while_empty"),
+        _classify("assign idle           = in_ready;", "assign idle           = !known;", "idle_while_empty"),
         _classify("!to_exception || exception_ready", "exception_ready", "taken_in_time"),
     ],
     "setup": [
@@ -318,15 +331,16 @@ MUTATIONS = {
         _setup("end else if (count != LAST) begin", "end else if (count != LAST && out_ready) begin", "taken_in_time"),
     ],
     "band_entry": [
-        _entry("out_valid <= !out_ready;", "out_valid <= 1'b0;", "shown.valid_stays"),
-        _entry("            out_triangle <= placed;\n        end", "        end\n        out_triangle <= placed;", "shown.payload_stable"),
+        _entry(".leaves(out_ready)", ".leaves(1'b1)", "shown.valid_stays"),
+        _held("if (enables[i / LOADS])", "if (1'b1)", "shown.payload_stable"),
         _entry("pass == ROWS_KNOWN && count == '0;", "1'b0;", "nothing_made_up"),
         # Fault: the next triangle overwrites the held one.
         _entry("pass != STALLS || !held_valid || !out_valid;", "1'b1;", "in_order"),
-        _entry("if (pass == LAST) begin", "if (busy) begin", "in_order"),
+        _entry("if (copies[0]) begin", "if (busy) begin", "in_order"),
+        _entry("if (copies[1]) begin", "if (busy) begin", "in_order"),
         _entry("if (moved) out_late", "out_late", "in_order"),
         _entry("k == 2 ? ending[2] :", "k == 2 ? ending[1] :", "in_order"),
-        _entry("in_ready ? !in_valid :", "in_ready ? 1'b1 :", "nothing_too_many"),
+        _held("enables[i] ? !in_valid :", "enables[i] ? 1'b1 :", "nothing_too_many"),
         _entry("(ending != '0 || held_valid) && held_odd", "held_valid && held_odd", "held_is_told"),
         _entry("{ending[2:1], busy && pass == LAST}", "{ending[2:1], busy && pass == LAST && in_valid}", "shown_in_time"),
         _entry("end else if (advance) begin", "end else if (advance && out_ready) begin", "taken_in_time"),

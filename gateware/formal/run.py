@@ -83,6 +83,7 @@ PROOFS = [
     Proof("fifo of 2", "buffer_proof", 24, parameters={"DEPTH": 2}),
     Proof("fifo of 4", "buffer_proof", 24, parameters={"DEPTH": 4}),
     Proof("fifo in block RAM", "buffer_proof", 24, parameters={"DEPTH": 2, "BLOCK": 1}),
+    Proof("fifo with pauses", "buffer_proof", 24, parameters={"DEPTH": 2, "BLOCK": 1, "PAUSE": 1}),
     Proof("credit_fifo", "buffer_proof", 28, parameters={"DEPTH": 2, "FLIGHT": 3}),
     Proof("cdc_fifo", "cdc_fifo_proof", 40, ("any_level",), has_clocks=True),
     Proof("band_pipe", "band_pipe_proof", 14),

@@ -1,7 +1,8 @@
 // A FIFO with DEPTH + 1 places: DEPTH in LUTRAM and one in the output register. With BLOCK it has DEPTH + 2 places: DEPTH in block
-// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register.
+// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE
+// the last two are one place: the block RAM holds the item at the output, whose register then needs no enable.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock. Stream contract on both sides: an item moves in a clock in
+// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock, or one in two clocks with PAUSE. Stream contract on both sides: an item moves in a clock in
 // which valid and ready are high; valid does not wait for ready, and a payload holds until it has moved. `in_ready` and
 // `out_valid` come from registers alone. DEPTH is a power of two.
 //
@@ -15,6 +16,8 @@ module fifo #(
     parameter int unsigned WIDTH = 8,
     parameter int unsigned DEPTH = 16,
     parameter bit          BLOCK = 1'b0,
+    // Only with BLOCK: a clock without an item follows each item.
+    parameter bit          PAUSE = 1'b0,
     // The output may come late in the clock. On an FPGA whose LUTs make small memories only, the places then go to block RAM
     // (gateware/ecp5).
     parameter bit          BULK  = 1'b0
@@ -55,13 +58,13 @@ module fifo #(
         (* ram_style = "block", no_rw_check *) logic [WIDTH-1:0] places [0:DEPTH-1];
         logic [WIDTH-1:0] read;
 
-        assign read_ready = !out_valid || out_ready;
+        assign read_ready = PAUSE ? out_valid && out_ready : !out_valid || out_ready;
 
         always_ff @(posedge clk) begin
             if (in_valid && in_ready) places[head[PLACE_BITS-1:0]] <= in_data;
             if (load) read <= places[tail[PLACE_BITS-1:0]];
-            if (read_ready) out_data <= read;
-            out_valid <= !rst && (read_valid || out_valid && !out_ready);
+            if (PAUSE || read_ready) out_data <= read;
+            out_valid <= !rst && (PAUSE ? read_valid && !read_ready : read_valid || out_valid && !out_ready);
         end
     end else begin : in_luts
         (* ram_style = "distributed", no_rw_check, bulk = BULK *) logic [WIDTH-1:0] places [0:DEPTH-1];

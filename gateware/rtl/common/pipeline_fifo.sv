@@ -10,7 +10,7 @@
 // item may also be dropped on the way. `room` comes from a register. Between the count of an item and its effect on `room` are
 // two clocks, so `room` falls while FLIGHT + 2 places are still free.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock. DEPTH is a power of two; more than 2 * (FLIGHT + 2) places keep
+// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock, or one in two clocks with BLOCK. DEPTH is a power of two; more than 2 * (FLIGHT + 2) places keep
 // the output busy while `room` comes back. `idle` is high while the FIFO is empty; it knows nothing of items on the way.
 
 `default_nettype none
@@ -19,7 +19,7 @@ module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
-    // The FIFO is in block RAM.
+    // The FIFO is in block RAM, and a clock without an item follows each item.
     parameter bit          BLOCK  = 1'b0
 ) (
     input  wire              clk,
@@ -52,7 +52,7 @@ module pipeline_fifo #(
         end
     end
 
-    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK)) fifo (
+    fifo #(.WIDTH(WIDTH), .DEPTH(DEPTH), .BLOCK(BLOCK), .PAUSE(BLOCK)) fifo (
         .clk, .rst, .in_valid, .in_ready, .in_data, .out_valid, .out_ready, .out_data
     );
 

@@ -57,9 +57,15 @@ module band_entry #(
     // held stage, in which it waits for the output register.
     triangle_pkg::descriptor_t triangle;
     logic [9:0]  y0;
-    logic        busy, dropped, odd, held_valid, held_odd, advance, moved;
+    logic        busy, dropped, odd, held_valid, held_odd, advance, moved, out_free;
     logic [2:0]  pass;
     logic [3:1]  ending;
+
+    // Free while no triangle is in its passes, and in the last pass.
+    held_register #(.WIDTH($bits(in_descriptor) + 10 + 1)) inputs (
+        .clk, .rst, .free(in_ready), .in_valid, .in({in_odd, in_y0, in_descriptor}),
+        .leaves(dropped || pass == LAST_BUT_ONE), .out({odd, y0, triangle})
+    );
 
     // The first result of a triangle overwrites the first result of the previous one, so the passes stall until that
     // triangle has left the held stage.
@@ -183,12 +189,18 @@ module band_entry #(
         assign step_y[k] = steps.y;
     end
 
-    // The held triangle: its results stay in their registers, its other fields are copied here after the last pass.
+    // The held triangle: its results stay in their registers, its other fields are copied here in the last pass. Two registers tell
+    // of this pass, one for each half of the fields. Each depends on itself, because synthesis would merge them into one.
+    (* keep *) logic [1:0] copies;
+
     always_ff @(posedge clk) begin
-        if (pass == LAST) begin
-            held_odd           <= odd;
+        for (int i = 0; i < 2; i++) copies[i] <= pass == LAST_BUT_ONE && !copies[i];
+        if (copies[0]) begin
             placed.slope       <= slopes;
             placed.step_y      <= step_y;
+        end
+        if (copies[1]) begin
+            held_odd           <= odd;
             placed.rises       <= all_rises;
             placed.falls       <= all_falls;
             placed.rows        <= count;
@@ -224,42 +236,33 @@ module band_entry #(
         wire _unused = &{1'b0, in_planes};
     end
 
+    // The output register loads only while it is empty: its enable is a register, at the price of a clock between two triangles.
+    assign out_valid = !out_free;
+
+    held_register #(.WIDTH($bits(placed) + 1)) result (
+        .clk, .rst, .free(out_free), .in_valid(held_valid), .in({held_odd, placed}), .leaves(out_ready), .out({out_odd, out_triangle})
+    );
+
     always_ff @(posedge clk) begin
         ending <= {ending[2:1], busy && pass == LAST};
 
-        // High while no triangle is in its passes, and in the last pass.
-        in_ready <= in_ready ? !in_valid : dropped || pass == LAST_BUT_ONE;
-
         if (in_ready) begin
-            triangle <= in_descriptor;
-            y0       <= in_y0;
-            odd      <= in_odd;
-            busy     <= in_valid;
-            pass     <= '0;
+            busy <= in_valid;
+            pass <= '0;
         end else if (advance) begin
             pass <= pass + 1'b1;
             if (dropped) busy <= 1'b0;
         end
 
-        // The output register loads only while it is empty: its enable is a register, at the price of a clock between two triangles.
-        if (out_valid) begin
-            out_valid <= !out_ready;
-        end else begin
-            held_valid   <= 1'b0;
-            out_valid    <= held_valid;
-            out_odd      <= held_odd;
-            out_triangle <= placed;
-        end
+        if (!out_valid) held_valid <= 1'b0;
         moved <= !out_valid;
         if (moved) out_late <= late;
         if (ending[3]) held_valid <= 1'b1;
 
         if (rst) begin
-            in_ready   <= 1'b1;
             busy       <= 1'b0;
             ending     <= '0;
             held_valid <= 1'b0;
-            out_valid  <= 1'b0;
         end
     end
 

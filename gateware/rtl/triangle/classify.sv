@@ -41,31 +41,34 @@ module classify #(
         off_sides = {x[12], !x[12] && x[11:0] >= 12'(width), y[12], !y[12] && y[11:0] >= 12'(height)};
     endfunction
 
-    logic            held, known, leaves;
+    logic            known, leaves;
     logic [2:0][3:0] off;
     logic [2:0]      behind, beyond;
     logic            is_unseen, is_exceptional;
 
     // The first clock examines each vertex, the second one decides about the triangle, which is then `known`.
-    assign idle           = !held;
-    assign in_ready       = !held;
+    assign idle           = in_ready;
     assign is_unseen      = behind == '1 || behind == '0 && (off[0] & off[1] & off[2]) != '0;
     assign is_exceptional = behind != '0 || beyond != '0;
+
+    logic [2:0][65:0] places;
+    logic [2:0][3:0]  in_off;
+    logic [2:0]       in_behind, in_beyond;
 
     for (genvar i = 0; i < 3; i++) begin : vertices
         triangle_pkg::projected_t vertex;
 
-        assign vertex = in_vertices[i];
-
-        always_ff @(posedge clk) begin
-            if (in_ready) begin
-                regular_vertices[i] <= vertex.place;
-                behind[i]           <= vertex.behind;
-                beyond[i]           <= vertex.beyond;
-                off[i]              <= off_sides(vertex.place.x[20:8], vertex.place.y[20:8]);
-            end
-        end
+        assign vertex       = in_vertices[i];
+        assign places[i]    = vertex.place;
+        assign in_behind[i] = vertex.behind;
+        assign in_beyond[i] = vertex.beyond;
+        assign in_off[i]    = off_sides(vertex.place.x[20:8], vertex.place.y[20:8]);
     end
+
+    held_register #(.WIDTH(SIDE_BITS + 3 * 66 + 12 + 3 + 3)) inputs (
+        .clk, .rst, .free(in_ready), .in_valid, .in({in_side, places, in_off, in_beyond, in_behind}), .leaves,
+        .out({regular_side, regular_vertices, off, beyond, behind})
+    );
 
     logic to_regular, to_exception;
 
@@ -76,18 +79,13 @@ module classify #(
     assign leaves           = known && (to_regular ? regular_ready : !to_exception || exception_ready);
 
     always_ff @(posedge clk) begin
-        if (in_ready) regular_side <= in_side;
         to_regular   <= !is_unseen && !is_exceptional;
         to_exception <= !is_unseen && is_exceptional;
-        held         <= held ? !leaves : in_valid;
-        known        <= held && !leaves;
+        known        <= !in_ready && !leaves;
         if (leaves) count <= count + 1'b1;
 
         if (restart) count <= '0;
-        if (rst) begin
-            held  <= 1'b0;
-            known <= 1'b0;
-        end
+        if (rst) known <= 1'b0;
     end
 endmodule
 

@@ -12,7 +12,7 @@
 //
 // The stages cannot be stopped. A triangle moves in only if the FIFO has room for all triangles inside, so culled triangles leave
 // while earlier ones wait for `out`, as many as the FIFO has places: the later parts of the setup take longer for a triangle.
-// The result of centre_test comes when the triangle is in the FIFO; a dropped triangle leaves the FIFO in one clock.
+// The result of centre_test comes when the triangle is in the FIFO; a dropped triangle leaves the FIFO in two clocks.
 // `in_ready` is a register, decided a clock ahead.
 
 `default_nettype none

@@ -13,7 +13,7 @@
 // descriptor comes from its line, also one that missed, so no selection follows the block RAM. An item without a descriptor
 // (`in_end`) passes in order.
 //
-// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput an item in 4 clocks, with SMOOTH a
+// Latency 7 clocks for a hit, and the latency of memory plus 10 clocks for a miss. Throughput an item in 4 clocks, with SMOOTH a
 // miss in 7. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
 // is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
@@ -151,15 +151,14 @@ module descriptor_cache #(
         if (rst) words <= '0;
     end
 
-    // Third stage: each descriptor is read from its cache line, in the first clock (`reads`) of its item here. No line is written
-    // in that clock, and no later item's line before it.
-    logic                 read_valid, reads, read_end, moves;
-    logic [LINE_BITS-1:0] read_line;
+    // Third stage: each descriptor is read from its cache line, in a clock in which no line is written. The block RAM holds it until
+    // the item has moved, so the register behind the block RAM needs no enable.
+    logic                 read_valid, reads, arrives;
     logic [128*WORDS-1:0] cached, descriptor;
 
     assign read_free  = !read_valid;
-    assign moves      = read_valid && !reads && !out_valid;
-    assign data_ready = marked && !mark_done && !reads;
+    assign reads      = marked && mark_done && read_free;
+    assign data_ready = marked && !mark_done;
 
     for (genvar i = 0; i < WORDS; i++) begin : columns
         (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
@@ -167,27 +166,20 @@ module descriptor_cache #(
 
         always_ff @(posedge clk) begin
             if (data_ready && data_valid && words == WORD_BITS'(i)) lines[mark_line] <= data;
-            if (reads) cached[128*i +: 128] <= lines[read_line];
+            if (reads) cached[128*i +: 128] <= lines[mark_line];
         end
     end
 
     always_ff @(posedge clk) begin
-        reads      <= marked && mark_done && read_free;
-        read_valid <= read_free ? marked && mark_done : !moves;
-        if (read_free) begin
-            read_end  <= mark_end;
-            read_line <= mark_line;
-        end
-
-        out_valid <= moves || out_valid && !out_ready;
-        if (!out_valid) begin
-            out_end    <= read_end;
-            descriptor <= cached;
-        end
+        read_valid <= reads || read_valid && !(out_valid && out_ready);
+        arrives    <= reads;
+        out_valid  <= arrives || out_valid && !out_ready;
+        descriptor <= cached;
+        if (reads) out_end <= mark_end;
 
         if (rst) begin
-            reads      <= 1'b0;
             read_valid <= 1'b0;
+            arrives    <= 1'b0;
             out_valid  <= 1'b0;
         end
     end

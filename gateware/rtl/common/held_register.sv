@@ -1,0 +1,37 @@
+// A register of many bits that takes its input in each clock while it is free, and then holds an item until that item leaves. For
+// every LOADS flip-flops the enable has a copy, so that none drives more than LOADS.
+//
+//   in_valid, leaves ─▶ copies of `free` ─┬─┬─┬─▶
+//   in ──────────────────────────────────▶ register ──▶ out
+//
+// An item moves in with `in_valid` while `free` is high; `leaves` is high in the last clock in which it must hold. Each copy of
+// the enable depends on itself, because synthesis would merge flip-flops with the same input into one.
+
+`default_nettype none
+
+module held_register #(
+    parameter int unsigned WIDTH = 256,
+    parameter int unsigned LOADS = 128
+) (
+    input  wire              clk,
+    input  wire              rst,
+    output logic             free,
+    input  wire              in_valid,
+    input  wire  [WIDTH-1:0] in,
+    input  wire              leaves,
+    output logic [WIDTH-1:0] out
+);
+    localparam int unsigned COPIES = (WIDTH + LOADS - 1) / LOADS;
+
+    (* keep *) logic [COPIES-1:0] enables;
+
+    assign free = enables[COPIES-1];
+
+    always_ff @(posedge clk) begin
+        for (int i = 0; i < COPIES; i++) enables[i] <= rst || (enables[i] ? !in_valid : leaves);
+        for (int i = 0; i < WIDTH; i++)
+            if (enables[i / LOADS]) out[i] <= in[i];
+    end
+endmodule
+
+`default_nettype wire
