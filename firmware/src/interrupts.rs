@@ -57,8 +57,8 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // The interrupt of the buttons is never enabled; if it comes nevertheless, its line is disabled.
-        Interrupt::Buttons => interrupt::disable(interrupt.bit()),
+        // The interrupts of the buttons and of the gesture engine are never enabled; if one comes nevertheless, its line is disabled.
+        Interrupt::Buttons | Interrupt::Gesture => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);
 }
