@@ -16,6 +16,7 @@ use glint_reference::raymarch::verilated::Raymarcher;
 use glint_reference::raymarch::views;
 use glint_reference::report::cycles::Cycles;
 use glint_reference::report::experiments::geometry::precision;
+use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
 use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
 use glint_reference::report::experiments::sine;
@@ -24,6 +25,7 @@ use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
 use glint_reference::sine::kernels::kernels;
 use glint_reference::sine::sweep::sweep;
+use glint_reference::triangle::smooth::scenes;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
@@ -168,6 +170,27 @@ fn the_committed_errors_of_geometry_hold() {
         let name = |column| format!("geometry-precision.csv: {} of {}", column, row.kernel);
         assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
         assert_close(row.rms, now.rms, 1e-6, &name("rms"));
+    }
+}
+
+/// Measures the rows of gouraud-forms.csv of common scenes again, and compares the errors with the committed ones.
+#[test]
+fn the_committed_errors_of_smooth_shading_hold() {
+    let rows: Vec<forms::Row> = committed("gouraud-forms.csv");
+    let scenes = scenes();
+    assert_eq!(
+        rows.len(),
+        scenes.len() * forms::FORMS.len(),
+        "scenes or forms have come or gone"
+    );
+    for scene in scenes.iter().filter(|scene| !scene.stiff) {
+        let committed = rows.iter().filter(|row| row.scene == scene.name);
+        for (row, now) in committed.zip(forms::measure_scene(scene, "")) {
+            assert_eq!((&row.form, row.pixels), (&now.form, now.pixels));
+            let name = |column| format!("gouraud-forms.csv: {} of {}", column, row.form);
+            assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
+            assert_close(row.rms, now.rms, 1e-6, &name("rms"));
+        }
     }
 }
 

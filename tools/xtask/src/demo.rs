@@ -19,8 +19,9 @@ pub fn demo(arguments: &[String]) -> Result<()> {
 }
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. For the page `raymarch` it also
-/// builds the SoC whose raymarcher evaluates the field four times a clock, and the raymarcher without a SoC. With `pages` as name
-/// it writes all pages from the tables of earlier measurements. For this it builds only the report program.
+/// builds the SoC whose raymarcher evaluates the field four times a clock, and the raymarcher without a SoC, for the page `gouraud` the
+/// rasterizer. With `pages` as name it writes all pages from the tables of earlier measurements. For this it builds only the report
+/// program.
 ///
 /// # Errors
 /// A build or a measurement fails.
@@ -33,15 +34,23 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     if name == "raymarch" {
         let sponge = gateware::Fields::Sponge.name();
         gateware::build_beside(sponge, &["--fields", sponge])?;
-        run::step(
-            "model of the raymarcher",
-            Command::new(paths::venv_program("python"))
-                .args(["gateware/tests/run.py", "--models", "raymarcher"])
-                .current_dir(paths::root()),
-        )?;
+        model("raymarcher")?;
+    }
+    if name == "gouraud" {
+        model("triangle_raster")?;
     }
     firmware::build(Board::Virtual, &["peers"])?;
     tool("glint-reference", "report", name, arguments)
+}
+
+/// Builds the verilated models of a module, without a SoC.
+fn model(module: &str) -> Result<()> {
+    run::step(
+        &format!("models of {module}"),
+        Command::new(paths::venv_program("python"))
+            .args(["gateware/tests/run.py", "--models", module])
+            .current_dir(paths::root()),
+    )
 }
 
 /// Builds a program of the workspace as a step, then runs it on this terminal.

@@ -53,11 +53,14 @@ enum Page {
         #[command(flatten)]
         output: Output,
     },
-    /// Errors of smooth shading, compared with light that is linear on the screen
+    /// Smooth shading and other forms of it: errors, clocks and FPGA resources
     Gouraud {
-        /// Leave out the gateware's cost, which takes most of the time
+        /// Leave out the FPGA resources, which take most of the time
         #[arg(long)]
         quick: bool,
+        /// Synthesise the engines of earlier commits again, too
+        #[arg(long, conflicts_with = "quick")]
+        earlier: bool,
         #[command(flatten)]
         output: Output,
     },
@@ -144,7 +147,11 @@ fn main() -> Result<()> {
             output,
             ..
         } => measure_studies(Some(&study), &output),
-        Page::Gouraud { quick, output } => measure_gouraud(quick, &output),
+        Page::Gouraud {
+            quick,
+            earlier,
+            output,
+        } => measure_gouraud(quick, earlier, &output),
         Page::Geometry { bench } => measure_geometry(&bench),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Pages { out } => {
@@ -208,13 +215,27 @@ fn measure_studies(only: Option<&str>, output: &Output) -> Result<()> {
     written("raymarch", &folder, pages::raymarch::rebuild)
 }
 
-fn measure_gouraud(quick: bool, output: &Output) -> Result<()> {
-    let rows = gouraud::measure();
-    output.print(&rows, pages::gouraud::table)?;
+fn measure_gouraud(quick: bool, earlier: bool, output: &Output) -> Result<()> {
     let folder = output.folder(quick)?;
+    let rows = gouraud::scenes::measure();
+    output.print(&rows, pages::gouraud::table)?;
     write_csv(&rows, &folder.join("gouraud.csv"))?;
+    write_csv(
+        &gouraud::forms::measure(),
+        &folder.join("gouraud-forms.csv"),
+    )?;
+    write_csv(
+        &gouraud::clocks::measure()?,
+        &folder.join("gouraud-clocks.csv"),
+    )?;
     if !quick {
-        write_csv(&gouraud::costs()?, &folder.join("gouraud-cost.csv"))?;
+        let file = folder.join("gouraud-cost.csv");
+        let mut costs = gouraud::engines::today()?;
+        costs.extend(match earlier {
+            true => gouraud::engines::earlier()?,
+            false => gouraud::engines::kept(&file)?,
+        });
+        write_csv(&costs, &file)?;
     }
     written("gouraud", &folder, pages::gouraud::rebuild)
 }

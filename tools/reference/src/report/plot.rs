@@ -63,6 +63,7 @@ fn draw(
     let errors = Span::new(points.iter().map(|point| point.error)).unwrap_or(Span(1e-10, 1.0));
     let costs = Span::new(points.iter().filter_map(|point| point.cost)).unwrap_or(EMPTY);
     let (Span(left, right), Span(bottom, top)) = (errors, costs);
+    let legend = legend(points, errors, costs);
 
     let root = SVGBackend::new(path, SIZE).into_drawing_area();
     root.fill(&WHITE)?;
@@ -76,19 +77,19 @@ fn draw(
     match (errors.is_narrow(), costs.is_narrow()) {
         (false, false) => {
             let chart = chart.build_cartesian_2d(across.log_scale(), up.log_scale())?;
-            fill(chart, diagram, points, costs)?;
+            fill(chart, diagram, points, (costs, legend))?;
         }
         (false, true) => {
             let chart = chart.build_cartesian_2d(across.log_scale(), up)?;
-            fill(chart, diagram, points, costs)?;
+            fill(chart, diagram, points, (costs, legend))?;
         }
         (true, false) => {
             let chart = chart.build_cartesian_2d(across, up.log_scale())?;
-            fill(chart, diagram, points, costs)?;
+            fill(chart, diagram, points, (costs, legend))?;
         }
         (true, true) => {
             let chart = chart.build_cartesian_2d(across, up)?;
-            fill(chart, diagram, points, costs)?;
+            fill(chart, diagram, points, (costs, legend))?;
         }
     }
     root.present()?;
@@ -177,7 +178,7 @@ fn fill<'a, X, Y>(
     mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,
     diagram: &Diagram,
     points: &[Point],
-    costs: Span,
+    (costs, legend): (Span, SeriesLabelPosition),
 ) -> Result<(), Box<dyn std::error::Error>>
 where
     X: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -232,7 +233,7 @@ where
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::LowerLeft)
+        .position(legend)
         .background_style(WHITE.mix(0.8))
         .border_style(BLACK.mix(0.3))
         .draw()?;
@@ -249,6 +250,22 @@ fn number(error: &f64) -> String {
         short
     } else {
         format!("{error:.2e}")
+    }
+}
+
+/// Chooses the corner of the legend: the lower left one, or the upper right one if fewer points are in that quarter.
+fn legend(points: &[Point], errors: Span, costs: Span) -> SeriesLabelPosition {
+    let places = points
+        .iter()
+        .filter_map(|point| Some((errors.part(point.error), costs.part(point.cost?))));
+    let (mut lower_left, mut upper_right) = (0, 0);
+    for (across, up) in places {
+        lower_left += u32::from(across < 0.5 && up < 0.5);
+        upper_right += u32::from(across > 0.5 && up > 0.5);
+    }
+    match upper_right < lower_left {
+        true => SeriesLabelPosition::UpperRight,
+        false => SeriesLabelPosition::LowerLeft,
     }
 }
 
@@ -282,6 +299,18 @@ impl Span {
             10f64.powf((range.0 / 1.5).log10().floor()),
             10f64.powf((range.1 * 1.5).log10().ceil()),
         ))
+    }
+
+    /// Returns the place of a value on the axis, from 0 to 1.
+    fn part(self, value: f64) -> f64 {
+        let place = |value: f64| {
+            if self.is_narrow() {
+                value
+            } else {
+                value.log10()
+            }
+        };
+        (place(value) - place(self.0)) / (place(self.1) - place(self.0))
     }
 
     /// Whether the range is less than a decade, so that a logarithmic axis would have no numbers.

@@ -1,12 +1,8 @@
-//! Experiment: errors of smooth shading, and the FPGA resources of the triangle engine with and without it.
+//! Experiment: errors of the model's smooth shading.
 
-use std::process::Command;
-
-use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 use crate::report::provenance::Provenance;
-use crate::report::workspace;
 use crate::triangle::smooth::{Measured, scenes};
 
 /// Errors of a scene: a line of `gouraud.csv`. Errors are in steps of a colour channel of RGB565.
@@ -73,77 +69,4 @@ pub fn measure() -> Vec<Row> {
         .iter()
         .map(|scene| Row::new(scene.name, scene.bound, &scene.measure(), &provenance))
         .collect()
-}
-
-/// The triangle engines with flat shading alone and with both kinds of shading: each with a description of its shading and
-/// with the module's name in `gateware/tests/run.py`.
-const ENGINES: [(&str, &str); 2] = [
-    ("flat", "triangle_engine"),
-    ("flat and smooth", "triangle_engine_smooth"),
-];
-
-/// Resources of a triangle engine: a line of `gouraud-cost.csv`.
-#[derive(Serialize, Deserialize)]
-pub struct Cost {
-    /// The kinds of shading that the engine supports.
-    pub engine: String,
-    /// Number of LUTs, including the LUTs used as memory.
-    #[serde(rename = "LUT")]
-    pub lut: u32,
-    /// Number of flip-flops.
-    #[serde(rename = "FF")]
-    pub ff: u32,
-    /// Number of DSP48 slices.
-    #[serde(rename = "DSP48")]
-    pub dsp: u32,
-    /// Number of block RAMs, in units of 36 Kbit.
-    #[serde(rename = "RAMB36")]
-    pub bram: f64,
-    /// Longest path between registers, in LUT levels (docs/resources.md).
-    pub path: u32,
-}
-
-/// Numbers of cells of a module by their kind, and the length of the longest path, as found by Yosys.
-#[derive(Deserialize)]
-struct Cells {
-    logic: u32,
-    srl: u32,
-    lutram: u32,
-    ff: u32,
-    dsp48: u32,
-    ramb36: u32,
-    ramb18: u32,
-    path: u32,
-}
-
-/// Synthesises each of the `ENGINES` and returns its resources.
-///
-/// # Errors
-/// When the synthesis fails.
-pub fn costs() -> Result<Vec<Cost>> {
-    ENGINES
-        .into_iter()
-        .map(|(engine, module)| {
-            let cells = cells(module)?;
-            Ok(Cost {
-                engine: engine.to_owned(),
-                lut: cells.logic + cells.srl + cells.lutram,
-                ff: cells.ff,
-                dsp: cells.dsp48,
-                bram: f64::from(cells.ramb36) + f64::from(cells.ramb18) / 2.0,
-                path: cells.path,
-            })
-        })
-        .collect()
-}
-
-fn cells(module: &str) -> Result<Cells> {
-    let output = Command::new(workspace::path(".venv/bin/python"))
-        .args(["gateware/tests/run.py", "--size", module])
-        .current_dir(workspace::path(""))
-        .output()
-        .context("cannot run .venv/bin/python: run `cargo xtask bootstrap`")?;
-    let text = String::from_utf8_lossy(&output.stdout);
-    ensure!(output.status.success(), "the size of {module}: {text}");
-    serde_json::from_str(&text).with_context(|| format!("expected a size in JSON, found `{text}`"))
 }

@@ -1,0 +1,117 @@
+//! Experiment: clocks of smooth pictures on the verilated rasterizer, by the number of pixels that are shaded in a clock.
+
+use anyhow::{Context, Result};
+use glint_model::triangle::setup::Setup;
+use serde::{Deserialize, Serialize};
+
+use crate::report::provenance::Provenance;
+use crate::triangle::smooth::scenes;
+use crate::triangle::smooth::verilated::{Band, Rasterizer};
+
+/// Clocks of the rasterizer for a picture: a line of `gouraud-clocks.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the rate at which pixels are shaded.
+    pub rate: String,
+    /// Description of the scene.
+    pub scene: String,
+    /// Number of triangles, each counted once.
+    pub triangles: u64,
+    /// Number of covered pixels, summed over the triangles.
+    pub pixels: u64,
+    /// Number of groups with a covered pixel.
+    pub groups: u64,
+    /// Clocks of all bands.
+    pub clocks: u64,
+    /// Whether the clocks were measured. Computed ones are the sum over the bands of the larger of two numbers: the measured clocks
+    /// with flat triangles, and the sum of the groups' clocks.
+    pub measured: bool,
+    /// Commit with which the picture was measured.
+    pub commit: String,
+}
+
+/// The rate of Glint's rasterizer.
+pub const SHIPPED: &str = "a pixel a clock";
+/// The rate of flat triangles.
+pub const GROUPS: &str = "a group a clock";
+/// The rate of two pixels in a clock.
+pub const PAIRS: &str = "two pixels a clock";
+/// The rate of one division in a clock, for two pixels of each group.
+pub const ENDS: &str = "a division a clock";
+
+/// Measures the pictures.
+///
+/// # Errors
+/// When a scene is missing.
+pub fn measure() -> Result<Vec<Row>> {
+    let commit = Provenance::find().commit;
+    let scenes = scenes();
+    let mut rasterizer = Rasterizer::new();
+    let mut rows = Vec::new();
+    for name in [
+        "icosphere:6 from 2",
+        "icosphere:2 from 2",
+        "inside icosphere:2, back faces",
+    ] {
+        eprintln!("{name} on the verilated rasterizer …");
+        let scene = scenes.iter().find(|scene| scene.name == name);
+        let triangles = scene.context("a scene of this name")?.triangles();
+        let size = triangles.first().context("a triangle")?.size;
+        let smooth: Vec<Setup> = triangles
+            .iter()
+            .filter_map(|triangle| triangle.setup())
+            .collect();
+        let flat: Vec<Setup> = smooth
+            .iter()
+            .map(|setup| Setup {
+                light: None,
+                ..*setup
+            })
+            .collect();
+        let shipped = rasterizer.draw(&smooth, size);
+        let groups = rasterizer.draw(&flat, size);
+        let masks = || shipped.iter().flat_map(|band| &band.masks);
+        let mut row = |rate: &str, clocks, measured| {
+            rows.push(Row {
+                rate: rate.to_owned(),
+                scene: name.to_owned(),
+                triangles: smooth.len() as u64,
+                pixels: masks().map(|mask| u64::from(mask.count_ones())).sum(),
+                groups: masks().count() as u64,
+                clocks,
+                measured,
+                commit: commit.clone(),
+            });
+        };
+        let sum = |bands: &[Band]| bands.iter().map(|band| band.clocks).sum();
+        row(SHIPPED, sum(&shipped), true);
+        row(GROUPS, sum(&groups), true);
+        row(
+            PAIRS,
+            computed(&groups, |mask| pixels(mask).div_ceil(2)),
+            false,
+        );
+        row(
+            ENDS,
+            computed(&groups, |mask| mask.count_ones().min(2)),
+            false,
+        );
+        row(SHIPPED, computed(&groups, pixels), false);
+    }
+    Ok(rows)
+}
+
+/// Computes the clocks of bands whose groups take the clocks `of`, from the bands with flat triangles.
+fn computed(flat: &[Band], of: fn(u8) -> u32) -> u64 {
+    let bands = flat.iter().map(|band| {
+        let shading: u64 = band.masks.iter().map(|&mask| u64::from(of(mask))).sum();
+        shading.max(band.clocks)
+    });
+    bands.sum()
+}
+
+/// Returns the number of pixels of a group that the rasterizer shades: from the first or the fifth to the last covered one.
+fn pixels(mask: u8) -> u32 {
+    let first = if mask & 0xF == 0 { 4 } else { 0 };
+    8 - mask.leading_zeros() - first
+}

@@ -1,0 +1,185 @@
+//! Experiment: FPGA resources of the triangle engine with flat and with smooth shading, today and in earlier forms.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use crate::report::provenance::Provenance;
+use crate::report::table::read_optional_csv;
+use crate::report::workspace;
+
+/// Name of today's engine.
+pub const TODAY: &str = "Glint";
+/// Name of the engine that shades a group of eight pixels in a clock.
+pub const GROUP: &str = "eight divisions a clock, planes of the channels at once";
+/// Name of the engine that shades a pixel in a clock.
+pub const PIXEL: &str = "a division a clock, planes of the channels at once";
+/// Name of the engine that also computes the planes of the channels one after the other.
+pub const PLANES: &str = "a division a clock, planes one after the other";
+
+/// Names of earlier engines, and the last commit of each.
+const EARLIER: [(&str, &str); 3] = [
+    (GROUP, "e91335dce5f7"),
+    (PIXEL, "c70268e40724"),
+    (PLANES, "71b672ffed3a"),
+];
+
+/// The kinds of shading of an engine, and the name of the module with them in `gateware/tests/run.py`.
+const MODULES: [(&str, &str); 2] = [
+    ("flat", "triangle_engine"),
+    ("flat and smooth", "triangle_engine_smooth"),
+];
+
+/// Instances that divide light by depth begin with one of these names.
+const DIVISIONS: [&str; 2] = ["pixel_colour", "quotients"];
+
+/// Resources of a triangle engine: a line of `gouraud-cost.csv`.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Cost {
+    /// Name of the engine.
+    pub engine: String,
+    /// The kinds of shading that the engine supports.
+    pub shading: String,
+    /// Number of LUTs, including the LUTs used as memory.
+    #[serde(rename = "LUT")]
+    pub lut: u32,
+    /// Number of flip-flops.
+    #[serde(rename = "FF")]
+    pub ff: u32,
+    /// Number of DSP48 slices.
+    #[serde(rename = "DSP48")]
+    pub dsp: u32,
+    /// Number of block RAMs, in units of 36 Kbit.
+    #[serde(rename = "RAMB36")]
+    pub bram: f64,
+    /// Longest path between registers, in LUT levels (docs/resources.md).
+    pub path: u32,
+    /// LUTs of the instances that divide light by depth.
+    pub division_lut: u32,
+    /// DSP48 slices of the instances that divide light by depth.
+    pub division_dsp: u32,
+    /// Commit whose engine was measured.
+    pub commit: String,
+}
+
+/// Numbers of cells of a module by their kind, and the length of the longest path, as found by Yosys.
+#[derive(Deserialize)]
+struct Cells {
+    logic: u32,
+    srl: u32,
+    lutram: u32,
+    ff: u32,
+    dsp48: u32,
+    ramb36: u32,
+    ramb18: u32,
+    path: u32,
+    instances: Vec<Instance>,
+}
+
+/// Cells of an instance in a module, without those of the instances in it.
+#[derive(Deserialize)]
+struct Instance {
+    path: Vec<String>,
+    lut: u32,
+    dsp48: u32,
+}
+
+/// Synthesises today's engine and returns its resources.
+///
+/// # Errors
+/// When the synthesis fails.
+pub fn today() -> Result<Vec<Cost>> {
+    costs(TODAY, &Provenance::find().commit, &workspace::path(""))
+}
+
+/// Synthesises the earlier engines, from the gateware of their commits, and returns their resources.
+///
+/// # Errors
+/// When git has no such commit, or the synthesis fails.
+pub fn earlier() -> Result<Vec<Cost>> {
+    let mut rows = Vec::new();
+    for (engine, commit) in EARLIER {
+        rows.extend(costs(engine, commit, &gateware_of(commit)?)?);
+    }
+    Ok(rows)
+}
+
+/// Returns the resources of the earlier engines from the file of an earlier measurement.
+///
+/// # Errors
+/// When a line of the file does not have the columns of a [`Cost`].
+pub fn kept(file: &Path) -> Result<Vec<Cost>> {
+    let mut rows: Vec<Cost> = read_optional_csv(file)?;
+    rows.retain(|row| row.engine != TODAY);
+    Ok(rows)
+}
+
+/// Extracts the gateware of a commit from git, and returns the folder that contains it.
+fn gateware_of(commit: &str) -> Result<PathBuf> {
+    let folder = workspace::path("target/report").join(commit);
+    std::fs::create_dir_all(&folder)
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    let archive = folder.join("gateware.tar");
+    run(Command::new("git")
+        .args(["archive", "--output"])
+        .arg(&archive)
+        .args([commit, "gateware"])
+        .current_dir(workspace::path("")))?;
+    run(Command::new("tar")
+        .arg("-xf")
+        .arg(&archive)
+        .current_dir(&folder))?;
+    Ok(folder)
+}
+
+/// Synthesises both modules of the engine in the folder `root`.
+fn costs(engine: &str, commit: &str, root: &Path) -> Result<Vec<Cost>> {
+    MODULES
+        .into_iter()
+        .map(|(shading, module)| {
+            eprintln!("{engine}, {shading} …");
+            let cells = cells(module, root)?;
+            let divides = |instance: &&Instance| {
+                let mut names = instance.path.iter();
+                names.any(|name| DIVISIONS.iter().any(|start| name.starts_with(start)))
+            };
+            let divisions = || cells.instances.iter().filter(divides);
+            Ok(Cost {
+                engine: engine.to_owned(),
+                shading: shading.to_owned(),
+                lut: cells.logic + cells.srl + cells.lutram,
+                ff: cells.ff,
+                dsp: cells.dsp48,
+                bram: f64::from(cells.ramb36) + f64::from(cells.ramb18) / 2.0,
+                path: cells.path,
+                division_lut: divisions().map(|instance| instance.lut).sum(),
+                division_dsp: divisions().map(|instance| instance.dsp48).sum(),
+                commit: commit.to_owned(),
+            })
+        })
+        .collect()
+}
+
+fn cells(module: &str, root: &Path) -> Result<Cells> {
+    let output = run(Command::new(workspace::path(".venv/bin/python"))
+        .args(["gateware/tests/run.py", "--size", module])
+        .current_dir(root))?;
+    let text = String::from_utf8_lossy(&output.stdout);
+    serde_json::from_str(&text).with_context(|| format!("expected a size in JSON, found `{text}`"))
+}
+
+/// Runs a program, and returns its output if it succeeds.
+fn run(command: &mut Command) -> Result<Output> {
+    let output = command
+        .output()
+        .with_context(|| format!("cannot run {command:?}: run `cargo xtask bootstrap`"))?;
+    let text = [&output.stdout[..], &output.stderr[..]].concat();
+    ensure!(
+        output.status.success(),
+        "{command:?}: {}",
+        String::from_utf8_lossy(&text)
+    );
+    Ok(output)
+}
