@@ -26,6 +26,10 @@ def _crossing(old, new, fails):
     return Mutation("cdc_fifo.sv", old, new, fails)
 
 
+def _capture(old, new, fails):
+    return Mutation("camera_capture.sv", old, new, fails)
+
+
 def _queue(old, new, fails):
     return Mutation("pipeline_fifo.sv", old, new, fails)
 
@@ -386,6 +390,13 @@ MUTATIONS = {
         _crossing("!holding || out_ready;", "!holding || out_ready || tail_gray != head_seen;", "payload_stable"),
         _crossing("        head_gray <=", "        if (!in_valid) head_gray <=", "shown_in_time"),
         _crossing("head_gray != (tail_seen ^ FULL);", "head_gray == (tail_seen ^ FULL);", "taken_in_time"),
+    ],
+    "camera_capture": [
+        _capture("lost <= !token_ready;", "lost <= lost && !token_ready;", "reported"),
+        _capture("        if (token_valid) lost", "        lost", "reported"),
+        _capture("if (was_in_line && !in_line)", "if (was_in_line && !in_line && !between)", "line_ends"),
+        _capture("TOKEN_PIXEL;", "TOKEN_PIXEL | {2{half}};", "known_kind"),
+        _capture("{14'd0, between, half}", "{15'd0, between}", "has_bytes"),
     ],
     "lanes": [
         _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),

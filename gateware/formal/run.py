@@ -41,7 +41,7 @@ class Proof:
     """A proof: its top module with the properties, the number of clocks after reset that it covers, its stand-ins, and the names of
     modules that are written in Python (see `generated`).
 
-    With `has_clocks`, several clocks tick in any order, and the depth is a number of steps: an edge of a clock takes one.
+    With `has_clocks`, clocks tick in any order and have both edges, and the depth is a number of steps: an edge takes one.
     """
 
     name: str
@@ -86,6 +86,7 @@ PROOFS = [
     Proof("fifo with pauses", "buffer_proof", 24, parameters={"DEPTH": 2, "BLOCK": 1, "PAUSE": 1}),
     Proof("credit_fifo", "buffer_proof", 28, parameters={"DEPTH": 2, "FLIGHT": 3}),
     Proof("cdc_fifo", "cdc_fifo_proof", 40, ("any_level",), has_clocks=True),
+    Proof("camera_capture", "camera_capture_proof", 32, has_clocks=True),
     Proof("band_pipe", "band_pipe_proof", 14),
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
