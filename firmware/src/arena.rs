@@ -1,4 +1,4 @@
-//! Memory for uploads side by side. The largest gap between them is the staging memory.
+//! Memory for uploads, or for copies of meshes, side by side. The largest gap between uploads is the staging memory.
 
 use core::ptr;
 use core::slice;

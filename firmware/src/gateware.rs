@@ -6,7 +6,7 @@
 //!    ├── lines (wireframes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
-//!    └── fallback (reasons to draw by the CPU)
+//!    └── fallback (reasons to draw, or to make descriptors, by the CPU)
 //! ```
 
 mod buffers;
@@ -19,6 +19,6 @@ mod renderer;
 mod repeat;
 mod watchdog;
 
-pub use fallback::Fallback;
+pub use fallback::{Fallback, Lack};
 pub use geometry::Cpu;
 pub use renderer::{GatewareRenderer, Output, Rendered};

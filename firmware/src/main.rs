@@ -37,6 +37,7 @@ mod main_loop;
 mod memory;
 #[allow(unsafe_code)] // Keeps meshes and programs beyond the borrow of their memory.
 mod models;
+#[allow(unsafe_code)] // Keeps copies of meshes beyond the borrow of their memory.
 mod objects;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;

@@ -206,14 +206,20 @@ impl MainLoop {
         {
             renderer.drop_pending();
         }
-        let progress = || {
+        let mut progress = || {
             terminal.listen();
             sensor::deliver(imu);
             poll_buttons(devices, keypad, *clock, scene, imu);
         };
-        if (renderer.is_busy() || scene.changed() && (self.job.is_some() || self.quiet.passed()))
-            && let Some(drawn) = renderer.draw(models, scene, progress)
-        {
+        if !renderer.is_busy() {
+            if !scene.changed() || !(self.job.is_some() || self.quiet.passed()) {
+                return;
+            }
+            if scene.shows_objects() {
+                models.objects_mut().turn_normals(&mut progress);
+            }
+        }
+        if let Some(drawn) = renderer.draw(models, scene, progress) {
             scene.set_drawn(drawn);
         }
     }

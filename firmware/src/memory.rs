@@ -19,6 +19,8 @@ pub struct Memory {
     pub depth: &'static mut [u32],
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
+    /// Memory for copies of meshes with turned normals.
+    pub turned: Arena,
     /// Memory for built-in meshes.
     pub shapes: &'static mut [u8],
     /// Memory for uploaded meshes and programs, and the staging memory.
@@ -35,6 +37,8 @@ unsafe extern "C" {
     static _depth_size: u8;
     static mut _scratch: u8;
     static _scratch_size: u8;
+    static mut _turned: u8;
+    static _turned_size: u8;
     static mut _shapes: u8;
     static _shapes_size: u8;
     static mut _uploads: u8;
@@ -88,6 +92,7 @@ impl Memory {
                 memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),
                 ready: 0,
             },
+            turned: Arena::new(window!(_turned, _turned_size, u8)),
             shapes: window!(_shapes, _shapes_size, u8),
             uploads: Arena::new(window!(_uploads, _uploads_size, u8)),
             lists: window!(_lists, _lists_size, u32),

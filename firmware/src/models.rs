@@ -84,14 +84,15 @@ pub struct Models {
 }
 
 impl Models {
-    /// The models at start: the cube is shown. `shapes` is memory for the built-in meshes, and `cube_program` the built-in wireframe
-    /// program.
+    /// The models at start: the cube is shown. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with turned
+    /// normals, and `cube_program` the built-in wireframe program.
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
     pub fn new(
         arena: Arena,
         shapes: &'static mut [u8],
+        turned: Arena,
         cube_program: Program<'static>,
     ) -> Result<Self, MeshError> {
         let shapes = Shapes::new(shapes)?;
@@ -102,7 +103,7 @@ impl Models {
             shown: named(CUBE, shapes.cube()),
             shapes,
             cube_program,
-            objects: Objects::default(),
+            objects: Objects::new(turned),
         })
     }
 

@@ -38,11 +38,12 @@ impl Renderer {
                 cycles,
                 stats,
                 counters,
+                lack,
                 ..
             }) => Ok(Drawn {
                 cycles,
                 stats,
-                by: RenderedBy::Gateware(counters),
+                by: RenderedBy::Gateware(counters, lack),
                 has_depth: scene.wants_depth(),
             }),
             Err(fallback) => self.draw_by_cpu(&frame, fallback, progress)?,

@@ -15,7 +15,7 @@ use glint_model::{
     Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject, WireframeSubject,
 };
 
-use crate::gateware::Fallback;
+use crate::gateware::{Fallback, Lack};
 use crate::models::Models;
 
 /// A camera on a sphere about the origin.
@@ -61,8 +61,8 @@ pub struct Drawn {
 pub enum RenderedBy {
     /// The CPU, with the reason if the gateware could not draw the frame.
     Cpu(Option<Fallback>),
-    /// The gateware, with the triangle engine's counters.
-    Gateware(Counters),
+    /// The gateware, with the triangle engine's counters, and the reason if the CPU made the descriptors.
+    Gateware(Counters, Option<Lack>),
 }
 
 /// The state that the console sets.

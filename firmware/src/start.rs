@@ -156,7 +156,8 @@ pub fn machine() -> Result<Machine, StartError> {
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
-        Models::new(memory.uploads, memory.shapes, program).map_err(StartError::Cube)?,
+        Models::new(memory.uploads, memory.shapes, memory.turned, program)
+            .map_err(StartError::Cube)?,
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,

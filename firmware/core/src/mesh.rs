@@ -4,6 +4,7 @@
 
 #[cfg(feature = "alloc")]
 mod encode;
+mod turned;
 
 use core::fmt;
 

@@ -165,6 +165,7 @@ impl<'a> Subject<'a> {
                     colour: object.colour,
                     light,
                     normals: object.placement.normals(),
+                    lit_in_world: object.placement.has_normals_in_world(),
                     ..object.subject.options()
                 };
                 Some((&object.subject, options))

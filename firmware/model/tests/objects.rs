@@ -216,6 +216,70 @@ fn an_object_with_the_identity_is_the_mesh() {
     }
 }
 
+/// A copy of a mesh with turned normals gives the picture of the mesh, for every shading, winding, clipping and light.
+#[test]
+fn a_copy_with_turned_normals_gives_the_same_picture() {
+    let mut random = Random(33);
+    for round in 0..96 {
+        let bytes = Model::random(&mut random, 20, 20_000).encoded();
+        let subject = MeshSubject {
+            shading: [Shading::Flat, Shading::Smooth][round % 2],
+            winding: [Winding::Mesh, Winding::Screen][round / 2 % 2],
+            cull: random.coin(),
+            clip: match round / 4 % 2 {
+                0 => Clip::Guard,
+                _ => Clip::View {
+                    far: U8_28::lit("3"),
+                },
+            },
+            ..MeshSubject::new(Mesh::new_checked(&bytes).unwrap())
+        };
+        let lighting = match round / 8 % 3 {
+            0 => MeshLighting::CAMERA,
+            1 => MeshLighting {
+                ambient: [40, 0, 80],
+                light: Light::at_camera([255, 200, 90]),
+            },
+            _ => MeshLighting {
+                ambient: [20, 60, 0],
+                light: Light::new(random.direction().map(Q32_32::from_num), [90, 255, 220])
+                    .unwrap(),
+            },
+        };
+        let matrix = random_matrix(&mut random, [0.4, 2.0], round % 7 == 0, 0.3);
+        let own = Object {
+            subject,
+            ..object(subject.mesh, matrix)
+        };
+        let mut memory = vec![0xA5; bytes.len() + 5];
+        let mut turn = |normal| match own.placement.normals() {
+            Some(normals) => normals.apply(normal),
+            None => normal,
+        };
+        let copy = subject.mesh.copy_with_normals(&mut memory, &mut turn);
+        let mesh = copy.unwrap();
+        assert_eq!(Mesh::new_checked(mesh.bytes()), Ok(mesh));
+        let turned = Object {
+            subject: MeshSubject { mesh, ..subject },
+            placement: own.placement.of_turned_mesh(),
+            colour: None,
+        };
+        assert_eq!(turned.placement.normals(), None);
+        let view = Camera::inside(&mut random).rounded();
+        let [expected, found] = [own, turned].map(|object| {
+            Picture::of_frame(&Frame {
+                lighting,
+                ..Frame::new(Subject::Objects(&[object]), view, Size::W320)
+            })
+        });
+        assert!(expected == found, "round {round}");
+    }
+    let bytes = Model::cube(8192).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let mut memory = vec![0; bytes.len() - 1];
+    assert_eq!(mesh.copy_with_normals(&mut memory, &mut |x| x), None);
+}
+
 /// Two objects in one frame cover what each covers alone, the nearer one hides the other, and of equal depths the later object wins.
 #[test]
 fn objects_share_one_depth() {

@@ -69,6 +69,9 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         renderer,
         ..
     } = machine;
+    if scene.shows_objects() {
+        models.objects_mut().turn_normals(&mut || {});
+    }
     // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models, scene, FRAMES) {

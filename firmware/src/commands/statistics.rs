@@ -1,5 +1,7 @@
 //! The command `stats`: statistics of the last frame, as keys and values.
 
+use core::fmt::Display;
+
 use glint_core::picture::Backend;
 use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
@@ -26,14 +28,24 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    let (backend, engine) = match drawn.by {
-        RenderedBy::Cpu(fallback) => {
-            if let Some(fallback) = fallback.filter(|_| !json) {
-                terminal.print_entry("fallback", &fallback);
+    let mut fallback = |reason: &dyn Display| {
+        if !json {
+            terminal.print_entry("fallback", reason);
+        }
+    };
+    let (backend, engine) = match &drawn.by {
+        RenderedBy::Cpu(reason) => {
+            if let Some(reason) = reason {
+                fallback(reason);
             }
             (Backend::Cpu, None)
         }
-        RenderedBy::Gateware(counters) => (Backend::Gateware, Some(counters)),
+        RenderedBy::Gateware(counters, lack) => {
+            if let Some(lack) = lack {
+                fallback(lack);
+            }
+            (Backend::Gateware, Some(counters))
+        }
     };
     let soft_core = engine.map(|counters| {
         let cycles = drawn.cycles.saturating_sub(counters.cycles_busy.into());
@@ -42,7 +54,7 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
     let values = frame_values(drawn.cycles, &drawn.stats, clock.frequency())
         .into_iter()
         .chain(soft_core)
-        .chain(engine.iter().flat_map(engine_values));
+        .chain(engine.into_iter().flat_map(engine_values));
     if !json {
         terminal.print_entry("backend", &backend);
         for (key, value) in values {

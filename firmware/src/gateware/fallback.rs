@@ -1,4 +1,4 @@
-//! Reasons to draw a frame by the CPU.
+//! Reasons to draw a frame, or to make its descriptors, by the CPU.
 
 use core::fmt;
 
@@ -52,6 +52,34 @@ impl fmt::Display for Fallback {
             }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
+        }
+    }
+}
+
+/// An option of a mesh that geometry passes lack. The CPU makes the descriptors of its frame, and the gateware draws them.
+#[derive(Clone, Copy, Debug)]
+pub enum Lack {
+    /// Clipping to the view volume.
+    Volume,
+    /// The winding by the screen.
+    Winding,
+    /// Memory for a copy of the object's mesh with turned normals. Objects count from 1.
+    Normals {
+        /// Number of the object.
+        object: usize,
+    },
+}
+
+impl fmt::Display for Lack {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("geometry passes: ")?;
+        match self {
+            Self::Volume => f.write_str("no clipping to the view volume"),
+            Self::Winding => f.write_str("no winding by the screen"),
+            Self::Normals { object } => write!(
+                f,
+                "no memory for the turned normals of object {object}, expected fewer or smaller objects of different scales"
+            ),
         }
     }
 }

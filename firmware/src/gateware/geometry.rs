@@ -13,7 +13,7 @@ use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, clip_ex
 use litex_pac::cpu;
 
 use super::buffers::Buffers;
-use super::fallback::Fallback;
+use super::fallback::{Fallback, Lack};
 use crate::memory::Scratch;
 
 /// Number of triangles that the CPU makes between two calls of [`Cpu::progress`].
@@ -50,8 +50,8 @@ pub struct GeometryPasses {
     setups: [Option<MeshSetup>; 2],
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
-    /// Whether the CPU makes the descriptors of all meshes, without geometry passes.
-    by_cpu: bool,
+    /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
+    lack: Option<Lack>,
 }
 
 impl GeometryPasses {
@@ -62,15 +62,20 @@ impl GeometryPasses {
             number: 0,
             setups: [None; 2],
             prepared: None,
-            by_cpu: false,
+            lack: None,
         }
+    }
+
+    /// The reason why the CPU makes the descriptors of the frame, if it does.
+    pub const fn lack(&self) -> Option<Lack> {
+        self.lack
     }
 
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
     pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
         self.prepared = None;
-        self.by_cpu = needs_cpu(job.frame);
-        if self.by_cpu {
+        self.lack = lack(job.frame);
+        if self.lack.is_some() {
             return Ok(());
         }
         self.prepare_mesh(job, 0)
@@ -106,7 +111,7 @@ impl GeometryPasses {
     /// no mesh, or the CPU has made all descriptors.
     pub fn start(&mut self, job: &mut Job, cpu: &mut Cpu) -> Result<bool, Fallback> {
         job.buffers.clear();
-        if self.by_cpu {
+        if self.lack.is_some() {
             self.set_up(job, cpu)?;
             return Ok(false);
         }
@@ -238,10 +243,16 @@ impl GeometryPasses {
     }
 }
 
-/// Whether the geometry pass lacks an option of one of the meshes of a frame.
-fn needs_cpu(frame: &Frame) -> bool {
-    let mut meshes = (0..).map_while(|number| frame.subject.numbered_mesh(number, None));
-    meshes.any(|(subject, options)| {
-        subject.clip != Clip::Guard || options.winding != Winding::Mesh || options.normals.is_some()
+/// The first option of the meshes of a frame that geometry passes lack.
+fn lack(frame: &Frame) -> Option<Lack> {
+    let meshes = (0..).map_while(|number| frame.subject.numbered_mesh(number, None));
+    meshes.zip(1..).find_map(|((subject, options), object)| {
+        if subject.clip != Clip::Guard {
+            Some(Lack::Volume)
+        } else if options.winding != Winding::Mesh {
+            Some(Lack::Winding)
+        } else {
+            options.normals.map(|_| Lack::Normals { object })
+        }
     })
 }

@@ -10,7 +10,7 @@ use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeSt
 use litex_pac::cpu;
 
 use super::buffers::{Buffers, Projected, Room, address};
-use super::fallback::Fallback;
+use super::fallback::{Fallback, Lack};
 use super::geometry::{Cpu, GeometryPasses, Job};
 use super::watchdog::Watchdog;
 
@@ -32,6 +32,8 @@ pub struct Rendered {
     pub stats: FrameStats,
     /// Growth of the triangle engine's counters during the frame.
     pub counters: Counters,
+    /// The reason why the CPU made the descriptors of the frame, if it did.
+    pub lack: Option<Lack>,
 }
 
 /// The step of a frame in progress: a pass of the triangle engine, or one of the CPU; or `Idle`.
@@ -313,6 +315,7 @@ impl GatewareRenderer {
                 wireframe,
             },
             counters,
+            lack: mesh.and_then(|_| self.geometry.lack()),
         }
     }
 

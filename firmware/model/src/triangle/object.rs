@@ -15,8 +15,10 @@ const LEAST_SHIFT: u32 = 7;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placement {
     matrix: Matrix,
-    /// The matrix for normals; `None` if normals stay as they are and the light is turned by `rotation`.
+    /// The matrix for normals; `None` if normals stay as they are.
     normals: Option<Normals>,
+    /// Whether the mesh has normals in the axes of the world, so that neither they nor the light is turned.
+    in_world: bool,
     /// The columns of the 3×3 matrix, 24 fraction bits.
     columns: [[i32; 3]; 3],
     /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if there are
@@ -54,6 +56,7 @@ impl Placement {
         Self {
             matrix,
             normals: kept,
+            in_world: false,
             columns: transposed(entries),
             rotation,
             stretch: root as u32 + u32::from(root * root < squared.unsigned_abs()),
@@ -65,9 +68,26 @@ impl Placement {
         &self.matrix
     }
 
-    /// The matrix that turns the normals of the mesh to the world; `None` if they stay as they are, because the light is turned.
+    /// The matrix that turns the normals of the mesh to the world; `None` if they stay as they are, because the light is turned or the
+    /// mesh has turned normals.
     pub const fn normals(&self) -> Option<&Normals> {
         self.normals.as_ref()
+    }
+
+    /// Returns the place of a copy of the mesh in which [`normals`](Self::normals), if there are any, have turned all normals. The picture
+    /// is the same, bit for bit.
+    #[must_use]
+    pub const fn of_turned_mesh(&self) -> Self {
+        Self {
+            normals: None,
+            in_world: self.has_normals_in_world(),
+            ..*self
+        }
+    }
+
+    /// Whether light falls on the mesh in the axes of the world: its normals are turned, or have these axes.
+    pub const fn has_normals_in_world(&self) -> bool {
+        self.in_world || self.normals.is_some()
     }
 
     /// Returns the largest distance of a vertex from the origin of a mesh with the given `radius` (14 fraction bits), in world
@@ -142,7 +162,7 @@ impl Placement {
         multiply(&mut setup.v, &camera.v, &self.columns);
         multiply(&mut setup.n, &camera.n, &self.columns);
         // The light has the axes of the mesh, or, if its normals are turned, those of the world.
-        if self.normals.is_some() {
+        if self.has_normals_in_world() {
             setup.light = camera.light;
         } else {
             multiply(&mut setup.light, &camera.light, &self.rotation);

@@ -30,6 +30,8 @@ pub struct Options<'a> {
     pub light: Option<&'a MeshLight>,
     /// The matrix that turns the normals of an object to the axes of the light; `None` if they have these axes.
     pub normals: Option<&'a Normals>,
+    /// Whether the axes of the light are those of the world, and not those of the mesh.
+    pub lit_in_world: bool,
 }
 
 impl Options<'_> {
@@ -50,10 +52,10 @@ impl Options<'_> {
 
     /// The side of a surface that the camera sees, by its normal, which has been turned to the axes of the light.
     fn seen(&self, frame: &MeshSetup, normal: [i16; 3]) -> Facing {
-        let forward = match (self.light, self.normals) {
-            (None, _) => &frame.light,
-            (Some(_), None) => &frame.n,
-            (Some(light), Some(_)) => &light.forward,
+        let forward = match self.light {
+            None => &frame.light,
+            Some(light) if self.lit_in_world => &light.forward,
+            Some(_) => &frame.n,
         };
         Facing::of(normal, forward)
     }
@@ -70,6 +72,7 @@ impl Default for Options<'_> {
             colour: None,
             light: None,
             normals: None,
+            lit_in_world: false,
         }
     }
 }

@@ -29,7 +29,7 @@ const OBJECTS: [&str; 5] = [
     "matrix 0.2,0,0,0,0.2,0,0,0,-0.2,0.3,-0.5,-0.2",
 ];
 
-/// An object whose normals the engine cannot turn, so that the CPU makes all descriptors.
+/// An object whose normals a matrix turns, so that the engine draws a copy of its mesh.
 const STRETCHED: &str = "scale 0.2,0.4,0.1";
 
 #[test]
@@ -57,22 +57,25 @@ fn the_soc_draws_objects() {
         if (1..OBJECTS.len() - 1).contains(&number) {
             continue;
         }
-        for (view, winding) in views.iter().zip([Winding::Mesh, Winding::Screen]) {
-            // The last frames have options for which the CPU makes all descriptors too.
-            let last = number == OBJECTS.len();
-            let winding = if last { winding } else { Winding::Mesh };
+        let mut frames: Vec<_> = views
+            .iter()
+            .map(|view| (view, Clip::Guard, Winding::Mesh))
+            .collect();
+        if number == OBJECTS.len() {
+            // Geometry passes lack the options of these frames, so that the CPU makes all descriptors.
             let far = U8_28::lit("2.5");
-            let clip = if last && winding == Winding::Mesh {
-                Clip::View { far }
-            } else {
-                Clip::Guard
-            };
+            frames.extend([
+                (&views[0], Clip::View { far }, Winding::Mesh),
+                (&views[1], Clip::Guard, Winding::Screen),
+            ]);
+        }
+        for (place, (view, clip, winding)) in frames.into_iter().enumerate() {
             for size in [Size::W320, Size::W640] {
                 for object in &mut objects {
                     object.subject.winding = winding;
                     object.subject.clip = clip;
                 }
-                let name = format!("{} objects at {size}", number + 1);
+                let name = format!("{} objects at {size}, frame {place}", number + 1);
                 let frame = Frame::new(Subject::Objects(&objects), view.rounded(), size);
                 let Rendered { image, stats } = on_model(&frame).unwrap();
                 let mut lines = render::mesh_commands(&objects[0].subject).to_vec();
@@ -89,6 +92,8 @@ fn the_soc_draws_objects() {
                     "{name}: {:#?}",
                     replies.lines
                 );
+                let is_by_cpu = replies.number("cycles_geometry") == 0;
+                assert_eq!(is_by_cpu, place >= views.len(), "{name}");
                 println!(
                     "{name}: {} triangles clipped",
                     stats.triangles().triangles_clipped
