@@ -170,16 +170,21 @@ pub struct TriangleEngine {
 }
 
 impl TriangleEngine {
-    /// Takes the registers if the SoC has the triangle engine. The end of every pass raises an interrupt.
+    /// Takes the registers if the SoC has the triangle engine. No pass raises an interrupt until
+    /// [`set_interrupts`](Self::set_interrupts).
     ///
     /// # Errors
     /// The block is absent.
     pub fn probe(registers: triangle::Triangle) -> Result<Self, Absent> {
         Absent::check(registers.ident().read(), triangle::Triangle::IDENT)?;
-        registers
-            .ev_enable()
-            .write(EvEnable::default().with_geometry(true).with_raster(true));
         Ok(Self { registers })
+    }
+
+    /// Sets whether the end of a pass raises an interrupt. A pass that has ended before raises none, so check for it afterwards.
+    pub fn set_interrupts(&mut self, on: bool) {
+        acknowledge();
+        let events = EvEnable::default().with_geometry(on).with_raster(on);
+        self.registers.ev_enable().write(events);
     }
 
     /// Whether this gateware draws triangles. If not, [`Error::Triangles`] ends each geometry pass, and each raster pass with a

@@ -7,7 +7,7 @@ use glint_core::fixed::Q32_32;
 ///
 /// In orthographic projection codes are linear: a code is 2^(`exponent` − 19) world units (docs/formats.md, "Orthographic
 /// projection").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DepthScale {
     /// Mantissa km, u17 in [2^16, 2^17).
     pub mantissa: u32,

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use glint_core::fixed::{Q32_32, U4_28, U8_28};
+use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::Size;
 
 /// The sizes of a picture: width and height in pixels.
@@ -79,6 +80,8 @@ pub enum RenderError {
     Orthographic,
     /// The half width of the camera in a frame with a field is outside the range that a field allows.
     HalfWidth(U8_28),
+    /// A frame has more objects than [`MAX_OBJECTS`].
+    Objects(usize),
     /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
     Stereo,
 }
@@ -138,6 +141,9 @@ impl fmt::Display for RenderError {
                 "half_width {half_width}: expected {} to {} with a field",
                 FIELD_HALF_WIDTH[0], FIELD_HALF_WIDTH[1]
             ),
+            Self::Objects(found) => {
+                write!(f, "{found} objects: expected at most {MAX_OBJECTS}")
+            }
             Self::Stereo => {
                 f.write_str("two eyes: expected a field alone, or one eye for a mesh in a field")
             }

@@ -9,6 +9,7 @@ use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::field::Field;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
+use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::Size;
 use glint_core::stereo::Stereo;
 
@@ -19,6 +20,7 @@ use crate::mesh_in_field;
 use crate::raymarch::{
     FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
 };
+use crate::triangle::mesh_setup::Scale;
 use crate::triangle::setup::Setup;
 use crate::triangle::{
     Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Part, Placement, Projected, Stats,
@@ -144,6 +146,21 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// The mesh with this number, with the colour in place of its own ones; `None` after the last mesh.
+    #[inline(always)]
+    pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
+        match self {
+            Self::Mesh(subject) | Self::MeshInField(subject, _) => {
+                (number == 0).then_some((subject, None))
+            }
+            Self::Objects(objects) => {
+                let object = objects.get(number)?;
+                Some((&object.subject, object.colour))
+            }
+            Self::Field(_) | Self::Wireframe(_) => None,
+        }
+    }
+
     /// The mesh with this number, and the options of its drawing in a light ([`FrameConstants::light`]), of which `clear` has no effect;
     /// `None` after the last mesh.
     pub fn numbered_mesh<'s>(
@@ -151,27 +168,17 @@ impl<'a> Subject<'a> {
         number: usize,
         light: Option<&'s MeshLight>,
     ) -> Option<(&'s MeshSubject<'a>, Options<'s>)> {
-        match self {
-            Self::Mesh(subject) | Self::MeshInField(subject, _) if number == 0 => {
-                let options = Options {
-                    light,
-                    ..subject.options()
-                };
-                Some((subject, options))
-            }
-            Self::Objects(objects) => {
-                let object = objects.get(number)?;
-                let options = Options {
-                    colour: object.colour,
-                    light,
-                    normals: object.placement.normals(),
-                    lit_in_world: object.placement.has_normals_in_world(),
-                    ..object.subject.options()
-                };
-                Some((&object.subject, options))
-            }
-            _ => None,
-        }
+        let (subject, colour) = self.coloured_mesh(number)?;
+        let object = self.objects().and_then(|objects| objects.get(number));
+        let placement = object.map(|object| &object.placement);
+        let options = Options {
+            colour,
+            light,
+            normals: placement.and_then(Placement::normals),
+            lit_in_world: placement.is_some_and(Placement::has_normals_in_world),
+            ..subject.options()
+        };
+        Some((subject, options))
     }
 
     /// The field, if the subject has one.
@@ -194,11 +201,14 @@ impl FieldSubject<'_> {
 
 /// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
 ///
-/// The constants take about 1,500 bytes, mostly tables of a field's palette. To save time, keep one `FrameConstants`
+/// The constants take about 4,000 bytes, mostly those of objects and tables of a field's palette. To save time, keep one `FrameConstants`
 /// and [update](Self::update) it for each frame instead of moving new ones.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
     mesh: Option<MeshSetup>,
+    /// Those of each object.
+    objects: [MeshSetup; MAX_OBJECTS],
+    scale: Scale,
     light: Option<MeshLight>,
     field: Option<FieldConstants>,
 }
@@ -213,9 +223,17 @@ pub struct FieldConstants {
 }
 
 impl FrameConstants {
-    /// Returns the constants of the mesh, if the frame has a mesh.
+    /// Returns the constants of the mesh, or those that all objects share, if the frame has a mesh or objects.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
         self.mesh.as_ref()
+    }
+
+    /// Returns the constants of the mesh with this number in a frame of `subject`; `None` after the last mesh.
+    pub fn numbered_mesh(&self, subject: &Subject, number: usize) -> Option<&MeshSetup> {
+        match subject.objects() {
+            Some(objects) => self.objects.get(..objects.len())?.get(number),
+            None => self.mesh().filter(|_| number == 0),
+        }
     }
 
     /// Returns the light on the meshes; `None` for white light at the camera, without ambient light.
@@ -240,22 +258,32 @@ impl FrameConstants {
     /// Replaces the constants by those of `frame`.
     ///
     /// # Errors
-    /// A [`RenderError`] for a frame that cannot be drawn; the constants must then not be used for drawing.
+    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
-        (self.mesh, self.light, self.field) = (None, None, None);
-        let (view, [width, height]) = (&frame.view, frame.size.pixels());
+        let result = self.compute(frame);
+        if result.is_err() {
+            (self.mesh, self.field) = (None, None);
+        }
+        result
+    }
+
+    fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
+        (self.light, self.field) = (None, None);
+        let (view, size) = (&frame.view, frame.size.pixels().into());
         match &frame.subject {
             Subject::Mesh(subject) => {
-                let setup = MeshSetup::new(view, width, height, subject.mesh.radius())?;
-                self.mesh = Some(setup.with_clip(subject.clip)?);
+                let mesh = self.mesh.get_or_insert_default();
+                mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
+                mesh.set_clip(subject.clip)?;
             }
             Subject::Field(subject) => {
+                self.mesh = None;
                 let options = subject.options(view);
-                let setup = FieldSetup::new(subject.field, view, (width, height), &options)?;
+                let setup = FieldSetup::new(subject.field, view, size, &options)?;
                 self.set_field(setup, &options);
             }
             Subject::MeshInField(mesh, subject) => {
-                let (size, radius, clip) = ((width, height), mesh.mesh.radius(), mesh.clip);
+                let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
                 let options = subject.options(view);
                 let (mesh, field) =
                     mesh_in_field::constants(view, size, radius, subject.field, &options)?;
@@ -263,16 +291,11 @@ impl FrameConstants {
                 self.set_field(field, &options);
             }
             Subject::Objects(objects) => {
-                let mut camera = MeshSetup::new(view, width, height, 0)?;
-                let depths = objects.iter().map(|object| {
-                    let radius = object.subject.mesh.radius();
-                    object.placement.depths(&camera, radius)
-                });
-                let range = |[a, b]: [i64; 2], [c, d]: [i64; 2]| [a.min(c), b.max(d)];
-                camera.set_depths(depths.reduce(range));
-                self.mesh = Some(camera);
+                let camera = self.mesh.get_or_insert_default();
+                camera.update(view, size, 0, &mut self.scale)?;
+                camera.set_depths(depths(objects, camera));
             }
-            Subject::Wireframe(_) => {}
+            Subject::Wireframe(_) => self.mesh = None,
         }
         let lighting = frame.mesh_lighting();
         if let Some(mesh) = &mut self.mesh
@@ -282,6 +305,27 @@ impl FrameConstants {
             mesh.light = light.row;
             self.light = Some(light);
         }
+        match &frame.subject {
+            Subject::Objects(objects) => self.set_objects(objects, view),
+            _ => Ok(()),
+        }
+    }
+
+    /// Computes the constants of each object, for a camera and a light that have theirs.
+    #[inline(never)]
+    fn set_objects(&mut self, objects: &[Object], view: &View) -> Result<(), RenderError> {
+        if objects.len() > MAX_OBJECTS {
+            return Err(RenderError::Objects(objects.len()));
+        }
+        let Some(camera) = &self.mesh else {
+            return Ok(());
+        };
+        for (object, setup) in objects.iter().zip(&mut self.objects) {
+            let MeshSubject { mesh, clip, .. } = &object.subject;
+            let volume = camera.volume_of(*clip)?;
+            let placement = &object.placement;
+            placement.update(setup, view, camera, mesh.radius(), volume)?;
+        }
         Ok(())
     }
 
@@ -289,6 +333,16 @@ impl FrameConstants {
         let palette = options.palette_for(&setup);
         self.field = Some(FieldConstants { setup, palette });
     }
+}
+
+/// The smallest and the largest depth of objects, with 37 fraction bits; `None` without objects.
+#[inline(never)]
+fn depths(objects: &[Object], camera: &MeshSetup) -> Option<[i64; 2]> {
+    let depths = objects.iter().map(|object| {
+        let radius = object.subject.mesh.radius();
+        object.placement.depths(camera, radius)
+    });
+    depths.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
 }
 
 /// Counts of the work of drawing a frame.
@@ -341,52 +395,21 @@ impl<'a> Frame<'a> {
             .unwrap_or(0)
     }
 
-    /// Returns the frame constants of the mesh with this number: `constants`, those of the frame, or for an object its own ones, which
-    /// are computed into `own`.
-    ///
-    /// # Errors
-    /// As [`Placement::setup`] and [`MeshSetup::with_clip`].
-    pub fn mesh_setup<'s>(
-        &self,
-        constants: &'s MeshSetup,
-        number: usize,
-        own: &'s mut Option<MeshSetup>,
-    ) -> Result<&'s MeshSetup, RenderError> {
-        let objects = self.subject.objects().unwrap_or_default();
-        let Some(Object {
-            subject, placement, ..
-        }) = objects.get(number)
-        else {
-            return Ok(constants);
-        };
-        let volume = constants.volume_of(subject.clip)?;
-        let own = own.get_or_insert(*constants);
-        placement.update(own, &self.view, constants, subject.mesh.radius(), volume)?;
-        Ok(own)
-    }
-
-    /// The mesh with this number, with its options and frame constants, from those of the frame; `None` after the last mesh.
-    fn part<'s>(
-        &'s self,
-        constants: &'s FrameConstants,
-        setup: &MeshSetup,
-        number: usize,
-    ) -> Result<Option<Part<'s>>, RenderError> {
-        let Some((subject, options)) = self.subject.numbered_mesh(number, constants.light()) else {
-            return Ok(None);
-        };
-        Ok(Some(Part {
+    /// The mesh with this number, with its options and frame constants; `None` after the last mesh.
+    fn part<'s>(&'s self, constants: &'s FrameConstants, number: usize) -> Option<Part<'s>> {
+        let (subject, options) = self.subject.numbered_mesh(number, constants.light())?;
+        Some(Part {
             mesh: subject.mesh,
-            frame: *self.mesh_setup(setup, number, &mut None)?,
+            frame: *constants.numbered_mesh(&self.subject, number)?,
             options,
-        }))
+        })
     }
 
     /// Makes the triangles of all meshes of the frame from the frame's `constants`, in the order in which they are drawn, and calls `emit`
     /// with each and its setup. `scratch` is memory for projected vertices. The counts of pixels in the result are 0.
     ///
     /// # Errors
-    /// [`RenderError`] for scratch memory that is too small, or for an object whose constants are out of range.
+    /// [`RenderError`] for scratch memory that is too small.
     pub fn set_up_meshes(
         &self,
         constants: &FrameConstants,
@@ -396,7 +419,7 @@ impl<'a> Frame<'a> {
         let Some(setup) = constants.mesh() else {
             return Ok(Stats::default());
         };
-        let mut part = |number| self.part(constants, setup, number);
+        let mut part = |number| self.part(constants, number);
         let size = (setup.width, setup.height);
         set_up_parts(&mut part, size, scratch, emit)
     }
@@ -418,8 +441,8 @@ impl<'a> Frame<'a> {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }
-        if let Some(setup) = constants.mesh() {
-            let mut part = |number| self.part(constants, setup, number);
+        if constants.mesh().is_some() {
+            let mut part = |number| self.part(constants, number);
             let mut show = |triangle: &DrawnTriangle| {
                 if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
                     progress();

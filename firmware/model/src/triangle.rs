@@ -9,7 +9,7 @@ pub mod descriptor;
 mod exceptions;
 mod facing;
 mod mesh_light;
-mod mesh_setup;
+pub(crate) mod mesh_setup;
 mod object;
 mod primitive;
 pub mod quotient;

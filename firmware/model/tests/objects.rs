@@ -11,8 +11,8 @@ use glint_model::triangle::setup::Facing;
 use glint_model::triangle::shade::intensity;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{
-    Clip, Frame, FrameBuffer, MeshLight, MeshSetup, MeshSubject, Object, Placement, Projected,
-    RenderError, SIZES, Subject,
+    Clip, Frame, MeshLight, MeshSetup, MeshSubject, Object, Placement, Projected, RenderError,
+    SIZES, Subject,
 };
 use glint_vectors::math::{dot, normalised, world};
 use glint_vectors::{Camera, Model, Picture, Random};
@@ -356,18 +356,7 @@ fn an_object_too_large_for_the_near_plane_is_refused() {
     let refused = |size, near| {
         let objects = [object(size)];
         let frame = Frame::new(Subject::Objects(&objects), view(near), Size::W320);
-        let constants = frame.constants().unwrap();
-        let (mut colour, mut depth) = (vec![0; 320 * 180], vec![0; 320 * 180]);
-        let mut buffer = FrameBuffer {
-            width: 320,
-            height: 180,
-            colour: &mut colour,
-            depth: &mut depth,
-        };
-        let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-        frame
-            .draw(&constants, &mut buffer, &mut scratch, &mut || {})
-            .err()
+        frame.constants().err()
     };
     assert_eq!(refused(1.0, 0.01), None);
     assert_eq!(refused(16.0, 0.1), None);
@@ -376,4 +365,17 @@ fn an_object_too_large_for_the_near_plane_is_refused() {
     };
     assert!(near < least && least < 0.1, "{least}");
     assert_eq!(refused(16.0, least.to_num()), None);
+}
+
+#[test]
+fn a_frame_has_at_most_16_objects() {
+    let bytes = Model::cube(8192).encoded();
+    let objects = [object(Mesh::new_checked(&bytes).unwrap(), Matrix::IDENTITY); 17];
+    let view = Camera::looking([0.0, -4.0, 0.5], [0.0; 3], 0.5, 0.1).rounded();
+    let refused = |count| {
+        let frame = Frame::new(Subject::Objects(&objects[..count]), view, Size::W320);
+        frame.constants().err()
+    };
+    assert_eq!(refused(16), None);
+    assert_eq!(refused(17), Some(RenderError::Objects(17)));
 }

@@ -1,18 +1,17 @@
 //! The constants of an object, which the soft core computes once a frame for each object.
 
 use core::cell::RefCell;
-use core::hint::black_box;
 
 use glint_core::camera::View;
 use glint_core::fixed::{Q8_24, Q32_32, Turns};
 use glint_core::matrix::{Axis, Matrix};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::{Frame, MeshSetup, MeshSubject, Object, Placement, Subject};
-
-use crate::cube;
+use glint_model::{MeshSetup, Placement};
 
 use super::measure::{Report, measure};
+
+/// Radius of the mesh, 14 fraction bits: 0.5.
+const RADIUS: u32 = 1 << 13;
 
 /// Measures the frame constants of objects, turned and of one scale or of three.
 pub fn object(report: Report) {
@@ -20,9 +19,6 @@ pub fn object(report: Report) {
     let view = View::spherical(Q32_32::lit("3"), Turns(1 << 29), Turns(1 << 29));
     let Ok(view) = view else { return };
     let Ok(camera) = MeshSetup::new(&view, width, height, 0) else {
-        return;
-    };
-    let Ok(mesh) = Mesh::new_checked(&cube::BYTES) else {
         return;
     };
     let [half, quarter, one] = ["0.5", "0.25", "1.5"].map(|x| x.parse().unwrap_or(Q8_24::ONE));
@@ -37,13 +33,7 @@ pub fn object(report: Report) {
                 .and_then(|matrix| matrix.then(&Matrix::translation([half, quarter, one])?));
             Placement::new(turned.unwrap_or(Matrix::IDENTITY))
         });
-        let objects = placements.map(|placement| Object {
-            subject: MeshSubject::new(mesh),
-            placement,
-            colour: None,
-        });
-        let frame = Frame::new(Subject::Objects(&objects), view, Size::W640);
-        let own = RefCell::new(None);
+        let own = RefCell::new(MeshSetup::default());
         measure(
             report,
             name,
@@ -51,7 +41,10 @@ pub fn object(report: Report) {
             |number| {
                 // The constants stay where they are made, as in the drawing of a frame.
                 let mut own = own.borrow_mut();
-                black_box(frame.mesh_setup(&camera, number, &mut own)).is_ok()
+                let placement: Option<&Placement> = placements.get(number);
+                placement.map(|placement| {
+                    placement.update(&mut own, &view, &camera, RADIUS, camera.volume)
+                })
             },
         );
     }

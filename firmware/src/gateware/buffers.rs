@@ -3,6 +3,7 @@
 use core::mem;
 
 use glint_core::colour::Shading;
+use glint_core::picture::Size;
 use glint_hal::triangle::{Lists, Set};
 use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{self, ListCounts, list_shift};
@@ -54,6 +55,8 @@ pub struct Buffers {
     pub sets: [Option<Set>; 2],
     /// Counts of triangles of the geometry passes and the clipper.
     pub stats: Stats,
+    /// The list shift of both passes for each size of a picture, in the order of [`Size::ALL`].
+    list_shifts: [u8; Size::ALL.len()],
 }
 
 impl Buffers {
@@ -73,6 +76,7 @@ impl Buffers {
             clipped_counts: ListCounts::EMPTY,
             sets: [None; 2],
             stats: Stats::default(),
+            list_shifts: Size::ALL.map(|size| list_shift(size.width(), room.list_words) as u8),
         })
     }
 
@@ -91,18 +95,18 @@ impl Buffers {
         (self.sets, self.stats) = ([None; 2], Stats::default());
     }
 
-    /// The list shift of both passes for a picture of this width.
-    pub const fn list_shift(&self, width: u32) -> u32 {
-        list_shift(width, self.lists.len())
+    /// The list shift of both passes for a picture of this size.
+    pub const fn list_shift(&self, size: Size) -> u8 {
+        self.list_shifts[size as usize]
     }
 
-    /// The memory for the output of geometry passes, for a picture of this width, on gateware whose best shading is `capability`.
-    pub fn lists(&self, capability: Shading, width: u32) -> Lists {
+    /// The memory for the output of geometry passes, for a picture of this size, on gateware whose best shading is `capability`.
+    pub fn lists(&self, capability: Shading, size: Size) -> Lists {
         Lists {
             descriptors: address(self.descriptors),
             descriptor_limit: (self.descriptors.len() / descriptor::words(capability)) as u32,
             lists: address(self.lists),
-            list_shift: self.list_shift(width) as u8,
+            list_shift: self.list_shift(size),
             exceptions: address(self.exceptions),
             exception_limit: self.exceptions.len() as u32,
         }

@@ -9,7 +9,7 @@ use glint_core::colour::{Shading, Winding};
 use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
-use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, clip_exceptions};
+use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, clip_exceptions};
 use litex_pac::cpu;
 
 use super::buffers::Buffers;
@@ -45,9 +45,6 @@ pub struct GeometryPasses {
     shading: Shading,
     /// Number of the mesh whose pass was started last.
     number: usize,
-    /// Frame constants of this object and of the next one, each at its number modulo 2. A mesh that is no object has those of the
-    /// frame.
-    setups: [Option<MeshSetup>; 2],
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
     /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
@@ -60,7 +57,6 @@ impl GeometryPasses {
         Self {
             shading,
             number: 0,
-            setups: [None; 2],
             prepared: None,
             lack: None,
         }
@@ -83,25 +79,18 @@ impl GeometryPasses {
 
     /// Writes the registers of the geometry pass of the mesh with this number, if the frame has it.
     fn prepare_mesh(&mut self, job: &mut Job, number: usize) -> Result<(), Fallback> {
-        let Some((subject, options)) = job
-            .frame
-            .subject
-            .numbered_mesh(number, job.constants.light())
-        else {
+        let Some((subject, colour)) = job.frame.subject.coloured_mesh(number) else {
             return Ok(());
         };
-        let constants = job.constants.mesh();
-        let constants = constants.ok_or(EngineError::from(Error::Size))?;
-        let own = &mut self.setups[number % 2];
-        let setup = job.frame.mesh_setup(constants, number, own)?;
+        let setup = job.constants.numbered_mesh(&job.frame.subject, number);
         let pass = Geometry {
             mesh: &subject.mesh,
-            frame: setup,
+            frame: setup.ok_or(EngineError::from(Error::Size))?,
             light: job.constants.light(),
-            cull: options.cull,
-            shading: options.shading,
-            colour: options.colour,
-            lists: (number == 0).then(|| job.buffers.lists(self.shading, setup.width)),
+            cull: subject.cull,
+            shading: subject.shading,
+            colour,
+            lists: (number == 0).then(|| job.buffers.lists(self.shading, job.frame.size)),
         };
         self.prepared = Some(job.engine.prepare_geometry(&pass)?);
         Ok(())
@@ -160,17 +149,14 @@ impl GeometryPasses {
                 .frame
                 .subject
                 .numbered_mesh(number, job.constants.light());
-            let setup = match job.frame.subject.objects() {
-                Some(_) => self.setups[number % 2].as_ref(),
-                None => job.constants.mesh(),
-            };
+            let setup = job.constants.numbered_mesh(&job.frame.subject, number);
             let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
             if buffers.sets[1].is_none() {
                 buffers.clipped_counts = ListCounts::EMPTY;
             }
             cpu::flush_data_cache();
             let listed = listed as usize..counts.exceptions as usize;
-            let list_shift = buffers.list_shift(setup.width);
+            let list_shift = buffers.list_shift(job.frame.size).into();
             let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
             let mut numbers = exceptions.iter().copied();
             let mut writer = ListWriter::new(
@@ -199,7 +185,7 @@ impl GeometryPasses {
         let (constants, frame) = (job.constants, job.frame);
         let width = frame.size.width();
         let buffers = &mut *job.buffers;
-        let list_shift = buffers.list_shift(width);
+        let list_shift = buffers.list_shift(frame.size).into();
         let mut whole = ListCounts::EMPTY;
         buffers.clipped_counts = ListCounts::EMPTY;
         let mut whole = ListWriter::new(
@@ -245,14 +231,15 @@ impl GeometryPasses {
 
 /// The first option of the meshes of a frame that geometry passes lack.
 fn lack(frame: &Frame) -> Option<Lack> {
-    let meshes = (0..).map_while(|number| frame.subject.numbered_mesh(number, None));
-    meshes.zip(1..).find_map(|((subject, options), object)| {
+    let meshes = (0..).map_while(|number| frame.subject.coloured_mesh(number));
+    let lacking = meshes.map(|(subject, _)| subject).find_map(|subject| {
         if subject.clip != Clip::Guard {
             Some(Lack::Volume)
-        } else if options.winding != Winding::Mesh {
-            Some(Lack::Winding)
         } else {
-            options.normals.map(|_| Lack::Normals { object })
+            (subject.winding != Winding::Mesh).then_some(Lack::Winding)
         }
-    })
+    });
+    let mut objects = frame.subject.objects().unwrap_or_default().iter();
+    let mut normals = || objects.position(|object| object.placement.normals().is_some());
+    lacking.or_else(|| normals().map(|index| Lack::Normals { object: index + 1 }))
 }

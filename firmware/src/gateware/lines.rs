@@ -51,7 +51,7 @@ impl GatewareRenderer {
         let segments = buffers.segments();
         let count = 1 + self.projected.stats.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
-        let lists = buffers.lists(self.shading, size.width());
+        let lists = buffers.lists(self.shading, size);
         self.engine.prepare_lines(segments, size, &lists)
     }
 

@@ -175,10 +175,18 @@ impl GatewareRenderer {
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
+        if self.is_busy() {
+            // This function waits for short passes. An interrupt of each would take 600 cycles.
+            self.engine.set_interrupts(false);
+        }
         loop {
             let result = self.step(frame, output, cpu);
-            if result.is_some() || !self.ends_soon() {
+            if result.is_some() {
                 return result;
+            }
+            if !self.ends_soon() {
+                self.engine.set_interrupts(true);
+                return None;
             }
         }
     }
@@ -372,7 +380,7 @@ impl GatewareRenderer {
         if matches!(frame.subject, Subject::Wireframe(_)) && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
-        for (mesh, _) in (0..).map_while(|number| frame.subject.numbered_mesh(number, None)) {
+        for (mesh, _) in (0..).map_while(|number| frame.subject.coloured_mesh(number)) {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
             }
@@ -426,7 +434,7 @@ impl GatewareRenderer {
             whole: *drawn_size != Some(frame.size),
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
-            list_shift: self.buffers[0].list_shift(frame.size.width()) as u8,
+            list_shift: self.buffers[0].list_shift(frame.size),
             sets,
         };
         *drawn_size = Some(frame.size);

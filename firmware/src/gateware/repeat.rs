@@ -9,7 +9,7 @@ use super::geometry::Cpu;
 use super::renderer::{GatewareRenderer, Output, Rendered};
 
 /// Number of times that the end of a pass is queried between two checks of progress.
-const POLLS: u32 = 100;
+const POLLS: u32 = 1000;
 
 impl GatewareRenderer {
     /// Draws a frame `count` times, where the geometry passes run during the raster pass of the frame before. The result covers the
@@ -25,7 +25,7 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
-        match (&frame.subject, frame.subject.numbered_mesh(0, None)) {
+        match (&frame.subject, frame.subject.coloured_mesh(0)) {
             (Subject::Wireframe(wireframe), _) => {
                 self.repeat_lines(wireframe, frame, output, count)
             }
@@ -34,6 +34,8 @@ impl GatewareRenderer {
         }
     }
 
+    // Not inlined, so that memory.x can place it beside what it calls for each mesh.
+    #[inline(never)]
     fn repeat_meshes(
         &mut self,
         frame: &Frame,

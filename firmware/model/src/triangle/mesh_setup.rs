@@ -9,7 +9,7 @@ use crate::triangle::rounding::nearest;
 use crate::triangle::volume::{Clip, Volume};
 
 /// The frame constants of the vertex stage (formats.md, "Frame constants").
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshSetup {
     /// Width of the picture in pixels.
@@ -54,13 +54,30 @@ impl MeshSetup {
     /// # Errors
     /// [`RenderError::Size`], [`RenderError::Eye`] or [`RenderError::Near`].
     pub fn new(view: &View, width: u32, height: u32, radius: u32) -> Result<Self, RenderError> {
+        let mut setup = Self::default();
+        setup.update(view, (width, height), radius, &mut Scale::default())?;
+        Ok(setup)
+    }
+
+    /// Computes the constants as [`new`](Self::new) does, in place: to copy them takes the soft core long. `scale` is kept from one frame to
+    /// the next.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); the constants must then not be used.
+    pub(crate) fn update(
+        &mut self,
+        view: &View,
+        (width, height): (u32, u32),
+        radius: u32,
+        scale: &mut Scale,
+    ) -> Result<(), RenderError> {
         if !SIZES.contains(&(width, height)) {
             return Err(RenderError::Size { width, height });
         }
         if !view.is_within(MAX_EYE) {
             return Err(RenderError::Eye(view.eye()));
         }
-        let scale = Scale::new(width, view);
+        scale.update(width, view);
         let projection = view.projection();
         if projection == Projection::Perspective {
             // The vertex stage shifts X and Y right by at least 6 bits.
@@ -70,39 +87,36 @@ impl MeshSetup {
                 return Err(RenderError::Near { near, least });
             }
         }
-        let [u, v] = [view.u(), view.v()].map(|axis| axis.map(|r| scale.scaled(r)));
-        let n = view.n().map(Q2_23::to_bits);
+        self.width = width;
+        self.height = height;
+        self.scale_shift = scale.shift;
+        self.projection = projection;
+        self.u = view.u().map(|r| scale.scaled(r));
+        self.v = view.v().map(|r| scale.scaled(r));
+        self.n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
         // than 2^24.5: |C·row| < 2^60.
         let eye = view.eye().map(Q32_32::to_bits);
-        let mut translation = [u, v, n].map(|row| nearest(-dot(eye, row), 18));
+        self.translation = [&self.u, &self.v, &self.n].map(|row| nearest(-dot(eye, row), 18));
         if projection == Projection::Orthographic {
-            scale.place(view, &mut translation);
+            scale.place(view, &mut self.translation);
         }
-        let near = i64::from(view.near().to_bits()) << 9;
-        let mut setup = Self {
-            width,
-            height,
-            scale_shift: scale.shift,
-            projection,
-            u,
-            v,
-            n,
-            translation,
-            near,
-            near_plane: near,
-            depth: DepthScale::new(translation[2], near, radius),
-            volume: Volume::Guard,
-            is_placed: false,
-            light: n,
-            mirrors: false,
-        };
-        if projection == Projection::Orthographic {
-            let origin = translation[2];
-            let reach = DepthScale::reach(radius);
-            setup.set_linear(origin - reach, origin + reach, LEAST_EXPONENT);
+        self.near = i64::from(view.near().to_bits()) << 9;
+        self.near_plane = self.near;
+        self.volume = Volume::Guard;
+        self.is_placed = false;
+        self.light = self.n;
+        self.mirrors = false;
+        let origin = self.translation[2];
+        match projection {
+            Projection::Perspective => self.depth = DepthScale::new(origin, self.near, radius),
+            Projection::Orthographic => {
+                self.depth.origin = None;
+                let reach = DepthScale::reach(radius);
+                self.set_linear(origin - reach, origin + reach, LEAST_EXPONENT);
+            }
         }
-        Ok(setup)
+        Ok(())
     }
 
     /// Replaces the scale of depth codes by that for a frame with several meshes, whose smallest and largest `depths` are given with
@@ -150,6 +164,15 @@ impl MeshSetup {
         Ok(Self { volume, ..self })
     }
 
+    /// Replaces the clipping of triangles, as [`with_clip`](Self::with_clip).
+    ///
+    /// # Errors
+    /// As [`with_clip`](Self::with_clip).
+    pub(crate) fn set_clip(&mut self, clip: Clip) -> Result<(), RenderError> {
+        self.volume = self.volume_of(clip)?;
+        Ok(())
+    }
+
     /// The volume of a clipping, as [`with_clip`](Self::with_clip).
     pub(crate) fn volume_of(&self, clip: Clip) -> Result<Volume, RenderError> {
         match clip {
@@ -174,7 +197,11 @@ const LEAST_OF_OBJECTS: i32 = 0;
 
 /// The scale s·2^f (docs/formats.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
 /// picture and h the half width of the view with 28 fraction bits.
-struct Scale {
+///
+/// It depends on the width of the picture and the half width only, and takes a division.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scale {
+    width: u32,
     shift: u32,
     numerator: i64,
     half_width: i64,
@@ -185,13 +212,22 @@ struct Scale {
 }
 
 impl Scale {
+    /// Makes this the scale of a picture of this width and a view, unless it is.
+    fn update(&mut self, width: u32, view: &View) {
+        let half_width = view.half_width().to_bits() as i64;
+        if (self.width, self.half_width) != (width, half_width) {
+            *self = Self::new(width, half_width);
+        }
+    }
+
     /// Finds the largest f up to 18 with ceil(s·2^f)·(1 + 2^−12) < 2^24.
     ///
     /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
-    fn new(width: u32, view: &View) -> Self {
+    // Not inlined, as most frames have the scale of the frame before.
+    #[inline(never)]
+    fn new(width: u32, half_width: i64) -> Self {
         /// The largest integer whose product with 1 + 2^−12 is below 2^24.
         const LARGEST: i64 = ((1 << 36) - 1) / 4097;
-        let half_width = view.half_width().to_bits() as i64;
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
         // ceil(s·2^24), of at least 25 bits. Without its last bits, rounded up, it is ceil(s·2^f) for a smaller f. Its leading
         // 24 bits are then at most `LARGEST`, or else its leading 23 bits are.
@@ -200,6 +236,7 @@ impl Scale {
         let cut = cut + u32::from(whole > LARGEST << cut);
         let spare = cut - 6;
         Self {
+            width,
             shift: 24 - cut,
             numerator: numerator(24 - cut),
             half_width,
@@ -217,7 +254,7 @@ impl Scale {
         let eye = view.eye().map(Q32_32::to_bits);
         for (axis, translation) in [view.u(), view.v()].into_iter().zip(translation) {
             // Of |C·axis| < 2^58.1 in units of 2^−55 the 40 highest fraction bits remain, and s·2^24 is below 2^41.
-            let along = nearest(-dot(eye, axis.map(Q2_23::to_bits)), 15);
+            let along = nearest(-dot(eye, &axis.map(Q2_23::to_bits)), 15);
             let pixels = i128::from(along) * i128::from(self.whole);
             let shift = 50 - self.shift;
             *translation = ((pixels + (1 << (shift - 1))) >> shift) as i64;
@@ -245,6 +282,6 @@ impl Scale {
 
 /// The scalar product. Not inlined, as [`Scale::scaled`].
 #[inline(never)]
-fn dot(a: [i64; 3], b: [i32; 3]) -> i64 {
-    core::iter::zip(a, b).map(|(a, b)| a * i64::from(b)).sum()
+fn dot(a: [i64; 3], b: &[i32; 3]) -> i64 {
+    core::iter::zip(a, b).map(|(a, &b)| a * i64::from(b)).sum()
 }

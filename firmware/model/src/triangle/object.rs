@@ -21,8 +21,7 @@ pub struct Placement {
     in_world: bool,
     /// The columns of the 3×3 matrix, 24 fraction bits.
     columns: [[i32; 3]; 3],
-    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if there are
-    /// `normals`.
+    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are turned.
     rotation: [[i32; 3]; 3],
     /// A length that no vector of length 1 exceeds after the matrix, 24 fraction bits: the scale, if there is one, otherwise the
     /// root of the sum of the squares of all entries.
@@ -98,7 +97,7 @@ impl Placement {
 
     /// Returns the smallest and the largest depth of a mesh at this place, with 37 fraction bits, in the camera's frame constants
     /// `camera`. As the axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
-    #[inline(never)]
+    #[inline(always)]
     pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
         let place = self.matrix.place().map(Q8_24::to_bits);
         let z = camera.depth_of_world() + ((dot(&camera.n, &place) + (1 << 9)) >> 10);
@@ -149,7 +148,7 @@ impl Placement {
     /// # Errors
     /// As [`setup`](Self::setup); `setup` must then not be used.
     #[inline(never)]
-    pub(crate) fn update(
+    pub fn update(
         &self,
         setup: &mut MeshSetup,
         view: &View,
@@ -158,9 +157,9 @@ impl Placement {
         volume: Volume,
     ) -> Result<(), RenderError> {
         // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after the first rounding.
-        multiply(&mut setup.u, &camera.u, &self.columns);
-        multiply(&mut setup.v, &camera.v, &self.columns);
-        multiply(&mut setup.n, &camera.n, &self.columns);
+        let rows = multiply(&mut setup.u, &camera.u, &self.columns)
+            | multiply(&mut setup.v, &camera.v, &self.columns)
+            | multiply(&mut setup.n, &camera.n, &self.columns);
         // The light has the axes of the mesh, or, if its normals are turned, those of the world.
         if self.has_normals_in_world() {
             setup.light = camera.light;
@@ -183,7 +182,6 @@ impl Placement {
         setup.is_placed = true;
         setup.mirrors = self.matrix.mirrors();
         // Most objects fit the formats of the vertex stage as they are.
-        let rows = magnitude(&setup.u) | magnitude(&setup.v) | magnitude(&setup.n);
         let widest = x.abs().max(y.abs()) + reach;
         let deepest = z.abs() + (reach >> 1);
         let is_perspective = camera.projection == Projection::Perspective;
@@ -264,17 +262,20 @@ fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
     wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
 }
 
-/// Multiplies a row by a matrix, given by its columns with 24 fraction bits, and rounds to nearest.
+/// Multiplies a row by a matrix, given by its columns with 24 fraction bits, and rounds to nearest. Returns the [`magnitude`] of the
+/// result, so that its caller need not load the result again.
 ///
 /// Not inlined, as [`dot`]; the scalar products are, because the row then stays in registers.
 #[inline(never)]
-fn multiply(result: &mut [i32; 3], row: &[i32; 3], columns: &[[i32; 3]; 3]) {
+fn multiply(result: &mut [i32; 3], row: &[i32; 3], columns: &[[i32; 3]; 3]) -> u32 {
     let &[x, y, z] = row;
     let [a, b, c] = columns;
-    *result = [a, b, c].map(|&[i, j, k]| {
+    let product = [a, b, c].map(|&[i, j, k]| {
         let sum = wide(x, i) + wide(y, j) + wide(z, k);
         ((sum + (1 << 23)) >> 24) as i32
     });
+    *result = product;
+    magnitude(&product)
 }
 
 /// The exact product.

@@ -107,7 +107,7 @@ pub fn trace_frame(
         frame,
         options: *options,
     };
-    let mut part = |number| Ok((number == 0).then_some(part));
+    let mut part = |number| (number == 0).then_some(part);
     draw_parts(&mut part, options.clear, target, scratch, &mut show)
 }
 
@@ -129,7 +129,7 @@ pub struct Part<'a> {
 /// As [`set_up_parts`], or the size of a part differs from that of the frame buffer. If no triangle was drawn before, the frame buffer is
 /// unchanged.
 pub fn draw_parts<'a>(
-    part: &mut dyn FnMut(usize) -> Result<Option<Part<'a>>, RenderError>,
+    part: &mut dyn FnMut(usize) -> Option<Part<'a>>,
     clear: u16,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
@@ -172,10 +172,10 @@ pub fn draw_parts<'a>(
 /// Compiled once, with the optimisation of this crate.
 ///
 /// # Errors
-/// [`RenderError`]; after an error of `part` some triangles may have been emitted.
+/// [`RenderError`]; if a later part is the cause, triangles of the parts before have been emitted.
 #[inline(never)]
 pub fn set_up_parts<'a>(
-    part: &mut dyn FnMut(usize) -> Result<Option<Part<'a>>, RenderError>,
+    part: &mut dyn FnMut(usize) -> Option<Part<'a>>,
     (width, height): (u32, u32),
     scratch: &mut [Projected],
     emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
@@ -188,7 +188,7 @@ pub fn set_up_parts<'a>(
         mesh,
         frame,
         options,
-    }) = part(number)?
+    }) = part(number)
     {
         if (frame.width, frame.height) != (width, height) {
             return Err(RenderError::Size {
@@ -222,7 +222,7 @@ pub fn set_up_parts<'a>(
             mesh,
             frame,
             options,
-        }) = part(number)?
+        }) = part(number)
         else {
             break;
         };

@@ -82,12 +82,11 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
         }
     };
     let mut part = |number: usize| {
-        let part = parts.get(number).map(|&(mesh, frame, options)| Part {
+        parts.get(number).map(|&(mesh, frame, options)| Part {
             mesh,
             frame,
             options,
-        });
-        Ok(part)
+        })
     };
     let (_, frame, options) = parts[0];
     let stats = draw_parts(
