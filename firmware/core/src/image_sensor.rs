@@ -10,6 +10,7 @@
 
 mod ov5640;
 mod ov7670;
+mod step;
 mod wires;
 
 use core::fmt;
@@ -17,6 +18,7 @@ use core::fmt;
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c};
 
+use step::Step;
 pub use wires::{NoAcknowledge, TwoWires, Wires};
 
 /// Number of columns and rows of a camera frame.
@@ -98,17 +100,6 @@ impl fmt::Display for Model {
             Self::Ov5640 => "OV5640",
         })
     }
-}
-
-/// A step of a set-up.
-#[derive(Clone, Copy, Debug)]
-enum Step {
-    /// Writes a value to the register of this number.
-    Write(u16, u8),
-    /// Writes a value, reads it back, and fails if it differs.
-    Check(u16, u8),
-    /// Waits for a number of ms.
-    Wait(u32),
 }
 
 /// Reason why an image sensor was not set up.

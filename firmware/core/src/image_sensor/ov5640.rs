@@ -1,6 +1,6 @@
 //! Registers of the OV5640. Its frame takes 984 lines of 1,896 clocks.
 
-use super::Step::{self, Check, Wait, Write};
+use super::step::Step::{self, Check, Wait, Write};
 
 /// Takes the clock from the pin, resets all registers, and sleeps until the end of the set-up.
 pub const RESET: &[Step] = &[

@@ -1,6 +1,6 @@
 //! Registers of the OV7670. Its frame takes 510 lines of 784 pixels, 33 ms with XCLK = 24 MHz.
 
-use super::Step::{self, Check, Wait, Write};
+use super::step::Step::{self, Check, Wait, Write};
 
 /// COM7: resets all registers.
 pub const RESET: &[Step] = &[Write(0x12, 0x80), Wait(2)];

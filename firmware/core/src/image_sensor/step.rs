@@ -1,0 +1,12 @@
+//! The steps of a set-up.
+
+/// A step of a set-up.
+#[derive(Clone, Copy, Debug)]
+pub enum Step {
+    /// Writes a value to the register of this number.
+    Write(u16, u8),
+    /// Writes a value, reads it back, and fails if it differs.
+    Check(u16, u8),
+    /// Waits for a number of ms.
+    Wait(u32),
+}
