@@ -25,7 +25,8 @@ mod target;
 pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
 pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
 pub use control::{
-    Control, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_SEARCHING, RUN_TRACKING, Setting,
+    ANGLE, CHANNELS, Control, DISTANCE, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_SEARCHING,
+    RUN_TRACKING, Setting,
 };
-pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain};
+pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
 pub use target::{POLE, WIDTHS, target};

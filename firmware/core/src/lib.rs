@@ -1,5 +1,5 @@
-//! Code shared by firmware and host: cameras, sines, the sensor and its attitude, distance fields and lights, the format of
-//! meshes, wireframe programs, transfers over a serial line, and the console's grammar.
+//! Code shared by firmware and host: cameras, sines, the sensor and its attitude, the hand and its image sensor, distance fields and
+//! lights, the format of meshes, wireframe programs, transfers over a serial line, and the console's grammar.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]

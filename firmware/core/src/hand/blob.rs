@@ -72,7 +72,7 @@ pub enum Doubt {
     Contradiction,
     /// The pixels fill little of their bounds, so they are more than one blob, or noise.
     Scattered,
-    /// The area changed by more than a factor of 2 since the last frame.
+    /// The area changed by more than a factor of 1.5 since the last frame.
     Jump,
 }
 
@@ -84,7 +84,7 @@ impl fmt::Display for Doubt {
             Self::Most => "no hand: most pixels of the frame have its colour",
             Self::Contradiction => "the statistics of the frame contradict themselves",
             Self::Scattered => "no single hand: the pixels of its colour are scattered",
-            Self::Jump => "the area of the hand jumped by more than a factor of 2",
+            Self::Jump => "the area of the hand jumped by more than a factor of 1.5",
         })
     }
 }
@@ -121,6 +121,7 @@ impl Statistics {
     ///
     /// # Errors
     /// The frame is faulty, has too few or too many pixels of the hand's colour, or the statistics contradict themselves.
+    #[inline(never)]
     pub fn blob(&self) -> Result<Blob, Doubt> {
         if !self.is_whole {
             return Err(Doubt::Faulty);
@@ -150,7 +151,8 @@ impl Statistics {
             return Err(Doubt::Contradiction);
         }
         // The quotient has 24 fraction bits and is below 1; the root of 32 fraction bits has 16.
-        let part = (quotient(count, area) << 12) | fraction((count << 12) % area, area);
+        let upper = (count << 12) / area;
+        let part = upper << 12 | fraction((count << 12) - upper * area, area);
         let certain = ramp(count / (least >> 2).max(1), [4, 4 << FULL_AREA]);
         // A rectangle beyond 2^24 pixels is filled by less than 1/16, because the frame is smaller than 2^20 pixels.
         let filled = ramp((count << 8) / within.clamp(1, 1 << 24), FILL);
@@ -166,12 +168,14 @@ impl Statistics {
 
 /// Computes the quotient of `number` and `divisor` with 12 fraction bits, rounded down. The divisor is from 1 to 2^20 − 1. A
 /// quotient of 2^20 or more saturates.
+#[inline(never)]
 fn quotient(number: u32, divisor: u32) -> u32 {
     let whole = number / divisor;
     if whole >= 1 << 20 {
         return u32::MAX;
     }
-    whole << 12 | fraction(number % divisor, divisor)
+    // A product and a difference take less time than the remainder, which is a second division.
+    whole << 12 | fraction(number - whole * divisor, divisor)
 }
 
 /// Computes 12 fraction bits of the quotient of `rest` and `divisor`; the rest is below the divisor, which is below 2^20.

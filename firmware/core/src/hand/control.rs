@@ -21,19 +21,19 @@ pub const LONGEST_GAP: u64 = PATIENCE;
 const FRAMES: u8 = 3;
 
 /// Tuning for azimuth and polar angle, in turns.
-const ANGLE: Tuning = Tuning {
-    cutoff: U16_16::lit("1.5"),
-    slope: U16_16::lit("60"),
-    speed_cutoff: U16_16::lit("2"),
+pub const ANGLE: Tuning = Tuning {
+    cutoff: U16_16::lit("1"),
+    slope: U16_16::lit("120"),
+    speed_cutoff: U16_16::lit("4"),
 };
 /// Tuning for the distance, in world units. The whole range is 3 units, so the slope is less than that of the angles.
-const DISTANCE: Tuning = Tuning {
+pub const DISTANCE: Tuning = Tuning {
     cutoff: U16_16::lit("1"),
-    slope: U16_16::lit("4"),
-    speed_cutoff: U16_16::lit("1"),
+    slope: U16_16::lit("8"),
+    speed_cutoff: U16_16::lit("2"),
 };
 /// Tunings and dead zones of azimuth, polar angle and distance: zones of 0.06° and 1/256 world unit.
-const CHANNELS: [(Tuning, Q4_28); 3] = [
+pub const CHANNELS: [(Tuning, Q4_28); 3] = [
     (ANGLE, Q4_28::lit("0.000166")),
     (ANGLE, Q4_28::lit("0.000166")),
     (DISTANCE, Q4_28::lit("0.00390625")),
@@ -104,7 +104,7 @@ impl Setting {
 
     /// The setting around a hand with the given bounds. On each side there is room for a sixteenth of the frame, the way of a fast
     /// hand in two frames, and for a quarter of the hand.
-    fn around(bounds: &Region, size: [u16; 2]) -> Self {
+    pub fn around(bounds: &Region, size: [u16; 2]) -> Self {
         let [columns, rows] = bounds.size();
         // The bounds lie in the frame, so a quarter of their size fits 16 bits.
         let margin = [
@@ -123,7 +123,7 @@ enum State {
     Absent,
     /// The hand of the last frame, and the number of frames that showed it.
     Appearing(Blob, u8),
-    /// Number of the hand's pixels in the last frame.
+    /// Number of the hand's pixels in the last frame; 0 if it counted other runs.
     Tracked(u32),
     /// The same of the last frame with a hand, and the time of that frame in µs.
     Held(u32, u64),
@@ -147,6 +147,15 @@ impl Channel {
             offset: Q4_28::ZERO,
             output,
         }
+    }
+
+    /// Filters the target, and lets the offset fade with the gain `back`. One function for all channels, because the instruction
+    /// cache is small.
+    #[inline(never)]
+    fn steer(&mut self, target: Q4_28, tuning: &Tuning, zone: Q4_28, step: Step, back: u32) {
+        let filtered = self.filter.next(target, tuning, step);
+        self.offset = Q4_28::from_bits(towards(self.offset.to_bits(), 0, back));
+        self.output = self.zone.next(filtered, zone).saturating_add(self.offset);
     }
 }
 
@@ -228,55 +237,75 @@ impl Control {
             self.search();
         }
         let seen = statistics.blob();
-        match (self.state, seen) {
-            (State::Absent | State::Appearing(..), Ok(blob))
-                if blob.confidence < LEAST_CONFIDENCE =>
-            {
-                self.search();
-                return Err(Doubt::Scattered);
-            }
-            (State::Absent, Ok(blob)) => self.state = State::Appearing(blob, 1),
-            (State::Appearing(before, frames), Ok(blob)) => {
-                self.state = State::Appearing(blob, 1);
-                if is_near(&before, &blob, statistics.size) {
-                    self.state = State::Appearing(blob, frames + 1);
-                    if frames + 1 == FRAMES {
-                        self.enter(&blob, statistics.size);
-                    }
-                }
-            }
-            (State::Tracked(count) | State::Held(count, _), Ok(blob)) if !is_like(count, &blob) => {
-                self.hold(count, time);
-                return Err(Doubt::Jump);
-            }
-            (State::Held(..), Ok(blob)) => self.enter(&blob, statistics.size),
-            (State::Tracked(_), Ok(blob)) => {
+        let size = statistics.size;
+        match (self.state, &seen) {
+            (State::Tracked(count), Ok(blob)) if is_like(count, blob) => {
                 self.state = State::Tracked(blob.count);
-                self.setting = Setting::around(&blob.bounds, statistics.size);
+                self.setting = Setting::around(&blob.bounds, size);
                 // A gap in tracking is at most `PATIENCE`.
-                self.steer(target(&blob, statistics.size), Step::new(gap as u32));
+                self.steer(target(blob, size), Step::new(gap as u32));
             }
-            (State::Tracked(count) | State::Held(count, _), Err(_)) => self.hold(count, time),
-            (State::Absent | State::Appearing(..), Err(_)) => self.search(),
+            (State::Tracked(count) | State::Held(count, _), _) => {
+                return self.hold(count, time, seen, size);
+            }
+            _ => return self.appear(seen, size),
         }
         seen
     }
 
+    /// Begins to search the whole frame.
     fn search(&mut self) {
         self.state = State::Absent;
         self.setting = Setting::SEARCHING;
     }
 
-    /// Waits for the hand in its region, from the first frame without it on.
-    fn hold(&mut self, count: u32, time: u64) {
-        if !matches!(self.state, State::Held(..)) {
-            self.state = State::Held(count, time);
+    /// Looks for a hand in three successive frames. Rare code is separate from that of every frame, because the instruction cache is
+    /// small.
+    #[cold]
+    #[inline(never)]
+    fn appear(&mut self, seen: Result<Blob, Doubt>, size: [u16; 2]) -> Result<Blob, Doubt> {
+        let before = self.state;
+        self.search();
+        let blob = seen?;
+        if blob.confidence < LEAST_CONFIDENCE {
+            return Err(Doubt::Scattered);
         }
+        let frames = match before {
+            State::Appearing(before, frames) if is_near(&before, &blob, size) => frames + 1,
+            _ => 1,
+        };
+        self.state = State::Appearing(blob, frames);
+        if frames == FRAMES {
+            self.enter(&blob, size);
+        }
+        Ok(blob)
+    }
+
+    /// Waits for the hand in its region, from the first frame without it on.
+    #[cold]
+    #[inline(never)]
+    fn hold(
+        &mut self,
+        count: u32,
+        time: u64,
+        seen: Result<Blob, Doubt>,
+        size: [u16; 2],
+    ) -> Result<Blob, Doubt> {
+        match seen {
+            Ok(blob) if is_like(count, &blob) => {
+                self.enter(&blob, size);
+                return seen;
+            }
+            _ if !matches!(self.state, State::Held(..)) => self.state = State::Held(count, time),
+            _ => {}
+        }
+        seen.and(Err(Doubt::Jump))
     }
 
     /// Begins to follow a hand: the filters start at its place, and the way from the camera's place to it becomes the offset.
     fn enter(&mut self, blob: &Blob, size: [u16; 2]) {
-        self.state = State::Tracked(blob.count);
+        // The next frame counts shorter runs, so its area may be larger.
+        self.state = State::Tracked(0);
         self.setting = Setting::around(&blob.bounds, size);
         for (channel, target) in self.channels.iter_mut().zip(target(blob, size)) {
             let offset = channel.output.saturating_sub(target);
@@ -296,13 +325,7 @@ impl Control {
         let back = low_pass_gain(RETURN, step);
         let channels = self.channels.iter_mut().zip(&CHANNELS).zip(target);
         for ((channel, (tuning, zone)), target) in channels {
-            let filtered = channel.filter.next(target, tuning, step);
-            let offset = towards(channel.offset.to_bits(), 0, back);
-            channel.offset = Q4_28::from_bits(offset);
-            channel.output = channel
-                .zone
-                .next(filtered, *zone)
-                .saturating_add(channel.offset);
+            channel.steer(target, tuning, *zone, step, back);
         }
         let [azimuth, polar, distance] = &mut self.channels;
         azimuth.output = within_a_turn(azimuth.output);
@@ -316,9 +339,10 @@ const fn within_a_turn(angle: Q4_28) -> Q4_28 {
     Q4_28::from_bits((angle.to_bits() << 4) >> 4)
 }
 
-/// Whether an area differs from that of the hand in an earlier frame by at most a factor of 2. Areas are below 2^20 pixels.
+/// Whether an area differs from that of the hand in an earlier frame by at most a factor of 1.5; an earlier area of 0 is unknown. Areas
+/// are below 2^20 pixels.
 const fn is_like(count: u32, blob: &Blob) -> bool {
-    blob.count <= 2 * count && count <= 2 * blob.count
+    count == 0 || (2 * blob.count <= 3 * count && 2 * count <= 3 * blob.count)
 }
 
 /// Whether a hand may be that of the frame before: of nearly the same area, and at most an eighth of the frame away.

@@ -30,6 +30,7 @@ impl Step {
 
 /// Returns the gain of a low pass of first order with the corner frequency `cutoff`, for one step: k/(1 + k) with k = 2π·cutoff·step,
 /// with 16 fraction bits, rounded up. Unlike the explicit gain k it is below 1 for every step, so the filter is monotone.
+#[inline(never)]
 pub fn low_pass_gain(cutoff: U16_16, step: Step) -> u32 {
     // The step is at most 0.63 radians a hertz, so k is below 2^16 with 16 fraction bits.
     let k = ((u64::from(cutoff.to_bits()) * u64::from(step.radians)) >> 32) as u32;
@@ -89,10 +90,12 @@ impl OneEuro {
     }
 }
 
-/// Moves `from` to `to` by a part of the way: `gain`, at most 1, with 16 fraction bits. Rounded to nearest.
-pub(super) fn towards(from: i32, to: i32, gain: u32) -> i32 {
-    let way = (i64::from(to) - i64::from(from)) * i64::from(gain);
-    (i64::from(from) + ((way + (1 << 15)) >> 16)) as i32
+/// Moves `from` to `to` by a part of the way: `gain`, at most 1, with 16 fraction bits. Rounded to nearest. A way beyond 2^31 counts as
+/// one of 2^31.
+pub fn towards(from: i32, to: i32, gain: u32) -> i32 {
+    let way = i64::from(to.saturating_sub(from)) * i64::from(gain);
+    // The gain is at most 1, so the sum lies between the two numbers.
+    from.wrapping_add(((way + (1 << 15)) >> 16) as i32)
 }
 
 /// A dead zone that moves along: the output stays while the input is within the zone about it, and is drawn along by the zone's

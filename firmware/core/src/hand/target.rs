@@ -30,10 +30,11 @@ pub fn target(blob: &Blob, size: [u16; 2]) -> [Q4_28; 3] {
 
 /// Returns a coordinate in units of 2^−12 pixels as part of the frame's `length` in pixels, with 28 fraction bits. The centre of
 /// pixel 0 is half a pixel from the border.
+#[inline(never)]
 fn part(coordinate: u32, length: u16) -> i32 {
     let length = u32::from(length.max(1));
     let place = coordinate.saturating_add(1 << 11).min((length << 12) - 1);
-    // The place is below 2^23, because no supported frame has 2^11 columns; the quotient has 21 fraction bits.
-    let shift = 9.min(place.leading_zeros());
+    // The place is below 2^23 for a length below 2^11, as every supported frame has; the quotient then has 21 fraction bits.
+    let shift = if length < 1 << 11 { 9 } else { 4 };
     (((place << shift) / length) << (16 - shift)) as i32
 }
