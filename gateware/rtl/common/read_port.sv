@@ -143,7 +143,7 @@ module read_port #(
 
         // A place is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
-        fifo #(.WIDTH(128), .DEPTH(DEPTH), .BLOCK(BLOCK[i]), .BULK(1'b1)) words (
+        fifo #(.WIDTH(128), .DEPTH(DEPTH), .BLOCK(BLOCK[i])) words (
             .clk       (clk),
             .rst       (rst || drop),
             .in_valid  (store[i]),

@@ -58,7 +58,7 @@ module write_port #(
         .out_data  (cmd_addr)
     );
 
-    fifo #(.WIDTH(144), .DEPTH(DEPTH), .BULK(1'b1)) words (
+    fifo #(.WIDTH(144), .DEPTH(DEPTH)) words (
         .clk       (clk),
         .rst       (rst),
         .in_valid  (move),

@@ -197,7 +197,7 @@ module vertex_cache #(
         .in_data(passing_missed[2] ? fresh[2] : vertex_old),
         .out_valid(vertex_valid), .out_ready(vertex_taken), .out_data(vertex));
 
-    fifo #(.WIDTH(SIDE_BITS), .DEPTH(TRIANGLES), .BULK(1'b1)) sides (
+    fifo #(.WIDTH(SIDE_BITS), .DEPTH(TRIANGLES)) sides (
         .clk(clk), .rst(rst), .in_valid(taken), .in_ready(side_room), .in_data(in_side),
         .out_valid(side_valid), .out_ready(out_valid && out_ready), .out_data(out_side));
 
