@@ -5,7 +5,7 @@ from litedram.phy import GENSDRPHY
 from litex.build.io import DDROutput
 from litex.gen import LiteXModule
 from litex.soc.cores.clock import ECP5PLL
-from migen import ClockDomain, ClockSignal, Signal
+from migen import ClockDomain, ClockSignal, Instance, Signal
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
 from .ecp5_hdmi import Ecp5HDMI
@@ -51,7 +51,13 @@ class CRG(LiteXModule):
         restart = Signal()
         self.comb += self.cd_por.clk.eq(self.cd_sys.clk)
         self.sync.por += restart.eq(self.rst)
-        self.specials += AsyncResetSynchronizer(self.cd_sys, ~sys_pll.locked | restart)
+        # A global buffer takes the reset to its thousands of loads; on ordinary wires it would be among the slowest paths.
+        reset = ClockDomain("reset", reset_less=False)
+        self.comb += reset.clk.eq(self.cd_sys.clk)
+        self.specials += [
+            AsyncResetSynchronizer(reset, ~sys_pll.locked | restart),
+            Instance("DCCA", i_CLKI=reset.rst, i_CE=1, o_CLKO=self.cd_sys.rst),
+        ]
         self.specials += DDROutput(1, 0, platform.request("sdram_clock"), ClockSignal("sys_ps"))
 
         self.pixel_pll = pixel_pll = _PLL()
