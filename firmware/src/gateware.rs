@@ -3,7 +3,7 @@
 //! ```text
 //! renderer ── repeat (benchmark loops)
 //!    ├── geometry (passes of the meshes, clipping)
-//!    ├── lines (wireframes)
+//!    ├── lines (wireframes, edges of meshes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
 //!    └── fallback (reasons to draw, or to make descriptors, by the CPU)

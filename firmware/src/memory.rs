@@ -21,6 +21,8 @@ pub struct Memory {
     pub scratch: Scratch,
     /// Memory for copies of meshes with turned normals.
     pub turned: Arena,
+    /// Memory for the edges of the shown mesh.
+    pub edges: &'static mut [u32],
     /// Memory for built-in meshes.
     pub shapes: &'static mut [u8],
     /// Memory for uploaded meshes and programs, and the staging memory.
@@ -39,6 +41,8 @@ unsafe extern "C" {
     static _scratch_size: u8;
     static mut _turned: u8;
     static _turned_size: u8;
+    static mut _edges: u8;
+    static _edges_size: u8;
     static mut _shapes: u8;
     static _shapes_size: u8;
     static mut _uploads: u8;
@@ -93,6 +97,7 @@ impl Memory {
                 ready: 0,
             },
             turned: Arena::new(window!(_turned, _turned_size, u8)),
+            edges: window!(_edges, _edges_size, u32),
             shapes: window!(_shapes, _shapes_size, u8),
             uploads: Arena::new(window!(_uploads, _uploads_size, u8)),
             lists: window!(_lists, _lists_size, u32),

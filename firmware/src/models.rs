@@ -119,8 +119,7 @@ impl Models {
 
     /// The wireframe program.
     pub fn program(&self) -> &Program<'_> {
-        let uploaded = self.program.as_ref().map(|(program, _)| program);
-        uploaded.unwrap_or(&self.cube_program)
+        self.uploaded_program().unwrap_or(&self.cube_program)
     }
 
     /// The uploaded program, if there is one.

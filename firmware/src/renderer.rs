@@ -2,7 +2,8 @@
 
 use glint_core::picture::{Backend, Size};
 use glint_hal::scanout::Display;
-use glint_model::{Frame, FrameBuffer, FrameStats, RenderError};
+use glint_model::edges::EdgeList;
+use glint_model::{Frame, FrameBuffer, FrameStats, RenderError, Subject};
 use litex_pac::cpu;
 
 use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output};
@@ -18,6 +19,8 @@ pub struct Renderer {
     pub depth: &'static mut [u32],
     /// Memory for projected vertices.
     pub scratch: Scratch,
+    /// The edges of the mesh whose edges were shown last.
+    pub edges: EdgeList<'static>,
     /// The renderer of the gateware, if the SoC has a triangle engine.
     pub gateware: Option<GatewareRenderer>,
 }
@@ -100,6 +103,7 @@ impl Renderer {
         let mut output = Output { colour, depth };
         let mut cpu = Cpu {
             scratch: &mut self.scratch,
+            edges: &mut self.edges,
             progress,
         };
         let advanced = gateware.advance(frame, &mut output, &mut cpu)?;
@@ -125,7 +129,7 @@ impl Renderer {
         };
         let scratch = self.scratch.vertices(frame.scratch_vertices());
         let start = cpu::cycles();
-        let stats = draw(frame, &mut buffer, scratch, &mut progress);
+        let stats = draw(frame, &mut buffer, scratch, &mut self.edges, &mut progress);
         let cycles = cpu::cycles() - start;
         Some(stats.map(|stats| Drawn {
             cycles,
@@ -151,6 +155,7 @@ impl Renderer {
         };
         let mut cpu = Cpu {
             scratch: &mut self.scratch,
+            edges: &mut self.edges,
             progress: &mut || {},
         };
         let frame = scene.frame(models);
@@ -175,7 +180,15 @@ fn draw(
     frame: &Frame,
     buffer: &mut FrameBuffer,
     scratch: &mut [glint_model::Projected],
+    edges: &mut EdgeList,
     progress: &mut dyn FnMut(),
 ) -> Result<FrameStats, RenderError> {
-    frame.draw(&frame.constants()?, buffer, scratch, progress)
+    let constants = frame.constants()?;
+    if let Subject::Edges(subject, _) = &frame.subject {
+        // First, because this refuses a mesh with too many edges.
+        edges.make(&subject.mesh, progress)?;
+    }
+    let mut stats = frame.draw(&constants, buffer, scratch, progress)?;
+    frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
+    Ok(stats)
 }

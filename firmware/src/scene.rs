@@ -6,7 +6,7 @@ use glint_core::colour::{Shading, Winding};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Edges, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
 use glint_hal::triangle::Counters;
@@ -76,6 +76,7 @@ pub struct Scene {
     stereo: Option<Stereo>,
     appearance: Appearance,
     prepass: bool,
+    edges: Option<Edges>,
     view: View,
     sphere: Sphere,
     size: Size,
@@ -104,6 +105,7 @@ impl Scene {
             stereo: None,
             appearance: Appearance::default(),
             prepass: false,
+            edges: None,
             view: sphere.view()?,
             sphere,
             size: Size::default(),
@@ -138,7 +140,10 @@ impl Scene {
                 pose: motion.pose(),
             }),
             (None, _) if self.objects => Subject::Objects(models.objects().all()),
-            (None, None) => Subject::Mesh(mesh),
+            (None, None) => match self.edges {
+                None => Subject::Mesh(mesh),
+                Some(edges) => Subject::edges(mesh, edges),
+            },
             (None, Some(field)) => {
                 let field = FieldSubject {
                     field,
@@ -252,6 +257,17 @@ impl Scene {
     pub fn set_prepass(&mut self, prepass: bool) {
         self.changed |= self.field.is_some() && self.prepass != prepass;
         self.prepass = prepass;
+    }
+
+    /// The edges of a mesh that is shown alone; `None` for its faces alone.
+    pub const fn edges(&self) -> Option<Edges> {
+        self.edges
+    }
+
+    /// Sets the edges of a mesh that is shown alone.
+    pub fn set_edges(&mut self, edges: Option<Edges>) {
+        self.changed |= self.edges != edges;
+        self.edges = edges;
     }
 
     /// Sets camera, light and options of a built-in scene.

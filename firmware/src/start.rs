@@ -14,6 +14,7 @@ use glint_hal::scanout::{Display, Scanout};
 use glint_hal::timer::{Clock, Stopped};
 use glint_hal::triangle::TriangleEngine;
 use glint_hal::uart::Direct;
+use glint_model::edges::EdgeList;
 use litex_pac::{BUILD_ID, Peripherals};
 
 use crate::gateware::GatewareRenderer;
@@ -162,6 +163,7 @@ pub fn machine() -> Result<Machine, StartError> {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,
             scratch: memory.scratch,
+            edges: EdgeList::new(memory.edges),
             gateware,
         },
         devices,

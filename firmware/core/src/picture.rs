@@ -1,4 +1,4 @@
-//! Sizes of a picture, and the backends that draw pictures.
+//! Sizes of a picture, the backends that draw pictures, and the edges of a mesh in them.
 
 use core::fmt;
 
@@ -83,6 +83,20 @@ pub enum Backend {
 choices!(Backend {
     Cpu: "cpu",
     Gateware: "gateware"
+});
+
+/// The edges of a mesh in a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Edges {
+    /// The edges alone, without those that faces hide.
+    Hidden,
+    /// The edges over the shaded faces.
+    Over,
+}
+
+choices!(Edges {
+    Hidden: "hidden",
+    Over: "over"
 });
 
 #[cfg(test)]

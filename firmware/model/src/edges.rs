@@ -1,34 +1,83 @@
 //! Edges of meshes as lines, each in front of its own faces by a bias that follows from their slopes (docs/formats.md, "Lines").
+//!
+//! [`EdgeList`] finds each edge of a mesh once, in memory of the caller, and makes the segments of a frame.
+
+mod list;
+mod table;
 
 use glint_core::colour::Rgb565;
+use heapless::Vec;
 
 use crate::line::{LineDepth, Segment};
-use crate::triangle::clip::{clip, clip_edge};
+use crate::triangle::clip::{MAX_VERTICES, clip, clip_edge};
 use crate::triangle::vertex::{snap, transform};
-use crate::triangle::{MeshSetup, ScreenVertex};
+use crate::triangle::{MeshSetup, Projected, ScreenVertex};
+
+pub use list::EdgeList;
+
+/// The colour of the edges: white.
+pub const EDGE_COLOUR: Rgb565 = Rgb565::WHITE;
 
 /// The biases, in depth codes, that keep lines at the border of a face in front of it: of a line with a pixel in each row, and of one
-/// with a pixel in each column.
-pub type Biases = [u16; 2];
+/// with a pixel in each column. Those of no face are 0.
+type Biases = [u16; 2];
 
-/// The biases for a face with these corners, positions in a mesh; `None` if no part of it has an area on the screen, or for a back
-/// face with `cull`.
+/// Counts of the edges of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct EdgeStats {
+    /// Edges of the mesh.
+    pub edges: u32,
+    /// Edges with a part in the volume of the frame, which are drawn as lines.
+    pub drawn: u32,
+}
+
+/// A corner of a face, or an end of an edge: its position in the mesh, and the vertex after the vertex stage.
+type Corner<'a> = ([i16; 3], &'a Projected);
+
+/// The biases for a face with these corners; those of no face if no part of it has an area on the screen, or for a back face with
+/// `cull`.
+fn face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
+    if let [
+        (_, Projected::Visible(a)),
+        (_, Projected::Visible(b)),
+        (_, Projected::Visible(c)),
+    ] = corners
+    {
+        return biases(frame, &[*a, *b, *c], cull);
+    }
+    clipped_face(frame, corners, cull)
+}
+
+/// The biases for a face that may leave the volume of the frame.
+///
+/// Not inlined, so that other faces do not load this code into the instruction cache.
+#[inline(never)]
+fn clipped_face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
+    let polygon = clip(frame, corners.map(|(corner, _)| transform(frame, corner)));
+    let places = polygon.vertices().iter().map(|vertex| snap(frame, vertex));
+    let places: Vec<_, MAX_VERTICES> = places.collect();
+    biases(frame, &places, cull)
+}
+
+/// The biases for a face, a polygon on the screen.
 ///
 /// A pixel of a line is up to half a pixel beside the edge, along its minor axis. There the face is nearer by at most half its slope,
 /// and by at most the difference of its depths; the roundings of both depths add 1.52 codes.
-#[must_use]
-pub fn biases(frame: &MeshSetup, corners: [[i16; 3]; 3], cull: bool) -> Option<Biases> {
-    let polygon = clip(frame, corners.map(|corner| transform(frame, corner)));
-    let places = || polygon.vertices().iter().map(|vertex| snap(frame, vertex));
-    let (first, rest) = (places().next()?, || places().skip(1));
-    let parts = rest().zip(rest().skip(1)).map(|(b, c)| [first, b, c]);
+fn biases(frame: &MeshSetup, places: &[ScreenVertex], cull: bool) -> Biases {
+    let Some((first, rest)) = places.split_first() else {
+        return Biases::default();
+    };
+    let parts = rest.iter().zip(rest.iter().skip(1));
+    let parts = parts.map(|(b, c)| [*first, *b, *c]);
     // The slopes are most exact in the largest part of the polygon.
-    let [a, b, c] = parts.max_by_key(|part| doubled_area(part).unsigned_abs())?;
+    let Some([a, b, c]) = parts.max_by_key(|part| doubled_area(part).unsigned_abs()) else {
+        return Biases::default();
+    };
     let area = doubled_area(&[a, b, c]);
     // A front face is counter-clockwise on the screen.
     let is_back = (area > 0) != frame.mirrors;
     if area == 0 || cull && is_back {
-        return None;
+        return Biases::default();
     }
     let ways = |x: fn(&ScreenVertex) -> i64| [x(&b) - x(&a), x(&c) - x(&a)];
     let [x, y, w] = [
@@ -36,14 +85,15 @@ pub fn biases(frame: &MeshSetup, corners: [[i16; 3]; 3], cull: bool) -> Option<B
         ways(|v| v.y.into()),
         ways(|v| v.w.into()),
     ];
-    let range = places().map(|v| v.w).max()? - places().map(|v| v.w).min()?;
+    let depths = || places.iter().map(|v| v.w);
+    let range = depths().max().unwrap_or(0) - depths().min().unwrap_or(0);
     let bias = |along: [i64; 2]| {
         // Depths are in 2^-6 codes, ways in 2^-8 pixels, and the area in 2^-16 square pixels.
         let twice = 4 * (w[0] * along[1] - w[1] * along[0]).unsigned_abs();
         let half_slope = twice.div_ceil(2 * area.unsigned_abs());
         half_slope.min(u64::from(range.div_ceil(64))) + 2
     };
-    Some([bias(y), bias(x)].map(|bias| u16::try_from(bias).unwrap_or(u16::MAX)))
+    [bias(y), bias(x)].map(|bias| u16::try_from(bias).unwrap_or(u16::MAX))
 }
 
 /// Twice the area of a triangle on the screen, in 2^-16 square pixels, positive for a clockwise one.
@@ -53,24 +103,30 @@ fn doubled_area([a, b, c]: &[ScreenVertex; 3]) -> i64 {
     bx * cy - cx * by
 }
 
-/// The line of an edge between two positions in a mesh; `None` if the edge is outside of the volume of the frame. `biases` are the
-/// largest ones of the faces at the edge.
-#[must_use]
-pub fn edge(
-    frame: &MeshSetup,
-    ends: [[i16; 3]; 2],
-    colour: Rgb565,
-    biases: Biases,
-) -> Option<Segment> {
-    let ends = clip_edge(frame, ends.map(|end| transform(frame, end)))?;
-    let [a, b] = ends.map(|end| snap(frame, &end));
+/// The line of an edge; `None` if the edge is outside of the volume of the frame. `biases` are the largest ones of the faces at the
+/// edge.
+fn segment(frame: &MeshSetup, ends: [Corner; 2], biases: Biases) -> Option<Segment> {
+    let [a, b] = if let [(_, Projected::Visible(a)), (_, Projected::Visible(b))] = ends {
+        [*a, *b]
+    } else {
+        clipped_edge(frame, &ends)?
+    };
     let x_major = (b.x - a.x).abs() >= (b.y - a.y).abs();
     let [row_major, column_major] = biases;
     Some(Segment {
         ends: [a, b],
-        colour,
+        colour: EDGE_COLOUR,
         depth: LineDepth::Tested {
             bias: if x_major { column_major } else { row_major },
         },
     })
+}
+
+/// The ends of the part of an edge in the volume of the frame, on the screen.
+///
+/// Not inlined, so that other edges do not load this code into the instruction cache.
+#[inline(never)]
+fn clipped_edge(frame: &MeshSetup, ends: &[Corner; 2]) -> Option<[ScreenVertex; 2]> {
+    let ends = clip_edge(frame, ends.map(|(end, _)| transform(frame, end)))?;
+    Some(ends.map(|end| snap(frame, &end)))
 }

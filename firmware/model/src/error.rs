@@ -58,6 +58,11 @@ pub enum RenderError {
         /// Vertices that fit the scratch memory.
         found: usize,
     },
+    /// The memory for the list of a mesh's edges is too small.
+    Edges {
+        /// Triangles of the mesh.
+        triangles: u32,
+    },
     /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.
     Eye([Q32_32; 3]),
     /// The near plane of a frame with a mesh is nearer than the half width, the width of the picture and the size of an object allow.
@@ -118,6 +123,10 @@ impl fmt::Display for RenderError {
                     "scratch for {found} vertices: expected at least {expected}, as the largest chunk has"
                 )
             }
+            Self::Edges { triangles } => write!(
+                f,
+                "edges of {triangles} triangles: expected a mesh of fewer triangles, as the memory for edges allows"
+            ),
             Self::Eye([x, y, z]) => {
                 write!(
                     f,

@@ -3,6 +3,8 @@
 //! The CPU backend, the gateware's driver and the host share these types. [`Frame`] is the description, [`FrameConstants`]
 //! are computed from the description once, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
 
+mod edges;
+
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
@@ -10,10 +12,11 @@ use glint_core::field::Field;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
 use glint_core::object::MAX_OBJECTS;
-use glint_core::picture::Size;
+use glint_core::picture::{Edges, Size};
 use glint_core::stereo::Stereo;
 
 use crate::depth::DepthScale;
+use crate::edges::EdgeStats;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::mesh_in_field;
@@ -36,7 +39,7 @@ const PIXELS_A_CALL: u32 = 16;
 /// The description of one picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
-    /// Mesh, field, both, several meshes, or a wireframe.
+    /// Mesh, edges of a mesh, field, mesh and field, several meshes, or a wireframe.
     pub subject: Subject<'a>,
     /// Camera. A wireframe has its own eye and view plane.
     pub view: View,
@@ -53,6 +56,9 @@ pub struct Frame<'a> {
 pub enum Subject<'a> {
     /// A mesh.
     Mesh(MeshSubject<'a>),
+    /// The edges of a mesh, of which [`Frame::draw`] draws the faces alone and [`Frame::draw_edges`] the edges. [`Subject::edges`]
+    /// makes it.
+    Edges(MeshSubject<'a>, Edges),
     /// A distance field.
     Field(FieldSubject<'a>),
     /// A mesh in a distance field.
@@ -112,6 +118,11 @@ impl<'a> MeshSubject<'a> {
         }
     }
 
+    /// Whether back faces are left out: with [`Winding::Screen`] all triangles are seen.
+    pub fn culls(&self) -> bool {
+        self.cull && self.winding == Winding::Mesh
+    }
+
     /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
     pub const fn new(mesh: Mesh<'a>) -> Self {
         Self {
@@ -130,10 +141,19 @@ impl<'a> Subject<'a> {
         Self::Mesh(MeshSubject::new(mesh))
     }
 
+    /// The edges of a mesh. Faces that only hide edges are black, so they are shaded flat.
+    pub const fn edges(mesh: MeshSubject<'a>, edges: Edges) -> Self {
+        let shading = match edges {
+            Edges::Hidden => Shading::Flat,
+            Edges::Over => mesh.shading,
+        };
+        Self::Edges(MeshSubject { shading, ..mesh }, edges)
+    }
+
     /// The mesh, if the subject has one.
     pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
         match self {
-            Self::Mesh(mesh) | Self::MeshInField(mesh, _) => Some(mesh),
+            Self::Mesh(mesh) | Self::Edges(mesh, _) | Self::MeshInField(mesh, _) => Some(mesh),
             Self::Field(_) | Self::Objects(_) | Self::Wireframe(_) => None,
         }
     }
@@ -152,6 +172,10 @@ impl<'a> Subject<'a> {
         match self {
             Self::Mesh(subject) | Self::MeshInField(subject, _) => {
                 (number == 0).then_some((subject, None))
+            }
+            Self::Edges(subject, edges) => {
+                let colour = (*edges == Edges::Hidden).then_some(Rgb565(0));
+                (number == 0).then_some((subject, colour))
             }
             Self::Objects(objects) => {
                 let object = objects.get(number)?;
@@ -185,7 +209,7 @@ impl<'a> Subject<'a> {
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
             Self::Field(field) | Self::MeshInField(_, field) => Some(field),
-            Self::Mesh(_) | Self::Objects(_) | Self::Wireframe(_) => None,
+            Self::Mesh(_) | Self::Edges(..) | Self::Objects(_) | Self::Wireframe(_) => None,
         }
     }
 }
@@ -271,7 +295,7 @@ impl FrameConstants {
         (self.light, self.field) = (None, None);
         let (view, size) = (&frame.view, frame.size.pixels().into());
         match &frame.subject {
-            Subject::Mesh(subject) => {
+            Subject::Mesh(subject) | Subject::Edges(subject, _) => {
                 let mesh = self.mesh.get_or_insert_default();
                 mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
                 mesh.set_clip(subject.clip)?;
@@ -354,6 +378,8 @@ pub struct FrameStats {
     pub field: Option<FieldStats>,
     /// Counts of the wireframe, if any.
     pub wireframe: Option<WireframeStats>,
+    /// Counts of the edges of a mesh, if any. The mesh's counts of covered and drawn pixels include those of its edges.
+    pub edges: Option<EdgeStats>,
 }
 
 impl<'a> Frame<'a> {

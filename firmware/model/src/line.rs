@@ -68,6 +68,11 @@ impl Segment {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
     }
 
+    /// Number of pixels of the segment in the picture.
+    pub fn covered(&self, target: &FrameBuffer) -> usize {
+        pixels(&self.ends, target).count()
+    }
+
     /// Draws the part of the segment in the picture. Returns the number of pixels written.
     pub fn draw(&self, target: &mut FrameBuffer) -> u32 {
         draw(&self.ends, self.colour, self.depth, target)
@@ -323,13 +328,11 @@ impl Iterator for LinePixels {
     }
 }
 
-/// Draws the part of a segment in the picture. Returns the number of pixels written.
-pub fn draw(
+/// The pixels of a segment in the picture.
+fn pixels(
     ends: &[ScreenVertex; 2],
-    colour: Rgb565,
-    depth: LineDepth,
-    target: &mut FrameBuffer,
-) -> u32 {
+    target: &FrameBuffer,
+) -> impl Iterator<Item = LinePixel> + use<> {
     let picture = Bounds {
         left: 0,
         right: target.width as i32,
@@ -337,8 +340,18 @@ pub fn draw(
         bottom: target.height as i32,
     };
     let pixels = Line::new(ends).map(|line| line.pixels(&picture));
+    pixels.into_iter().flatten()
+}
+
+/// Draws the part of a segment in the picture. Returns the number of pixels written.
+pub fn draw(
+    ends: &[ScreenVertex; 2],
+    colour: Rgb565,
+    depth: LineDepth,
+    target: &mut FrameBuffer,
+) -> u32 {
     let mut drawn = 0;
-    for pixel in pixels.into_iter().flatten() {
+    for pixel in pixels(ends, target) {
         // The pixel is in the picture, so both numbers are positive and both places exist.
         let at = pixel.row as usize * target.width as usize + pixel.column as usize;
         let code = pixel.code(depth);

@@ -29,7 +29,7 @@ pub use mesh_setup::MeshSetup;
 pub use object::Placement;
 pub use primitive::Options;
 pub use render::{
-    DrawnTriangle, Part, Stats, draw_parts, render, set_up_parts, trace, trace_frame,
+    DrawnTriangle, Part, Stats, draw_parts, project_chunk, render, set_up_parts, trace, trace_frame,
 };
 pub use vertex::{Projected, ScreenVertex};
 pub use volume::Clip;

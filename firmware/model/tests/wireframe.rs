@@ -37,6 +37,7 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
         mesh: None,
         field: None,
         wireframe: Some(stats),
+        edges: None,
     } = stats.unwrap()
     else {
         panic!("expected the counts of a wireframe alone");

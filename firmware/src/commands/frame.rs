@@ -3,12 +3,13 @@
 use glint_core::colour::{Shading, Winding};
 use glint_core::console::FrameCommands;
 use glint_core::fixed::U8_28;
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Edges, Size};
 use glint_model::Clip;
 use litex_pac::cpu;
 
 use super::{bench, statistics};
 use crate::error::CommandError;
+use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
 
@@ -59,6 +60,17 @@ impl<'l> FrameCommands<'l> for Machine {
 
     fn winding(&mut self, winding: Winding) -> Outcome<'l> {
         self.scene.set_winding(winding);
+        Ok(Reply::Done)
+    }
+
+    fn edges(&mut self, edges: Option<Option<Edges>>) -> Outcome<'l> {
+        match edges {
+            Some(edges) => self.scene.set_edges(edges),
+            None => {
+                let edges = OrOff(self.scene.edges());
+                self.terminal.print_entry("edges", &edges);
+            }
+        }
         Ok(Reply::Done)
     }
 

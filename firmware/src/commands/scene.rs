@@ -71,8 +71,9 @@ impl<'l> SceneCommands<'l> for Machine {
     fn unload(&mut self, name: &'l str) -> Outcome<'l> {
         let removed = self.models.remove(name);
         removed.map_err(|error| CommandError::Unload { name, error })?;
-        // The staging memory is another one from now on.
+        // The staging memory is another one from now on, and the other uploads may have moved.
         self.replay = None;
+        self.renderer.edges.clear();
         self.scene.touch();
         Ok(Reply::Done)
     }

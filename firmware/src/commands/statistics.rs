@@ -103,6 +103,12 @@ fn frame_values(
             ("line_pixels", wireframe.pixels),
         ]);
     }
+    if let Some(edges) = &stats.edges {
+        let _ = values.extend_from_slice(&[
+            ("edges_in", edges.edges.into()),
+            ("edges_drawn", edges.drawn.into()),
+        ]);
+    }
     let _ = values.push(("clock", frequency.hertz().into()));
     values
 }

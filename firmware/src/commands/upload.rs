@@ -20,6 +20,7 @@ pub fn receive<'m>(
     let Machine {
         terminal,
         models,
+        renderer,
         replay,
         clock,
         uart,
@@ -27,6 +28,8 @@ pub fn receive<'m>(
     } = machine;
     // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
     *replay = None;
+    // Uploads may move, and another mesh may come to the place of the one whose edges the list has.
+    renderer.edges.clear();
     let length = manifest.length as usize;
     let free = models.free();
     let staging = models.staging_of(length).ok_or(CommandError::TooLong {

@@ -45,9 +45,9 @@ pub struct Buffers {
     pub lists: &'static mut [u32],
     /// Numbers of the exceptions: triangles that the geometry pass leaves to the clipper.
     pub exceptions: &'static mut [u32],
-    /// Descriptors of clipped triangles, or the segments of a wireframe.
+    /// Descriptors of clipped triangles, of the lines of a mesh's edges, or the segments of a wireframe.
     pub clipped_descriptors: &'static mut [u32],
-    /// Band lists of clipped triangles.
+    /// Band lists of clipped triangles, or of the lines of a mesh's edges.
     pub clipped_lists: &'static mut [u32],
     /// What the clipper has written to `clipped_descriptors` and `clipped_lists`, if there is the second one of `sets`.
     pub clipped_counts: ListCounts,
@@ -112,6 +112,15 @@ impl Buffers {
         }
     }
 
+    /// The memory for the output of the geometry pass of a mesh's edges, which are drawn after its faces.
+    pub fn edge_lists(&self, capability: Shading, size: Size) -> Lists {
+        Lists {
+            descriptors: address(self.clipped_descriptors),
+            lists: address(self.clipped_lists),
+            ..self.lists(capability, size)
+        }
+    }
+
     /// The set of lists that geometry passes have written, with `count` descriptors.
     pub fn set(&self, count: u32) -> Set {
         Set {
@@ -121,7 +130,7 @@ impl Buffers {
         }
     }
 
-    /// The set of lists of clipped triangles, with `count` descriptors.
+    /// The set of lists of clipped triangles, or of a mesh's edges, with `count` descriptors.
     pub fn clipped_set(&self, count: u32) -> Set {
         Set {
             descriptors: address(self.clipped_descriptors),

@@ -7,9 +7,10 @@
 
 use glint_core::colour::{Shading, Winding};
 use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
+use glint_model::edges::EdgeList;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
-use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, clip_exceptions};
+use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, Subject, clip_exceptions};
 use litex_pac::cpu;
 
 use super::buffers::Buffers;
@@ -23,6 +24,8 @@ const TRIANGLES_A_CALL: u32 = 32;
 pub struct Cpu<'a> {
     /// Memory for projected vertices.
     pub scratch: &'a mut Scratch,
+    /// The edges of a mesh.
+    pub edges: &'a mut EdgeList<'static>,
     /// Called at short intervals.
     pub progress: &'a mut dyn FnMut(),
 }
@@ -151,17 +154,28 @@ impl GeometryPasses {
                 .numbered_mesh(number, job.constants.light());
             let setup = job.constants.numbered_mesh(&job.frame.subject, number);
             let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
-            if buffers.sets[1].is_none() {
+            cpu::flush_data_cache();
+            let joins = joins_clipped(job.frame);
+            if joins {
+                buffers.clipped_counts = ListCounts::of(buffers.lists, counts.descriptors);
+            } else if buffers.sets[1].is_none() {
                 buffers.clipped_counts = ListCounts::EMPTY;
             }
-            cpu::flush_data_cache();
             let listed = listed as usize..counts.exceptions as usize;
             let list_shift = buffers.list_shift(job.frame.size).into();
             let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
             let mut numbers = exceptions.iter().copied();
+            let (descriptors, lists) = if joins {
+                (&mut *buffers.descriptors, &mut *buffers.lists)
+            } else {
+                (
+                    &mut *buffers.clipped_descriptors,
+                    &mut *buffers.clipped_lists,
+                )
+            };
             let mut writer = ListWriter::new(
-                buffers.clipped_descriptors,
-                buffers.clipped_lists,
+                descriptors,
+                lists,
                 &mut buffers.clipped_counts,
                 setup.width,
                 list_shift,
@@ -170,7 +184,11 @@ impl GeometryPasses {
             let mut put = |setup: &_, colour| writer.put(setup, colour);
             drawn += clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
             let count = writer.finish().map_err(|_| Error::Full)?;
-            buffers.sets[1] = Some(buffers.clipped_set(count));
+            if joins {
+                buffers.sets[0] = Some(buffers.set(count));
+            } else {
+                buffers.sets[1] = Some(buffers.clipped_set(count));
+            }
         }
         let stats = &mut buffers.stats;
         stats.triangles_in += counts.triangles;
@@ -205,11 +223,12 @@ impl GeometryPasses {
             self.shading,
         );
         let scratch = cpu.scratch.vertices(frame.scratch_vertices());
+        let joins = joins_clipped(frame);
         let mut put = |triangle: &DrawnTriangle, setup: &Setup| {
             if triangle.index.is_multiple_of(TRIANGLES_A_CALL) {
                 (cpu.progress)();
             }
-            let writer = if triangle.clipped {
+            let writer = if triangle.clipped && !joins {
                 &mut clipped
             } else {
                 &mut whole
@@ -227,6 +246,11 @@ impl GeometryPasses {
         buffers.stats = stats;
         Ok(())
     }
+}
+
+/// Whether clipped triangles are in the set of the other ones, after them, because the second set has the lines of the mesh's edges.
+const fn joins_clipped(frame: &Frame) -> bool {
+    matches!(frame.subject, Subject::Edges(..))
 }
 
 /// The first option of the meshes of a frame that geometry passes lack.

@@ -1,17 +1,21 @@
-//! Wireframes: the CPU projects the segments of a program, and the line engine draws them.
+//! Wireframes, and the edges of meshes: the CPU makes segments, and the line engine draws them.
 
 use glint_core::picture::Size;
 use glint_core::wireframe::Projection;
 use glint_hal::triangle::{EngineError, Error, Prepared, TriangleEngine};
 use glint_model::line::Segment;
-use glint_model::{Frame, Stats, WireframeSubject};
+use glint_model::{Frame, Stats, Subject, WireframeSubject};
 
 use super::buffers::Projected;
 use super::fallback::Fallback;
+use super::geometry::Cpu;
 use super::renderer::{GatewareRenderer, Output, Rendered};
 
 /// Words of a program that are projected between two samples of the buttons.
 const WORDS_A_CALL: usize = 16;
+
+/// There is no room for all segments of a frame.
+const FULL: EngineError = EngineError::Status(Error::Full);
 
 impl GatewareRenderer {
     /// Projects further words of a program to segments in `self.buffers[place]`. Returns whether no word is left.
@@ -25,7 +29,7 @@ impl GatewareRenderer {
         let projection = Projection::new(subject.program.viewing(), size);
         let records = self.buffers[place].segments_mut();
         let Some((header, records)) = records.split_first_mut() else {
-            return Err(Error::Full.into());
+            return Err(FULL);
         };
         for _ in 0..WORDS_A_CALL {
             if done.words == subject.program.word_count() {
@@ -36,7 +40,7 @@ impl GatewareRenderer {
                 done.stats.segments += 1;
                 if let Some(line) = subject.line(&projection, segment) {
                     let record = records.get_mut(done.stats.lines as usize);
-                    *record.ok_or(Error::Full)? = line.words();
+                    *record.ok_or(FULL)? = line.words();
                     done.stats.lines += 1;
                 }
             }
@@ -56,10 +60,83 @@ impl GatewareRenderer {
     }
 
     /// Takes the descriptors of a geometry pass of lines, which wrote to `self.buffers[place]`.
-    pub(super) fn take_lines(&mut self, place: usize) {
+    pub(super) fn take_lines(&mut self, frame: &Frame, place: usize) {
         let buffers = &mut self.buffers[place];
-        let set = buffers.set(self.engine.counts().descriptors);
-        (buffers.sets, buffers.stats) = ([Some(set), None], Stats::default());
+        let count = self.engine.counts().descriptors;
+        if let Subject::Edges(..) = frame.subject {
+            buffers.sets[1] = Some(buffers.clipped_set(count));
+        } else {
+            let set = buffers.set(count);
+            (buffers.sets, buffers.stats) = ([Some(set), None], Stats::default());
+        }
+    }
+
+    /// Makes the segments of a mesh's edges in the memory of a benchmark's next frame, while the geometry pass of the faces runs;
+    /// nothing for another subject.
+    pub(super) fn project_edges(&mut self, frame: &Frame, cpu: &mut Cpu) -> Result<(), Fallback> {
+        let Subject::Edges(subject, _) = &frame.subject else {
+            return Ok(());
+        };
+        let setup = self.constants[0].mesh();
+        let setup = setup.ok_or(EngineError::from(Error::Size))?;
+        let records = self.buffers[1].segments_mut();
+        let (header, records) = records.split_first_mut().ok_or(FULL)?;
+        let scratch = cpu.scratch.vertices(frame.scratch_vertices());
+        let mut free = records.iter_mut();
+        let mut is_full = false;
+        let mut put = |segment: Segment| match free.next() {
+            Some(record) => *record = segment.words(),
+            None => is_full = true,
+        };
+        let (mesh, culls) = (&subject.mesh, subject.culls());
+        self.edges = cpu
+            .edges
+            .segments(mesh, culls, setup, scratch, cpu.progress, &mut put)?;
+        if is_full {
+            return Err(FULL.into());
+        }
+        *header = Segment::header(self.edges.drawn);
+        Ok(())
+    }
+
+    /// Starts the geometry pass of the segments that [`project_edges`](Self::project_edges) has made.
+    pub(super) fn start_edges(&mut self, size: Size) {
+        let [drawn, other] = &self.buffers;
+        let segments = other.segments();
+        let count = 1 + self.edges.drawn as usize;
+        let segments = segments.get(..count).unwrap_or(segments);
+        let lists = drawn.edge_lists(self.shading, size);
+        let prepared = self.engine.prepare_lines(segments, size, &lists);
+        self.start_pass(prepared);
+    }
+
+    /// Draws the edges of a mesh `count` times, one frame after the other.
+    pub(super) fn repeat_edges(
+        &mut self,
+        frame: &Frame,
+        output: &mut Output,
+        cpu: &mut Cpu,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        self.update_constants(frame, 0)?;
+        self.set_field(0, false)?;
+        self.start_measurement(frame);
+        for _ in 0..count {
+            self.prepare_geometry(frame, 0)?;
+            let mut runs = self.start_geometry(frame, 0, cpu);
+            let projected = self.project_edges(frame, cpu);
+            self.check(projected, output)?;
+            while self.check(runs, output)? {
+                self.wait(TriangleEngine::geometry, output)?;
+                runs = self.continue_geometry(frame, 0);
+            }
+            self.start_edges(frame.size);
+            self.wait(TriangleEngine::geometry, output)?;
+            self.take_lines(frame, 0);
+            self.start_raster(frame, output, self.sets(0));
+            self.wait(TriangleEngine::raster, output)?;
+        }
+        Ok(self.rendered(frame, 0))
     }
 
     /// Draws a wireframe `count` times. Segments are projected and cut into pieces during the raster pass of the frame before.
@@ -80,7 +157,7 @@ impl GatewareRenderer {
             let prepared = self.prepare_lines(frame.size, now);
             self.start_pass(prepared);
             self.wait(TriangleEngine::geometry, output)?;
-            self.take_lines(now);
+            self.take_lines(frame, now);
             if number > 0 {
                 self.wait(TriangleEngine::raster, output)?;
             }

@@ -6,6 +6,7 @@ use glint_core::picture::Size;
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{Counters, EngineError, Error, Prepared, Raster, Set, TriangleEngine};
+use glint_model::edges::EdgeStats;
 use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeStats};
 use litex_pac::cpu;
 
@@ -43,6 +44,8 @@ enum Stage {
     /// The CPU projects the segments of a wireframe.
     Project,
     Geometry,
+    /// The geometry pass of the lines of a wireframe, or of a mesh's edges.
+    Lines,
     Raster,
 }
 
@@ -67,6 +70,8 @@ pub struct GatewareRenderer {
     pub(super) buffers: [Buffers; 2],
     /// The projected part of a wireframe.
     pub(super) projected: Projected,
+    /// Counts of a mesh's edges.
+    pub(super) edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
     /// Size of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the buffer
@@ -75,7 +80,7 @@ pub struct GatewareRenderer {
     stage: Stage,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
-    constants: [FrameConstants; 2],
+    pub(super) constants: [FrameConstants; 2],
     geometry: GeometryPasses,
     watchdog: Watchdog,
     /// Clock cycles of all waits of benchmarks.
@@ -112,6 +117,7 @@ impl GatewareRenderer {
                 Buffers::split_off(&mut memory, room)?,
             ],
             projected: Projected::default(),
+            edges: EdgeStats::default(),
             first_frame_buffer,
             drawn_sizes: [None; 2],
             stage: Stage::Idle,
@@ -150,7 +156,7 @@ impl GatewareRenderer {
         match self.stage {
             Stage::Idle => false,
             Stage::Project => true,
-            Stage::Geometry => self.engine.geometry().is_some(),
+            Stage::Geometry | Stage::Lines => self.engine.geometry().is_some(),
             Stage::Raster => self.engine.raster().is_some(),
         }
     }
@@ -209,7 +215,7 @@ impl GatewareRenderer {
         output: &mut Output,
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
-        let has_geometry = match (self.stage, &frame.subject) {
+        let next = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
             (Stage::Project, Subject::Wireframe(wireframe)) => {
                 match self.project(wireframe, frame.size, 0) {
@@ -217,19 +223,22 @@ impl GatewareRenderer {
                     Ok(true) => {
                         let prepared = self.prepare_lines(frame.size, 0);
                         self.start_pass(prepared);
-                        Ok(true)
+                        Ok(Stage::Lines)
                     }
                     Err(error) => Err(error.into()),
                 }
             }
-            (Stage::Geometry, subject) => match (self.engine.geometry(), subject) {
-                (None, _) => return self.check_progress(output).err().map(Err),
-                (Some(Ok(())), Subject::Wireframe(_)) => {
-                    self.take_lines(0);
-                    Ok(false)
+            (Stage::Geometry | Stage::Lines, _) => match self.engine.geometry() {
+                None => return self.check_progress(output).err().map(Err),
+                Some(Err(error)) => Err(error.into()),
+                Some(Ok(())) if self.stage == Stage::Lines => {
+                    self.take_lines(frame, 0);
+                    Ok(Stage::Raster)
                 }
-                (Some(Ok(())), _) => self.continue_geometry(frame, 0),
-                (Some(Err(error)), _) => Err(error.into()),
+                Some(Ok(())) => {
+                    let runs = self.continue_geometry(frame, 0);
+                    runs.map(|runs| self.after_geometry(runs, frame))
+                }
             },
             _ => match self.engine.raster() {
                 None => return self.check_progress(output).err().map(Err),
@@ -240,27 +249,34 @@ impl GatewareRenderer {
                 Some(Err(error)) => Err(error.into()),
             },
         };
-        self.enter(has_geometry, frame, output).err().map(Err)
+        self.enter(next, frame, output).err().map(Err)
     }
 
-    /// Enters the stage after the start of a geometry pass (`Ok(true)`), or after the end of the last one (`Ok(false)`).
+    /// The stage of a frame whose next geometry pass `runs`, or after the last one, when this starts the pass of a mesh's edges.
+    fn after_geometry(&mut self, runs: bool, frame: &Frame) -> Stage {
+        if runs {
+            return Stage::Geometry;
+        }
+        if let Subject::Edges(..) = frame.subject {
+            self.start_edges(frame.size);
+            return Stage::Lines;
+        }
+        Stage::Raster
+    }
+
+    /// Enters the stage of a geometry pass that was started, or that of the raster pass, which it starts.
     fn enter(
         &mut self,
-        has_geometry: Result<bool, Fallback>,
+        next: Result<Stage, Fallback>,
         frame: &Frame,
         output: &mut Output,
     ) -> Result<(), Fallback> {
-        self.stage = match has_geometry {
-            Ok(true) => {
-                self.pass_start = cpu::cycles_low();
-                Stage::Geometry
-            }
-            Ok(false) => {
-                self.start_raster(frame, output, self.sets(0));
-                Stage::Raster
-            }
-            Err(error) => return Err(self.give_up(output, error)),
-        };
+        self.stage = next.map_err(|error| self.give_up(output, error))?;
+        if self.stage == Stage::Raster {
+            self.start_raster(frame, output, self.sets(0));
+        } else {
+            self.pass_start = cpu::cycles_low();
+        }
         Ok(())
     }
 
@@ -274,8 +290,12 @@ impl GatewareRenderer {
             return Ok(());
         }
         self.prepare_geometry(frame, 0)?;
-        let has_geometry = self.start_geometry(frame, 0, cpu);
-        self.enter(has_geometry, frame, output)
+        let runs = self.start_geometry(frame, 0, cpu);
+        let next = runs.and_then(|runs| {
+            self.project_edges(frame, cpu)?;
+            Ok(self.after_geometry(runs, frame))
+        });
+        self.enter(next, frame, output)
     }
 
     /// Stores the time and the counters at the start of a measurement, and resets the watchdog.
@@ -321,6 +341,7 @@ impl GatewareRenderer {
                 mesh,
                 field: field.as_ref().map(raymarch::ray_counts),
                 wireframe,
+                edges: matches!(frame.subject, Subject::Edges(..)).then_some(self.edges),
             },
             counters,
             lack: mesh.and_then(|_| self.geometry.lack()),
@@ -377,7 +398,8 @@ impl GatewareRenderer {
 
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
     pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
-        if matches!(frame.subject, Subject::Wireframe(_)) && !self.draws_lines {
+        let has_lines = matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..));
+        if has_lines && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
         for (mesh, _) in (0..).map_while(|number| frame.subject.coloured_mesh(number)) {

@@ -29,6 +29,7 @@ impl GatewareRenderer {
             (Subject::Wireframe(wireframe), _) => {
                 self.repeat_lines(wireframe, frame, output, count)
             }
+            (Subject::Edges(..), _) => self.repeat_edges(frame, output, cpu, count),
             (_, Some(_)) => self.repeat_meshes(frame, output, cpu, count),
             (_, None) => self.repeat_field(frame, output, count),
         }
@@ -100,7 +101,11 @@ impl GatewareRenderer {
     }
 
     /// Cancels the frame if `result` is an error.
-    fn check<T>(&mut self, result: Result<T, Fallback>, output: &Output) -> Result<T, Fallback> {
+    pub(super) fn check<T>(
+        &mut self,
+        result: Result<T, Fallback>,
+        output: &Output,
+    ) -> Result<T, Fallback> {
         result.map_err(|error| self.give_up(output, error))
     }
 

@@ -15,7 +15,7 @@ use crate::colour::{Shading, Winding};
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{Background, Light, Material, Rgb};
-use crate::picture::Backend;
+use crate::picture::{Backend, Edges};
 use crate::stereo::Stereo;
 use crate::wireframe::Key;
 use crate::words::Words;
@@ -92,6 +92,7 @@ commands! {
         cull Cull(on: bool): "turn culling of back faces on or off";
         clip Clip(far: Or<Off, U8_28>): "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
         winding Winding(rule: Winding): "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
+        edges Edges(edges: Option<Or<Off, Edges>>): "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
         prepass Prepass(on: bool): "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";

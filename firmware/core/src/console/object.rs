@@ -23,7 +23,7 @@ pub enum ObjectAction<'a> {
     Change {
         /// Number of the object, from 1.
         number: u32,
-        /// What is done after the object's operations so far.
+        /// The operation that follows those of the object's place, or its new colour.
         next: Place,
     },
     /// Remove the object with this number, from 1; `None` removes all objects.

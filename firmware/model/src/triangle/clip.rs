@@ -14,7 +14,7 @@ use crate::triangle::volume::Volume;
 /// Largest number of vertices of a clipped triangle. Each of the six planes replaces every run of consecutive outside
 /// vertices by two vertices, and n vertices have at most n/2 such runs: 3 → 4 → 6 → 9 → 13 → 19 → 28. (A convex polygon reaches
 /// 9, but rounding may make a polygon concave.)
-const MAX_VERTICES: usize = 28;
+pub const MAX_VERTICES: usize = 28;
 
 /// The polygon that remains of a triangle after clipping.
 #[derive(Clone, Debug, Default)]

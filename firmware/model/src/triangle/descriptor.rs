@@ -148,6 +148,15 @@ impl ListCounts {
         descriptors: 0,
         is_full: false,
     };
+
+    /// The counts of a set of `descriptors` descriptors and its lists, which a geometry pass has written.
+    pub fn of(lists: &[u32], descriptors: u32) -> Self {
+        Self {
+            lengths: lists.first_chunk().copied().unwrap_or([0; LENGTHS]),
+            descriptors,
+            is_full: lists.len() < LENGTHS,
+        }
+    }
 }
 
 /// Writes descriptors and band lists in the format of the geometry pass.

@@ -100,7 +100,8 @@ impl Placed {
         vertices: [&ScreenVertex; 3],
         light: Option<&[Light; 3]>,
     ) -> Option<Self> {
-        if frame.is_placed || options.winding == Winding::Screen || options.light.is_some() {
+        let is_plain = options.light.is_none() && options.colour.is_none();
+        if frame.is_placed || options.winding == Winding::Screen || !is_plain {
             return Self::optional(frame, options, triangle, vertices, light);
         }
         let oriented = Oriented::new(vertices.map(|v| *v))?;
@@ -119,8 +120,8 @@ impl Placed {
         })
     }
 
-    /// Prepares a triangle of an object, in a light other than white light at the camera, or by its place on the screen
-    /// ([`Winding::Screen`]); the last is never culled.
+    /// Prepares a triangle of an object, with a colour in place of its own, in a light other than white light at the camera, or by its
+    /// place on the screen ([`Winding::Screen`]); the last is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]

@@ -245,6 +245,33 @@ pub fn set_up_parts<'a>(
     Ok(stats)
 }
 
+/// Runs the vertex stage for all vertices of a chunk.
+///
+/// Not inlined, so that the loop over vertices keeps the registers for itself.
+#[inline(never)]
+pub fn project_chunk(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
+    for (vertex, projected) in chunk.vertices().zip(&mut *scratch) {
+        *projected = project(frame, &transform(frame, vertex.position));
+    }
+    if frame.volume != Volume::Guard {
+        mark_outside(frame, chunk, scratch);
+    }
+}
+
+/// Marks the vertices outside of the view volume, which need clipping.
+///
+/// Not inlined, so that frames with the guard band do not load this code into the instruction cache.
+#[inline(never)]
+fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
+    for (vertex, projected) in chunk.vertices().zip(scratch) {
+        if let Projected::Visible(place) = *projected
+            && !contains(frame, &transform(frame, vertex.position))
+        {
+            *projected = Projected::BeyondGuard(place);
+        }
+    }
+}
+
 /// The path of a triangle after the vertex stage.
 enum Path<'a> {
     /// Not drawn, because the triangle lies wholly beyond one side of the picture or behind the near plane.
@@ -268,7 +295,7 @@ impl Renderer<'_, '_> {
     fn regular(&mut self, mesh: &Mesh, scratch: &mut [Projected]) {
         let mut index = 0;
         for chunk in mesh.chunks() {
-            self.project(&chunk, scratch);
+            project_chunk(&self.frame, &chunk, scratch);
             for triangle in chunk.triangles() {
                 match self.path(&triangle, scratch) {
                     Path::Unseen => {}
@@ -304,7 +331,7 @@ impl Renderer<'_, '_> {
         let mut index = 0;
         for chunk in mesh.chunks() {
             if !is_projected {
-                self.project(&chunk, scratch);
+                project_chunk(&self.frame, &chunk, scratch);
             }
             for triangle in chunk.triangles() {
                 if let Path::Exception = self.path(&triangle, scratch) {
@@ -319,33 +346,6 @@ impl Renderer<'_, '_> {
             }
         }
         left
-    }
-
-    /// Runs the vertex stage for all vertices of a chunk.
-    ///
-    /// Not inlined, so that the loop over vertices keeps the registers for itself.
-    #[inline(never)]
-    fn project(&self, chunk: &Chunk, scratch: &mut [Projected]) {
-        for (vertex, projected) in chunk.vertices().zip(&mut *scratch) {
-            *projected = project(&self.frame, &transform(&self.frame, vertex.position));
-        }
-        if self.frame.volume != Volume::Guard {
-            self.mark_outside(chunk, scratch);
-        }
-    }
-
-    /// Marks the vertices outside of the view volume, which need clipping.
-    ///
-    /// Not inlined, so that frames with the guard band do not load this code into the instruction cache.
-    #[inline(never)]
-    fn mark_outside(&self, chunk: &Chunk, scratch: &mut [Projected]) {
-        for (vertex, projected) in chunk.vertices().zip(scratch) {
-            if let Projected::Visible(place) = *projected
-                && !contains(&self.frame, &transform(&self.frame, vertex.position))
-            {
-                *projected = Projected::BeyondGuard(place);
-            }
-        }
     }
 
     fn path<'s>(&self, triangle: &Triangle, scratch: &'s [Projected]) -> Path<'s> {

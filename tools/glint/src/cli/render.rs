@@ -12,10 +12,9 @@ use glint::console::Console;
 use glint::error::FormatError;
 use glint::model::Model;
 use glint::object::Description;
-use glint::picture::Image;
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
-    Renderer, Route, Stats, Subject, Wireframe, draw_edges, edges,
+    Renderer, Route, Stats, Subject,
 };
 use glint::scene::Scene;
 use glint::transfer::Progress;
@@ -25,7 +24,7 @@ use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::U8_28;
 use glint_core::matrix::Matrix;
 use glint_core::mesh::{Mesh, MeshError};
-use glint_core::picture::{Backend, Size};
+use glint_core::picture::{Backend, Edges, Size};
 use glint_model::{Clip, MAX_EYE, Object, Placement, RenderError};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -117,8 +116,8 @@ pub struct RenderArguments {
     winding: Winding,
     /// Draw the edges of the model, white, each once: `hidden` (edges alone, without those that faces hide), or `over` (over the shaded
     /// faces).
-    #[arg(long, value_enum, requires = "model", conflicts_with_all = ["field", "object"])]
-    wireframe: Option<Wireframe>,
+    #[arg(long, value_parser = named(Edges::ALL, Edges::name), requires = "model", conflicts_with_all = ["field", "object"])]
+    wireframe: Option<Edges>,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
@@ -208,7 +207,10 @@ impl RenderArguments {
         let subject = match (mesh, field) {
             _ if !objects.is_empty() => Subject::Objects(&objects),
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
-            (Some(mesh), None) => Subject::Mesh(mesh),
+            (Some(mesh), None) => match self.wireframe {
+                None => Subject::Mesh(mesh),
+                Some(edges) => Subject::edges(mesh, edges),
+            },
             (None, Some(field)) => Subject::Field(field),
             (None, None) => {
                 anyhow::bail!("expected a model, a --field, an --object or a --scene, found none")
@@ -222,10 +224,7 @@ impl RenderArguments {
 
     /// Renders a frame, and writes pictures and statistics.
     fn write(&self, frame: &Frame) -> anyhow::Result<()> {
-        let Rendered { mut image, stats } = self.render(frame)?;
-        if let Some(wireframe) = self.wireframe {
-            draw_wireframe(wireframe, frame, &mut image)?;
-        }
+        let Rendered { image, stats } = self.render(frame)?;
         write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.depth {
             let scale = frame.constants()?.depth_scale();
@@ -340,11 +339,6 @@ impl RenderArguments {
             "--capture monitor: expected the virtual board, found --board {}",
             self.board
         );
-        anyhow::ensure!(
-            self.wireframe.is_none() || self.board == ModelOrBoard::Model,
-            "--wireframe: expected --board model, found --board {}",
-            self.board
-        );
         match &self.board {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
@@ -397,16 +391,6 @@ impl RenderArguments {
 }
 
 /// Captures the frame on the virtual board's monitor, scaled back to the frame's own size.
-/// Draws the edges of a frame's mesh into its picture.
-fn draw_wireframe(wireframe: Wireframe, frame: &Frame, image: &mut Image) -> anyhow::Result<()> {
-    let constants = frame.constants()?;
-    let mesh = frame.subject.mesh_part().zip(constants.mesh());
-    let (subject, setup) = mesh.context("expected a frame with a mesh")?;
-    let edges = edges(&subject.mesh, setup, subject.cull);
-    draw_edges(image, wireframe, frame.clear, &edges, setup);
-    Ok(())
-}
-
 fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u16>> {
     let spinner = spinner("capturing a frame of the monitor");
     let picture = board.inner().capture()?;
@@ -448,6 +432,12 @@ pub fn print_stats(stats: &Stats) -> anyhow::Result<()> {
         say(format_args!(
             "segments   {} in, {} drawn as lines, {} pixels",
             counts.segments, counts.lines, counts.line_pixels
+        ))?;
+    }
+    if let Some(counts) = &stats.edges {
+        say(format_args!(
+            "edges      {} in, {} drawn as lines",
+            counts.edges_in, counts.edges_drawn
         ))?;
     }
     if let (Some(cycles), Some(clock)) = (stats.cycles, stats.clock) {

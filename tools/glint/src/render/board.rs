@@ -14,7 +14,7 @@ use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
-use glint_model::{Frame, Object};
+use glint_model::{Frame, Object, Subject};
 
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
@@ -104,7 +104,11 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         if let Some(mesh) = frame.subject.mesh_part() {
-            for command in mesh_commands(mesh) {
+            let edges = match frame.subject {
+                Subject::Edges(_, edges) => Some(edges),
+                _ => None,
+            };
+            for command in mesh_commands(mesh, edges) {
                 self.console.command(&command)?;
             }
             self.upload(mesh.mesh.bytes(), None, route, progress)?;
@@ -169,7 +173,9 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         progress: &mut Progress,
     ) -> Result<(), Error> {
         self.console.command("object remove all")?;
-        let options = objects.first().map(|object| mesh_commands(&object.subject));
+        let options = objects
+            .first()
+            .map(|object| mesh_commands(&object.subject, None));
         for command in options.iter().flatten() {
             self.console.command(command)?;
         }

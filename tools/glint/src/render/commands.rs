@@ -5,7 +5,7 @@ use glint_core::camera::View;
 use glint_core::choice::switch_name;
 use glint_core::light::{Hexadecimal, MeshLighting};
 use glint_core::object::Place;
-use glint_core::picture::Size;
+use glint_core::picture::{Edges, Size};
 use glint_model::{Clip, FieldSubject, MeshSubject, Object};
 
 /// The console command that sets the picture's size.
@@ -13,8 +13,8 @@ pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
 }
 
-/// The console commands that set the options of a mesh.
-pub fn mesh_commands(subject: &MeshSubject) -> [String; 4] {
+/// The console commands that set the options of a mesh, and show its faces alone or its edges.
+pub fn mesh_commands(subject: &MeshSubject, edges: Option<Edges>) -> [String; 5] {
     [
         format!("cull {}", switch_name(subject.cull)),
         format!("shading {}", subject.shading),
@@ -23,6 +23,7 @@ pub fn mesh_commands(subject: &MeshSubject) -> [String; 4] {
             Clip::View { far } => format!("clip {far}"),
         },
         format!("winding {}", subject.winding),
+        format!("edges {}", edges.map_or("off", Edges::name)),
     ]
 }
 

@@ -5,7 +5,6 @@
 
 mod board;
 mod commands;
-mod edges;
 mod model;
 mod renderer;
 mod stats;
@@ -13,8 +12,7 @@ mod stats;
 pub use crate::transfer::Route;
 pub use board::BoardRenderer;
 pub use commands::{field_commands, lighting_commands, mesh_commands, size_command, view_command};
-pub use edges::{EdgeCounts, Wireframe, draw_edges, edges};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 pub use model::{ModelRenderer, on_model};
 pub use renderer::{Error, Parts, Rendered, Renderer};
-pub use stats::{RayCounts, Stats, TriangleCounts, WireframeCounts};
+pub use stats::{EdgeCounts, RayCounts, Stats, TriangleCounts, WireframeCounts};

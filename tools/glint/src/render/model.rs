@@ -3,7 +3,8 @@
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use crate::picture::Image;
 use crate::transfer::Progress;
-use glint_model::{Frame, FrameBuffer, Projected};
+use glint_model::edges::EdgeList;
+use glint_model::{Frame, FrameBuffer, FrameStats, Projected, RenderError, Subject};
 
 /// Renders with the bit-exact model in this process, without a board.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,14 +35,33 @@ pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
         depth: &mut image.depth,
     };
     let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-    let stats = frame
-        .constants()
-        .and_then(|constants| frame.draw(&constants, &mut buffer, &mut scratch, &mut || {}))
-        .map_err(Error::Render)?;
+    let stats = draw(frame, &mut buffer, &mut scratch).map_err(Error::Render)?;
     Ok(Rendered {
         image,
         stats: stats.into(),
     })
+}
+
+fn draw(
+    frame: &Frame,
+    buffer: &mut FrameBuffer,
+    scratch: &mut [Projected],
+) -> Result<FrameStats, RenderError> {
+    let constants = frame.constants()?;
+    let mut stats = frame.draw(&constants, buffer, scratch, &mut || {})?;
+    if let Subject::Edges(subject, _) = &frame.subject {
+        let mut memory = vec![0; EdgeList::words(&subject.mesh)];
+        let mut list = EdgeList::new(&mut memory);
+        frame.draw_edges(
+            &constants,
+            &mut list,
+            buffer,
+            scratch,
+            &mut || {},
+            &mut stats,
+        )?;
+    }
+    Ok(stats)
 }
 
 #[cfg(test)]
@@ -50,8 +70,10 @@ mod tests {
     use crate::render::Rendered;
     use crate::{convert, generate, view};
     use glint_core::mesh::Mesh;
-    use glint_core::picture::Size;
-    use glint_model::{Frame, Subject};
+    use glint_core::picture::{Edges, Size};
+    use glint_model::edges::EdgeList;
+    use glint_model::line::{LineDepth, Segment};
+    use glint_model::{Frame, FrameBuffer, Projected, RenderError, Subject};
 
     #[test]
     fn the_cube_from_the_front() {
@@ -79,5 +101,93 @@ mod tests {
             triangles.pixels_drawn.unwrap(),
             image.depth.iter().filter(|&&code| code > 0).count() as u64
         );
+    }
+    /// On a sphere, whose faces hide no edge of another front face, each edge of a front face has all its pixels, and edges of back
+    /// faces alone have none, except at the silhouette. At vertices other faces hide up to 4 of 1,352 pixels.
+    #[test]
+    fn faces_hide_the_edges_behind_them_alone() {
+        let model = generate::named("icosphere:6").unwrap();
+        let (mesh, _) = convert::convert(&model, convert::Options::default()).unwrap();
+        let mesh = Mesh::new_checked(&mesh).unwrap();
+        let mut memory = vec![0; EdgeList::words(&mesh)];
+        let mut list = EdgeList::new(&mut memory);
+        for camera in ["2,30,60", "2.5,200,90", "4,77,10"] {
+            for size in [Size::W320, Size::W1280] {
+                let frame = Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size);
+                let constants = frame.constants().unwrap();
+                let setup = constants.mesh().unwrap();
+                let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+                // Segments of front faces, and of back faces alone, which need no bias.
+                let mut segments = [const { Vec::new() }; 2];
+                let mut put = |segment: Segment| {
+                    let is_back = segment.depth == LineDepth::Tested { bias: 0 };
+                    segments[usize::from(is_back)].push(segment);
+                };
+                let quiet = &mut || {};
+                let counts = list.segments(&mesh, true, setup, &mut scratch, quiet, &mut put);
+                assert_eq!(counts.unwrap().edges, 3 * 720 / 2);
+                let image = on_model(&frame).unwrap().image;
+                let counts = segments.map(|segments| {
+                    let mut everywhere = image.clone();
+                    everywhere.depth.fill(0);
+                    [image.clone(), everywhere].map(|mut image| {
+                        let mut target = FrameBuffer {
+                            width: image.width,
+                            height: image.height,
+                            colour: &mut image.colour,
+                            depth: &mut image.depth,
+                        };
+                        let drawn = segments.iter().map(|segment| segment.draw(&mut target));
+                        drawn.sum::<u32>()
+                    })
+                });
+                println!("{camera}, {size:?}: {counts:?}");
+                let [front, back] = counts;
+                assert!(200 * (front[1] - front[0]) <= front[1]);
+                assert!(20 * back[0] <= back[1]);
+            }
+        }
+    }
+
+    #[test]
+    fn a_list_of_edges_needs_memory_for_all_of_them() {
+        let model = generate::named("icosphere:2").unwrap();
+        let (mesh, _) = convert::convert(&model, convert::Options::default()).unwrap();
+        let mesh = Mesh::new_checked(&mesh).unwrap();
+        // 80 triangles, and 120 edges in a table of 128 slots.
+        let mut memory = vec![0; 3 * 80 + 4 * 128];
+        assert_eq!(EdgeList::new(&mut memory).make(&mesh, &mut || {}), Ok(()));
+        memory.pop();
+        let refused = EdgeList::new(&mut memory).make(&mesh, &mut || {});
+        assert_eq!(refused, Err(RenderError::Edges { triangles: 80 }));
+    }
+
+    /// Frames of edges have the depths of the faces or of edges before them; hidden ones have no other colours than black and white.
+    #[test]
+    fn edges_lie_over_the_faces() {
+        let model = generate::named("sponge:1").unwrap();
+        let (mesh, _) = convert::convert(&model, convert::Options::default()).unwrap();
+        let subject = Subject::mesh(Mesh::new_checked(&mesh).unwrap());
+        let faces = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
+        let expected = on_model(&faces).unwrap().image;
+        let [hidden, over] = Edges::ALL.map(|edges| {
+            let subject = Subject::edges(*subject.mesh_part().unwrap(), edges);
+            on_model(&Frame { subject, ..faces }).unwrap()
+        });
+        assert_eq!(hidden.stats, over.stats);
+        assert!(hidden.image.depth == over.image.depth);
+        let mut lines = 0;
+        for (at, &depth) in expected.depth.iter().enumerate() {
+            let is_line = hidden.image.colour[at] == 0xFFFF;
+            assert!(is_line || hidden.image.colour[at] == 0);
+            if is_line {
+                assert!(hidden.image.depth[at] >= depth && over.image.colour[at] == 0xFFFF);
+                lines += 1;
+            } else {
+                assert!(hidden.image.depth[at] == depth);
+                assert!(over.image.colour[at] == expected.colour[at]);
+            }
+        }
+        assert!(lines > 2000, "{lines}");
     }
 }

@@ -20,6 +20,9 @@ pub struct Stats {
     /// Counts of the wireframe; `None` for a frame without one.
     #[serde(flatten)]
     pub wireframe: Option<WireframeCounts>,
+    /// Counts of the edges of a mesh; `None` for a frame without them.
+    #[serde(flatten)]
+    pub edges: Option<EdgeCounts>,
     /// Frequency of the board's clock in Hz; `None` from the model.
     pub clock: Option<u64>,
     /// The backend of a board: `cpu` or `gateware`.
@@ -43,7 +46,7 @@ pub struct TriangleCounts {
     pub triangles_drawn: u32,
     /// Pixels tested by the walker. The gateware's walker tests eight at a time.
     pub pixels_tested: u64,
-    /// Pixels covered by triangles; a pixel under several triangles counts for each of them.
+    /// Pixels covered by triangles, and by lines of edges; a pixel under several of them counts for each.
     pub pixels_covered: u64,
     /// Pixels written; `None` for a mesh in a field, where the gateware does not count the mesh's pixels apart from the field's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -76,6 +79,15 @@ pub struct WireframeCounts {
     pub line_pixels: u64,
 }
 
+/// Counts of the edges of a mesh.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EdgeCounts {
+    /// Edges of the mesh.
+    pub edges_in: u32,
+    /// Edges with a part in the volume of the frame, which are drawn as lines.
+    pub edges_drawn: u32,
+}
+
 impl RayCounts {
     /// Mean number of evaluations of the field per ray.
     pub fn evaluations_per_ray(&self) -> f64 {
@@ -97,6 +109,7 @@ impl From<FrameStats> for Stats {
             mesh,
             field,
             wireframe,
+            edges,
         } = stats;
         let mesh = mesh.map(|counts| TriangleCounts {
             triangles_in: counts.triangles_in,
@@ -119,11 +132,16 @@ impl From<FrameStats> for Stats {
             lines: counts.lines,
             line_pixels: counts.pixels,
         });
+        let edges = edges.map(|counts| EdgeCounts {
+            edges_in: counts.edges,
+            edges_drawn: counts.drawn,
+        });
         Self {
             cycles: None,
             mesh,
             rays,
             wireframe,
+            edges,
             clock: None,
             backend: None,
             engine: Counters::default(),

@@ -4,6 +4,7 @@
 
 mod attitudes;
 mod common;
+mod edges;
 mod fields;
 mod meshes;
 mod objects;

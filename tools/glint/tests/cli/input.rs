@@ -312,19 +312,6 @@ fn failures_other_than_bad_input() {
             &["render", "cube", "--out", "a.png", "--capture", "monitor"],
             "error: --capture monitor: expected the virtual board, found --board model",
         ),
-        (
-            &[
-                "render",
-                "cube",
-                "--out",
-                "a.png",
-                "--wireframe",
-                "over",
-                "--board",
-                "virtual",
-            ],
-            "error: --wireframe: expected --board model, found --board virtual",
-        ),
     ] {
         let output = glint(&folder, arguments);
         let error = String::from_utf8(output.stderr).unwrap();

@@ -1,0 +1,241 @@
+//! The edges of a mesh, each once, and their segments in a frame.
+
+use glint_core::mesh::{Chunk, Mesh, Triangle};
+
+use super::table::{KEY_WORDS, Table};
+use super::{Biases, Corner, EdgeStats, face, segment};
+use crate::error::RenderError;
+use crate::line::Segment;
+use crate::triangle::{MeshSetup, Projected, project_chunk};
+
+/// Number of triangles between two calls of `progress`.
+const TRIANGLES_A_CALL: usize = 64;
+
+/// In place of the number of an edge without length.
+const NONE: u32 = u32::MAX;
+/// Mark of the number of an edge in the first triangle at it, from which the edge is drawn.
+const FIRST: u32 = 1 << 31;
+
+/// The numbers of a triangle's edges, from each corner to the next one.
+type Sides = [u32; 3];
+
+/// The edges of a mesh, each once: edges between the same two positions are the same, whatever their vertices.
+///
+/// The list is made when a mesh is drawn first, and kept in memory of the caller. It needs three words for each triangle, and
+/// four times the next power of two above the number of edges.
+pub struct EdgeList<'m> {
+    /// [`Sides`] for each triangle; then, while the list is made, a [`Table`] of the edges, and later the [`Biases`] of each edge.
+    memory: &'m mut [u32],
+    /// Address and length of the mesh.
+    mesh: Option<(usize, usize)>,
+    /// Number of edges.
+    count: usize,
+}
+
+impl<'m> EdgeList<'m> {
+    /// An empty list in `memory`.
+    pub const fn new(memory: &'m mut [u32]) -> Self {
+        Self {
+            memory,
+            mesh: None,
+            count: 0,
+        }
+    }
+
+    /// Number of words of memory that suffice for the list of a mesh.
+    pub fn words(mesh: &Mesh) -> usize {
+        let triangles = mesh.triangle_count() as usize;
+        3 * triangles + Table::words(3 * triangles)
+    }
+
+    /// Empties the list. This is necessary when the memory of its mesh has been written: a list is made again for a mesh with another
+    /// address or length only.
+    pub const fn clear(&mut self) {
+        self.mesh = None;
+    }
+
+    /// Makes the list of a mesh, unless it is that of the mesh already.
+    ///
+    /// Not inlined, as most frames need only the code after it.
+    ///
+    /// # Errors
+    /// [`RenderError::Edges`] for a mesh with too many edges.
+    #[inline(never)]
+    pub fn make(&mut self, mesh: &Mesh, progress: &mut dyn FnMut()) -> Result<(), RenderError> {
+        let bytes = mesh.bytes();
+        let place = Some((bytes.as_ptr().addr(), bytes.len()));
+        if self.mesh == place {
+            return Ok(());
+        }
+        self.mesh = None;
+        let triangles = mesh.triangle_count();
+        let full = RenderError::Edges { triangles };
+        let (sides, rest) = split(self.memory, triangles).ok_or(full)?;
+        let mut table = Table::new(rest, 3 * triangles as usize).ok_or(full)?;
+        let mut sides = sides.iter_mut();
+        for chunk in mesh.chunks() {
+            let numbered = chunk.triangles().zip(sides.by_ref());
+            for (index, (triangle, sides)) in numbered.enumerate() {
+                if index % TRIANGLES_A_CALL == 0 {
+                    progress();
+                }
+                let corners = corners(&triangle, |i| Some(chunk.vertex(i)?.position));
+                let Some(corners) = corners else { continue };
+                for (ends, number) in edges(corners).into_iter().zip(sides) {
+                    let [from, to] = ordered(ends, |at| *at);
+                    *number = NONE;
+                    if from != to {
+                        let (edge, is_first) = table.insert(key([from, to])).ok_or(full)?;
+                        *number = if is_first { edge | FIRST } else { edge };
+                    }
+                }
+            }
+        }
+        self.count = table.len();
+        self.mesh = place;
+        Ok(())
+    }
+
+    /// Calls `emit` with the segment of each edge of a mesh that has a part in the volume of the frame, in the order of the triangles.
+    /// With `cull`, back faces need no bias. `scratch` has room for the vertices of the largest chunk. Calls `progress` at short intervals.
+    ///
+    /// # Errors
+    /// [`RenderError::Edges`] or [`RenderError::Scratch`]; no segment was then emitted.
+    pub fn segments(
+        &mut self,
+        mesh: &Mesh,
+        cull: bool,
+        frame: &MeshSetup,
+        scratch: &mut [Projected],
+        progress: &mut dyn FnMut(),
+        emit: &mut dyn FnMut(Segment),
+    ) -> Result<EdgeStats, RenderError> {
+        let (expected, found) = (mesh.largest_chunk(), scratch.len());
+        let scratch = scratch
+            .get_mut(..expected)
+            .ok_or(RenderError::Scratch { expected, found })?;
+        self.make(mesh, progress)?;
+        let triangles = mesh.triangle_count();
+        let full = RenderError::Edges { triangles };
+        let (sides, rest) = split(self.memory, triangles).ok_or(full)?;
+        let biases = rest.get_mut(..self.count).ok_or(full)?;
+        biases.fill(0);
+
+        let mut numbers = sides.iter();
+        for chunk in mesh.chunks() {
+            project_chunk(frame, &chunk, scratch);
+            let numbered = chunk.triangles().zip(numbers.by_ref());
+            for (index, (triangle, sides)) in numbered.enumerate() {
+                if index % TRIANGLES_A_CALL == 0 {
+                    progress();
+                }
+                let Some(corners) = projected(&triangle, &chunk, scratch) else {
+                    continue;
+                };
+                let needed = face(frame, &corners, cull);
+                for &number in sides {
+                    if let Some(stored) = biases.get_mut((number & !FIRST) as usize) {
+                        let [a, b] = unpacked(*stored);
+                        *stored = packed([a.max(needed[0]), b.max(needed[1])]);
+                    }
+                }
+            }
+        }
+
+        let mut drawn = 0;
+        let mut numbers = sides.iter();
+        // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
+        let is_projected = mesh.chunks().nth(1).is_none();
+        for chunk in mesh.chunks() {
+            if !is_projected {
+                project_chunk(frame, &chunk, scratch);
+            }
+            let numbered = chunk.triangles().zip(numbers.by_ref());
+            for (index, (triangle, sides)) in numbered.enumerate() {
+                if index % TRIANGLES_A_CALL == 0 {
+                    progress();
+                }
+                let Some(corners) = projected(&triangle, &chunk, scratch) else {
+                    continue;
+                };
+                for (ends, number) in edges(corners).into_iter().zip(sides) {
+                    if number & FIRST == 0 {
+                        continue;
+                    }
+                    let ends = ordered(ends, |(at, _)| *at);
+                    let stored = biases.get((number & !FIRST) as usize);
+                    if let Some(&stored) = stored
+                        && let Some(segment) = segment(frame, ends, unpacked(stored))
+                    {
+                        drawn += 1;
+                        emit(segment);
+                    }
+                }
+            }
+        }
+        Ok(EdgeStats {
+            edges: self.count as u32,
+            drawn,
+        })
+    }
+}
+
+/// The memory for the [`Sides`] of all triangles, and the rest; `None` if it is too small.
+fn split(memory: &mut [u32], triangles: u32) -> Option<(&mut [Sides], &mut [u32])> {
+    let (sides, rest) = memory.split_at_mut_checked(3 * triangles as usize)?;
+    Some((sides.as_chunks_mut().0, rest))
+}
+
+/// What `of` returns for the vertices of a triangle, by their indices. A checked mesh has all of them.
+fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T; 3]> {
+    let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| of(usize::from(i))) else {
+        return None;
+    };
+    Some([a, b, c])
+}
+
+/// The corners of a triangle, of a chunk with these projected vertices.
+fn projected<'s>(
+    triangle: &Triangle,
+    chunk: &Chunk,
+    vertices: &'s [Projected],
+) -> Option<[Corner<'s>; 3]> {
+    corners(triangle, |i| {
+        Some((chunk.vertex(i)?.position, vertices.get(i)?))
+    })
+}
+
+/// The edges of a triangle, from each corner to the next one.
+const fn edges<T: Copy>([a, b, c]: [T; 3]) -> [[T; 2]; 3] {
+    [[a, b], [b, c], [c, a]]
+}
+
+/// The ends of an edge from the smaller to the larger position.
+fn ordered<T>([from, to]: [T; 2], position: impl Fn(&T) -> [i16; 3]) -> [T; 2] {
+    if position(&from) <= position(&to) {
+        [from, to]
+    } else {
+        [to, from]
+    }
+}
+
+/// Two positions as the words of an edge.
+fn key([[ax, ay, az], [bx, by, bz]]: [[i16; 3]; 2]) -> [u32; KEY_WORDS] {
+    [
+        packed_pair(ax, ay),
+        packed_pair(az, bx),
+        packed_pair(by, bz),
+    ]
+}
+
+const fn packed_pair(low: i16, high: i16) -> u32 {
+    packed([low as u16, high as u16])
+}
+
+const fn packed([low, high]: [u16; 2]) -> u32 {
+    low as u32 | (high as u32) << 16
+}
+
+const fn unpacked(word: u32) -> Biases {
+    [word as u16, (word >> 16) as u16]
+}

@@ -1,0 +1,81 @@
+//! The edges of meshes on the virtual board: segments by the soft core, lines by the line engine, drawn as the model draws them.
+
+use crate::common::{mesh, renderer, running_board};
+use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
+use glint::view;
+use glint_core::colour::Winding;
+use glint_core::fixed::U8_28;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Edges, Size};
+use glint_model::Clip;
+
+/// A mesh of one chunk with its triangles in reverse order.
+fn reversed(mesh: &[u8]) -> Vec<u8> {
+    let triangles = Mesh::new_checked(mesh).unwrap().triangle_count() as usize;
+    let (before, triangles) = mesh.split_at(mesh.len() - 16 * triangles);
+    let records = triangles.chunks_exact(16).rev();
+    before.iter().chain(records.flatten()).copied().collect()
+}
+
+/// Hidden edges and edges over the faces: whole triangles, clipped ones (which the soft core appends to the lists of the others), and
+/// triangles that it sets up all.
+#[test]
+fn edges_are_the_models() {
+    let [sphere, sponge] = ["icosphere:3", "sponge:1"].map(mesh);
+    let other = reversed(&sphere);
+    let outside = view::spherical("2,30,60").unwrap();
+    let inside = view::look("0,-0.3,0.1,20,10").unwrap();
+    let far = Clip::View {
+        far: U8_28::lit("2.1"),
+    };
+    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
+    let clipped = MeshSubject {
+        clip: far,
+        winding: Winding::Screen,
+        ..plain(&sponge)
+    };
+    let both_sides = MeshSubject {
+        cull: false,
+        ..plain(&sphere)
+    };
+    let (hidden, over) = (Some(Edges::Hidden), Some(Edges::Over));
+    let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
+    let cases = [
+        (plain(&sphere), outside, hidden, gateware),
+        // Without edges the board keeps the list of the mesh before. The next mesh comes to the place of that one.
+        (plain(&sphere), outside, None, gateware),
+        (plain(&other), outside, hidden, gateware),
+        (plain(&sponge), inside, over, gateware),
+        (clipped, outside, hidden, gateware),
+        (both_sides, outside, over, cpu),
+    ];
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let parts = Parts {
+        colour: true,
+        depth: true,
+    };
+    let quiet = &mut |_, _| {};
+    for (number, (subject, view, edges, backend)) in cases.into_iter().enumerate() {
+        let subject = match edges {
+            Some(edges) => Subject::edges(subject, edges),
+            None => Subject::Mesh(subject),
+        };
+        let frame = Frame::new(subject, view, Size::W320);
+        let expected = render::on_model(&frame).unwrap();
+        renderer.set_backend(backend);
+        let found = renderer.render(&frame, parts, quiet).unwrap();
+        assert!(found.image == expected.image, "case {number}");
+        let by = found.stats.backend.as_deref();
+        assert_eq!(by, Some(backend.name()), "case {number}");
+        assert_eq!(found.stats.edges, expected.stats.edges, "case {number}");
+        let counts = [&found, &expected].map(|rendered| {
+            let counts = rendered.stats.triangles();
+            let pixels = (counts.pixels_covered, counts.pixels_drawn);
+            (counts.triangles_drawn, counts.triangles_clipped, pixels)
+        });
+        assert_eq!(counts[0], counts[1], "case {number}");
+        let is_clipped = number == 3 || number == 4;
+        assert_eq!(counts[1].1 > 0, is_clipped, "case {number}");
+    }
+}
