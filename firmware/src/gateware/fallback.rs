@@ -63,6 +63,8 @@ pub enum Lack {
     Volume,
     /// The winding by the screen.
     Winding,
+    /// Ambient light on the dark sides of smooth triangles: the engine keeps one light for a vertex, that of one side.
+    DarkSides,
     /// Memory for a copy of the object's mesh with turned normals. Objects count from 1.
     Normals {
         /// Number of the object.
@@ -76,6 +78,7 @@ impl fmt::Display for Lack {
         match self {
             Self::Volume => f.write_str("no clipping to the view volume"),
             Self::Winding => f.write_str("no winding by the screen"),
+            Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
             Self::Normals { object } => write!(
                 f,
                 "no memory for the turned normals of object {object}, expected fewer or smaller objects of different scales"

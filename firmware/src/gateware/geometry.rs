@@ -257,10 +257,14 @@ const fn joins_clipped(frame: &Frame) -> bool {
 fn lack(frame: &Frame) -> Option<Lack> {
     let meshes = (0..).map_while(|number| frame.subject.coloured_mesh(number));
     let lacking = meshes.map(|(subject, _)| subject).find_map(|subject| {
+        let sees_dark_sides = subject.shading == Shading::Smooth && !subject.cull;
         if subject.clip != Clip::Guard {
             Some(Lack::Volume)
+        } else if subject.winding != Winding::Mesh {
+            Some(Lack::Winding)
         } else {
-            (subject.winding != Winding::Mesh).then_some(Lack::Winding)
+            let is_lit = sees_dark_sides && frame.mesh_lighting().ambient != [0; 3];
+            is_lit.then_some(Lack::DarkSides)
         }
     });
     let mut objects = frame.subject.objects().unwrap_or_default().iter();

@@ -21,7 +21,7 @@ fn reversed(mesh: &[u8]) -> Vec<u8> {
 /// triangles that it sets up all.
 #[test]
 fn edges_are_the_models() {
-    let [sphere, sponge] = ["icosphere:3", "sponge:1"].map(mesh);
+    let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
     let other = reversed(&sphere);
     let outside = view::spherical("2,30,60").unwrap();
     let inside = view::look("0,-0.3,0.1,20,10").unwrap();
