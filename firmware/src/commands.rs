@@ -43,7 +43,7 @@ pub fn execute<'l>(
             let Machine { models, scene, .. } = machine;
             models
                 .objects_mut()
-                .set_options(|mesh| scene.mesh_subject(mesh));
+                .set_options(|mesh| scene.options().subject(mesh));
             reply.map(Some)
         }
         None => Ok(None),

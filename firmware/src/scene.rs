@@ -5,15 +5,12 @@ use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Edges, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
 use glint_hal::triangle::Counters;
-use glint_model::scenes::Settings;
-use glint_model::{
-    Clip, FieldSubject, Frame, FrameStats, MeshSubject, RenderError, Subject, WireframeSubject,
-};
+use glint_model::scenes::{MeshOptions, Settings};
+use glint_model::{Clip, FieldSubject, Frame, FrameStats, RenderError, Subject, WireframeSubject};
 
 use crate::gateware::{Fallback, Lack};
 use crate::models::Models;
@@ -80,10 +77,7 @@ pub struct Scene {
     view: View,
     sphere: Sphere,
     size: Size,
-    cull: bool,
-    shading: Shading,
-    clip: Clip,
-    winding: Winding,
+    options: MeshOptions,
     backend: Backend,
     changed: bool,
     wants_depth: bool,
@@ -109,10 +103,7 @@ impl Scene {
             view: sphere.view()?,
             sphere,
             size: Size::default(),
-            cull: true,
-            shading: Shading::Flat,
-            clip: Clip::Guard,
-            winding: Winding::Mesh,
+            options: MeshOptions::default(),
             backend,
             changed: true,
             wants_depth: false,
@@ -120,20 +111,14 @@ impl Scene {
         })
     }
 
-    /// A mesh with the options of the scene.
-    pub const fn mesh_subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
-        MeshSubject {
-            mesh,
-            cull: self.cull,
-            shading: self.shading,
-            clip: self.clip,
-            winding: self.winding,
-        }
+    /// The options of all meshes.
+    pub const fn options(&self) -> &MeshOptions {
+        &self.options
     }
 
     /// The frame of the scene, with the shown mesh, objects or program of `models`.
     pub fn frame<'a>(&'a self, models: &'a Models) -> Frame<'a> {
-        let mesh = self.mesh_subject(*models.mesh());
+        let mesh = self.options.subject(*models.mesh());
         let subject = match (&self.wireframe, &self.field) {
             (Some(motion), _) => Subject::Wireframe(WireframeSubject {
                 program: *models.program(),
@@ -273,10 +258,8 @@ impl Scene {
     /// Sets camera, light and options of a built-in scene.
     pub fn set_all(&mut self, settings: &Settings) {
         self.set_view(settings.view);
-        self.set_cull(settings.cull);
-        self.set_shading(settings.shading);
-        self.set_clip(settings.clip);
-        self.set_winding(settings.winding);
+        self.changed |= self.options != settings.options;
+        self.options = settings.options;
         let mut appearance = self.appearance.clone();
         appearance.lights = [settings.lighting.light].into_iter().collect();
         appearance.ambient = Some(settings.lighting.ambient);
@@ -327,31 +310,31 @@ impl Scene {
 
     /// Sets whether back faces are culled.
     pub fn set_cull(&mut self, cull: bool) {
-        self.changed |= self.cull != cull;
-        self.cull = cull;
+        self.changed |= self.options.cull != cull;
+        self.options.cull = cull;
     }
 
     /// The shading of the mesh.
     pub const fn shading(&self) -> Shading {
-        self.shading
+        self.options.shading
     }
 
     /// Sets the shading of the mesh.
     pub fn set_shading(&mut self, shading: Shading) {
-        self.changed |= self.shading != shading;
-        self.shading = shading;
+        self.changed |= self.options.shading != shading;
+        self.options.shading = shading;
     }
 
     /// Sets the clipping of the mesh's triangles.
     pub fn set_clip(&mut self, clip: Clip) {
-        self.changed |= self.clip != clip;
-        self.clip = clip;
+        self.changed |= self.options.clip != clip;
+        self.options.clip = clip;
     }
 
     /// Sets the rule that tells which side of a triangle is seen.
     pub fn set_winding(&mut self, winding: Winding) {
-        self.changed |= self.winding != winding;
-        self.winding = winding;
+        self.changed |= self.options.winding != winding;
+        self.options.winding = winding;
     }
 
     /// The backend.

@@ -40,6 +40,13 @@ pub struct Settings {
     pub view: View,
     /// The light, and ambient light.
     pub lighting: MeshLighting,
+    /// Options of the meshes.
+    pub options: MeshOptions,
+}
+
+/// Options that all meshes of a scene have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MeshOptions {
     /// Whether back faces are left out.
     pub cull: bool,
     /// Source of the colours.
@@ -48,6 +55,31 @@ pub struct Settings {
     pub clip: Clip,
     /// The rule that tells which side of a triangle is seen.
     pub winding: Winding,
+}
+
+/// The options of [`MeshSubject::new`].
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self {
+            cull: true,
+            shading: Shading::Flat,
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
+        }
+    }
+}
+
+impl MeshOptions {
+    /// A mesh with these options.
+    pub const fn subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
+        MeshSubject {
+            mesh,
+            cull: self.cull,
+            shading: self.shading,
+            clip: self.clip,
+            winding: self.winding,
+        }
+    }
 }
 
 impl Settings {
@@ -63,10 +95,10 @@ impl Settings {
                 ambient: [0; 3],
                 light: light([3, -1, 2], [0xFF, 0xF0, 0xD8]),
             },
-            cull: true,
-            shading: Shading::Smooth,
-            clip: Clip::Guard,
-            winding: Winding::Mesh,
+            options: MeshOptions {
+                shading: Shading::Smooth,
+                ..MeshOptions::default()
+            },
         })
     }
 
@@ -85,24 +117,14 @@ impl Settings {
                 ambient: [0xFF; 3],
                 light: light([0, 0, 1], [0; 3]),
             },
-            cull: true,
-            shading: Shading::Flat,
-            clip: Clip::View {
-                far: U8_28::lit("3"),
+            options: MeshOptions {
+                clip: Clip::View {
+                    far: U8_28::lit("3"),
+                },
+                winding: Winding::Screen,
+                ..MeshOptions::default()
             },
-            winding: Winding::Screen,
         })
-    }
-
-    /// A mesh with the options of the scene.
-    pub const fn mesh_subject<'a>(&self, mesh: Mesh<'a>) -> MeshSubject<'a> {
-        MeshSubject {
-            mesh,
-            cull: self.cull,
-            shading: self.shading,
-            clip: self.clip,
-            winding: self.winding,
-        }
     }
 }
 

@@ -51,7 +51,8 @@ impl Scene {
             Self::Objects | Self::Wireframe => Settings::objects()?,
             Self::SimpleGpu => Settings::simplegpu()?,
         };
-        settings.shading = shading.unwrap_or(settings.shading);
+        let options = &mut settings.options;
+        options.shading = shading.unwrap_or(options.shading);
         let frame = |subject| Frame {
             lighting: settings.lighting,
             ..Frame::new(subject, view.unwrap_or(settings.view), size)
@@ -62,7 +63,7 @@ impl Scene {
                 let meshes: Vec<_> = objects.iter().map(|(shape, _)| bytes(*shape)).collect();
                 let objects = objects.iter().zip(&meshes).map(|((_, place), mesh)| {
                     Ok(Object {
-                        subject: settings.mesh_subject(Mesh::new_checked(mesh)?),
+                        subject: settings.options.subject(Mesh::new_checked(mesh)?),
                         placement: Placement::new(place.matrix),
                         colour: place.colour,
                     })
@@ -72,7 +73,7 @@ impl Scene {
             }
             Self::SimpleGpu => {
                 let mesh = bytes(scenes::SIMPLEGPU);
-                let subject = settings.mesh_subject(Mesh::new_checked(&mesh)?);
+                let subject = settings.options.subject(Mesh::new_checked(&mesh)?);
                 draw(&frame(Subject::Mesh(subject)))
             }
             Self::Wireframe => {
