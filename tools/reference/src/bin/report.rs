@@ -33,9 +33,12 @@ enum Page {
     },
     /// Speed of the triangle engine on the whole SoC, compared with its requirements
     Triangle {
-        /// Leave out the CPU's frames, which take most of the time
+        /// Leave out the soft core's frames, which take most of the time
         #[arg(long)]
         quick: bool,
+        /// Measure only one table: engine, or cpu (the frames that the soft core draws)
+        #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["engine", "cpu"])]
+        study: Option<String>,
         /// Measure only scenes whose name contains TEXT; the default folder is then target/report
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
@@ -134,9 +137,10 @@ fn main() -> Result<()> {
         Page::Sine { quick, bench } => measure_sine(quick, &bench),
         Page::Triangle {
             quick,
+            study,
             only,
             output,
-        } => measure_triangle(quick, only.as_deref(), &output),
+        } => measure_triangle(quick, study.as_deref(), only.as_deref(), &output),
         Page::Raymarch {
             quick,
             study: None,
@@ -184,11 +188,24 @@ fn measure_sine(quick: bool, bench: &Bench) -> Result<()> {
     written("sine", &folder, pages::sine::rebuild)
 }
 
-fn measure_triangle(quick: bool, only: Option<&str>, output: &Output) -> Result<()> {
-    let rows = triangle::measure(only, quick)?;
-    output.print(&rows, pages::triangle::table)?;
+/// Measures the engine and the soft core, or only the one that `study` names.
+fn measure_triangle(
+    quick: bool,
+    study: Option<&str>,
+    only: Option<&str>,
+    output: &Output,
+) -> Result<()> {
     let folder = output.folder(quick || only.is_some())?;
-    write_csv(&rows, &folder.join("triangle.csv"))?;
+    if study != Some("cpu") {
+        let rows = triangle::measure(only)?;
+        output.print(&rows, pages::triangle::table)?;
+        write_csv(&rows, &folder.join("triangle.csv"))?;
+    }
+    if study != Some("engine") && !quick {
+        let rows = triangle::measure_cpu(only)?;
+        output.print(&rows, pages::triangle::cpu_table)?;
+        write_csv(&rows, &folder.join("triangle-cpu.csv"))?;
+    }
     written("triangle", &folder, pages::triangle::rebuild)
 }
 

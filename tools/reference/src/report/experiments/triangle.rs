@@ -168,6 +168,8 @@ pub struct Row {
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
+    /// Half width of the picture, in world units in the plane at distance 1.
+    pub half_width: f64,
     /// Number of triangles in the mesh.
     pub triangles: u32,
     /// Number of triangles that were drawn.
@@ -190,8 +192,6 @@ pub struct Row {
     /// Mean cycles of the raster pass of a frame drawn back to back. At the same time, the geometry pass of another frame uses
     /// the memory.
     pub cycles_raster_together: f64,
-    /// Cycles of the same frame when the soft core draws it; `None` if this was not measured.
-    pub cycles_cpu: Option<u64>,
     /// Fraction of `cycles_raster` that is spent on groups of 8 pixels with covered pixels.
     pub covered: f64,
     /// Fraction of `cycles_raster` that is spent on groups of 8 pixels without covered pixels.
@@ -218,64 +218,105 @@ pub struct Row {
     pub tools: String,
 }
 
-/// Measures the scenes whose name contains `only`, or all scenes.
-/// With `quick`, no frames are drawn by the soft core for comparison.
+/// Cycles of a frame that the soft core draws: a line of `triangle-cpu.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct CpuRow {
+    /// Name of the scene.
+    pub scene: String,
+    /// Cycles of a frame.
+    pub cycles: u64,
+    /// Commit with which the scene was measured.
+    pub commit: String,
+}
+
+/// Measures the triangle engine in the scenes whose name contains `only`, or in all scenes.
 ///
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
-pub fn measure(only: Option<&str>, quick: bool) -> Result<Vec<Row>> {
-    let provenance = Provenance::find();
+pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
+    measure_cases(only, Backend::Gateware, measure_engine)
+}
+
+/// Measures the frames of the same scenes that the soft core draws.
+///
+/// # Errors
+/// When the board is not built, or a frame differs from the model's.
+pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
+    measure_cases(only, Backend::Cpu, |case, shown| {
+        Ok(CpuRow {
+            scene: case.name.to_owned(),
+            cycles: shown.stats.cycles.context("no cycles")?,
+            commit: Provenance::find().commit,
+        })
+    })
+}
+
+/// A scene on a virtual board. Its first frame is the model's.
+struct Shown<'r, 'b> {
+    renderer: &'r mut BoardRenderer<'b, SimulatedBoard>,
+    view: View,
+    /// Statistics of the first frame.
+    stats: Stats,
+    /// Statistics of the model's frame.
+    expected: Stats,
+}
+
+/// Starts a virtual board for each of the scenes whose name contains `only`, shows the scene by `backend`, and measures it.
+fn measure_cases<R: Send>(
+    only: Option<&str>,
+    backend: Backend,
+    measure: impl Fn(&Case, &mut Shown) -> Result<R> + Sync,
+) -> Result<Vec<R>> {
     let firmware = built_firmware(None)?;
     let cases = CASES.iter();
     let cases: Vec<_> = cases
         .filter(|case| only.is_none_or(|text| case.name.contains(text)))
         .collect();
     soc::two_at_a_time(&cases, |case| {
-        eprintln!("{} at {}x{} …", case.name, case.size.0, case.size.1);
-        measure_case(&firmware, case, quick, &provenance)
+        eprintln!(
+            "{} at {}x{} by {backend} …",
+            case.name, case.size.0, case.size.1
+        );
+        let mut board = SimulatedBoard::fast(&firmware)?;
+        let mut console = Console::new(&mut board);
+        console.greet()?;
+        let mut renderer = BoardRenderer::new(console).with_backend(backend);
+        let mesh = (case.mesh)()?;
+        let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
+        let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
+        let frame = Frame::new(subject, ahead(case.half_width)?, size);
+        let expected = render::on_model(&frame)?;
+        let stats = renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
+        let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
+        ensure!(
+            found == expected.image.colour,
+            "{}: the frame by {backend} is not the model's",
+            case.name
+        );
+        measure(
+            case,
+            &mut Shown {
+                renderer: &mut renderer,
+                view: frame.view,
+                stats,
+                expected: expected.stats,
+            },
+        )
     })
 }
 
-/// Starts a virtual board and measures a scene on it.
-fn measure_case(firmware: &[u8], case: &Case, quick: bool, provenance: &Provenance) -> Result<Row> {
-    let mut board = SimulatedBoard::fast(firmware)?;
-    let mut console = Console::new(&mut board);
-    console.greet()?;
-    let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
-    let mesh = (case.mesh)()?;
-    let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
-    let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
-    let frame = Frame::new(subject, ahead(case.half_width)?, size);
-    let expected = render::on_model(&frame)?;
-    renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
-    let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
-    ensure!(
-        found == expected.image.colour,
-        "{}: the engine's frame is not the model's",
-        case.name
-    );
+/// Measures the engine in a scene that is shown.
+fn measure_engine(case: &Case, shown: &mut Shown) -> Result<Row> {
     // The triangle engine writes only words that may differ from the previous frame in the same frame buffer. So
     // each of the two frame buffers receives the frame once before the frame is measured.
-    renderer.look(&frame.view)?;
-    let alone = renderer.look(&frame.view)?;
-    let together = BackToBack::measure(&mut renderer, "triangle")?;
-    let cpu = if quick {
-        None
-    } else {
-        renderer.set_backend(Backend::Cpu);
-        renderer.show(&frame, Route::Memory, &mut |_, _| {})?.cycles
-    };
-    row(case, provenance, &expected.stats, &alone, &together, cpu)
+    shown.renderer.look(&shown.view)?;
+    let alone = shown.renderer.look(&shown.view)?;
+    let together = BackToBack::measure(shown.renderer, "triangle")?;
+    row(case, &shown.expected, &alone, &together)
 }
 
-fn row(
-    case: &Case,
-    provenance: &Provenance,
-    expected: &Stats,
-    alone: &Stats,
-    together: &BackToBack,
-    cycles_cpu: Option<u64>,
-) -> Result<Row> {
+fn row(case: &Case, expected: &Stats, alone: &Stats, together: &BackToBack) -> Result<Row> {
+    let provenance = Provenance::find();
     let expected = expected.triangles();
     let pixels = expected.pixels_covered;
     let engine = |name| {
@@ -321,6 +362,7 @@ fn row(
         scene: case.name.to_owned(),
         width: case.size.0,
         height: case.size.1,
+        half_width: case.half_width,
         triangles: triangles.triangles_in,
         drawn: triangles.triangles_drawn,
         clipped: triangles.triangles_clipped,
@@ -331,7 +373,6 @@ fn row(
         cycles_frame,
         cycles_geometry_together: together.frame("cycles_geometry")?,
         cycles_raster_together: together.frame("cycles_raster")?,
-        cycles_cpu,
         covered: share(engine("groups")?, raster),
         empty: share(engine("cycles_empty")?, raster),
         flush: share(engine("cycles_flush")?, raster),
@@ -346,7 +387,7 @@ fn row(
         at_least,
         aim,
         met,
-        commit: provenance.commit.clone(),
-        tools: provenance.tools.clone(),
+        commit: provenance.commit,
+        tools: provenance.tools,
     })
 }

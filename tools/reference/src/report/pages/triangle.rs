@@ -5,16 +5,17 @@ use std::path::Path;
 use anyhow::Result;
 
 use super::template::{fill, made, write};
-use crate::report::experiments::triangle::Row;
+use crate::report::experiments::triangle::{CpuRow, Row};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, bold, optional, read_csv};
+use crate::report::table::{Table, bold, optional, read_csv, read_optional_csv};
 
-/// Rebuilds the page from the CSV file in `folder`.
+/// Rebuilds the page from the CSV files in `folder`.
 ///
 /// # Errors
 /// When the table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
     let rows: Vec<Row> = read_csv(&folder.join("triangle.csv"))?;
+    let cpu: Vec<CpuRow> = read_optional_csv(&folder.join("triangle-cpu.csv"))?;
     let made = rows
         .first()
         .map_or_else(String::new, |row| made(&row.commit, &row.tools));
@@ -22,7 +23,8 @@ pub fn rebuild(folder: &Path) -> Result<()> {
         include_str!("triangle.md"),
         &[
             ("requirements", requirements(&rows)),
-            ("cycles", cycles(&rows)),
+            ("cycles", cycles(&rows, &cpu)),
+            ("cpu commits", commits(&cpu)),
             ("parts", parts(&rows)),
             ("made", made),
         ],
@@ -30,15 +32,35 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("triangle.md"))
 }
 
-/// Formats the three tables of the page as Markdown: requirements, cycles, and how the time of the passes is spent.
+/// Formats the tables of the engine as Markdown: requirements, cycles, and how the time of the passes is spent.
 pub fn table(rows: &[Row]) -> String {
-    [requirements(rows), cycles(rows), parts(rows)].join("\n")
+    [requirements(rows), cycles(rows, &[]), parts(rows)].join("\n")
+}
+
+/// Formats the table of the soft core's frames as Markdown.
+pub fn cpu_table(rows: &[CpuRow]) -> String {
+    let mut table = Table::new(["scene", "cycles on the CPU:"]);
+    for row in rows {
+        table.row([row.scene.clone(), row.cycles.to_string()]);
+    }
+    table.finish()
+}
+
+/// Returns the commits of the soft core's frames, each once.
+fn commits(cpu: &[CpuRow]) -> String {
+    let mut commits: Vec<&str> = cpu.iter().map(|row| row.commit.as_str()).collect();
+    commits.dedup();
+    match commits[..] {
+        [] => "no commit".to_owned(),
+        _ => commits.join(", "),
+    }
 }
 
 fn requirements(rows: &[Row]) -> String {
     let mut table = Table::new([
         "scene",
         "size",
+        "half width",
         "triangles in, drawn, clipped",
         "pixels",
         "measured",
@@ -49,6 +71,7 @@ fn requirements(rows: &[Row]) -> String {
         table.row([
             row.scene.clone(),
             format!("{}×{}", row.width, row.height),
+            row.half_width.to_string(),
             format!("{}, {}, {}", row.triangles, row.drawn, row.clipped),
             row.pixels.to_string(),
             bold(format_args!("{:.2} {}", row.measured, row.unit), !row.met),
@@ -59,7 +82,7 @@ fn requirements(rows: &[Row]) -> String {
     table.finish()
 }
 
-fn cycles(rows: &[Row]) -> String {
+fn cycles(rows: &[Row], cpu: &[CpuRow]) -> String {
     let mut table = Table::new([
         "scene",
         "cycles, frame alone",
@@ -67,6 +90,7 @@ fn cycles(rows: &[Row]) -> String {
         "its raster pass",
         "cycles, back to back",
         "geometry, raster pass",
+        "clocks a triangle",
         "frames a second at 81.25 MHz",
         "at 100 MHz",
         "cycles on the CPU",
@@ -82,10 +106,12 @@ fn cycles(rows: &[Row]) -> String {
                 "{:.0}, {:.0}",
                 row.cycles_geometry_together, row.cycles_raster_together
             ),
+            format!("{:.2}", row.cycles_frame / f64::from(row.triangles)),
             format!("{:.1}", CLOCKS[0] / row.cycles_frame),
             format!("{:.1}", CLOCKS[1] / row.cycles_frame),
-            row.cycles_cpu
-                .map_or("not measured".to_owned(), |cycles| cycles.to_string()),
+            cpu.iter()
+                .find(|cpu| cpu.scene == row.scene)
+                .map_or("not measured".to_owned(), |cpu| cpu.cycles.to_string()),
         ]);
     }
     table.finish()
