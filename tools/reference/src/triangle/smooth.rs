@@ -2,7 +2,7 @@
 //! exact perspective interpolation: the quotient of two planes through the triangle's vertices, light/z and 1/z.
 //!
 //! - [`forms`]: other forms of the interpolation.
-//! - [`scenes`]: the measured scenes, from common to extreme ones.
+//! - [`scenes()`]: the measured scenes, from common to extreme ones.
 //! - [`verilated`]: clocks of the verilated rasterizer.
 
 pub mod forms;
