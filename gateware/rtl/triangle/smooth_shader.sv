@@ -18,7 +18,10 @@
 
 module smooth_shader #(
     parameter int unsigned GROUP_BITS = 8,
-    parameter int unsigned FLIGHT     = 5
+    parameter int unsigned FLIGHT     = 5,
+    // Places of the FIFOs of groups and of the FIFO of their colours, powers of two.
+    parameter int unsigned GROUPS     = 16,
+    parameter int unsigned COLOURS    = 32
 ) (
     input  wire                   clk,
     input  wire                   rst,
@@ -43,7 +46,7 @@ module smooth_shader #(
     logic [15:0]      group_colour;
     logic [7:0][15:0] smooth_colours;
 
-    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(16), .FLIGHT(FLIGHT)) groups (
+    pipeline_fifo #(.WIDTH(GROUP_BITS + 17), .DEPTH(GROUPS), .FLIGHT(FLIGHT)) groups (
         .clk, .rst, .idle, .room, .in_valid, .in_data({in_smooth, in_colour, in_group}),
         .out_valid(group_valid), .out_ready(group_gone), .out_data({group_smooth, group_colour, out_group})
     );
@@ -58,7 +61,7 @@ module smooth_shader #(
     logic [2:0]       lane, last_lane;
     logic [3:0][31:0] starts, steps, values;
 
-    fifo #(.WIDTH(3 + 1 + 8 * 32), .DEPTH(16)) light (
+    fifo #(.WIDTH(3 + 1 + 8 * 32), .DEPTH(GROUPS)) light (
         .clk, .rst, .in_valid(in_valid && in_smooth), .in_ready(light_room),
         .in_data({last_covered(in_mask), in_mask[3:0] == '0, in_light_step_x, in_depth_step_x, in_light, in_depth}),
         .out_valid(light_valid), .out_ready(takes && is_last), .out_data({last_lane, upper, steps, starts})
@@ -115,7 +118,7 @@ module smooth_shader #(
     end
 
     // Clocks from `takes` of a group's last pixel to `finished`.
-    pipeline_fifo #(.WIDTH(8 * 16), .DEPTH(32), .FLIGHT(LATENCY + 2)) finished_colours (
+    pipeline_fifo #(.WIDTH(8 * 16), .DEPTH(COLOURS), .FLIGHT(LATENCY + 2)) finished_colours (
         .clk, .rst, .idle(none_finished), .room(may_start), .in_valid(finished), .in_data(collected),
         .out_valid(colours_valid), .out_ready(out_ready && group_valid && group_smooth), .out_data(smooth_colours)
     );
