@@ -8,8 +8,8 @@ from migen.fhdl import verilog
 
 
 class _Crossbar(Module):
-    """A crossbar of the class `crossbar` between three ports (both ways, read, write) and two banks. Its vectors have an element for
-    each port or bank, the first one in the lowest bits. An address is {row, bank, column} of 1, 1 and 3 bits."""
+    """A crossbar of the class `crossbar` between three ports (both ways, read, write) and two banks. Its vectors have an element
+    for each port or bank, the first one in the lowest bits. An address is {row, bank, column} of 1, 1 and 3 bits."""
 
     def __init__(self, crossbar):
         self.submodules.crossbar, controller, ports = memory_crossbar.connect(

@@ -240,7 +240,8 @@ module band_entry #(
     assign out_valid = !out_free;
 
     held_register #(.WIDTH($bits(placed) + 1)) result (
-        .clk, .rst, .free(out_free), .in_valid(held_valid), .in({held_odd, placed}), .leaves(out_ready), .out({out_odd, out_triangle})
+        .clk, .rst, .free(out_free), .in_valid(held_valid), .in({held_odd, placed}),
+        .leaves(out_ready), .out({out_odd, out_triangle})
     );
 
     always_ff @(posedge clk) begin

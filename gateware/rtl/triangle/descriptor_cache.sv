@@ -151,8 +151,8 @@ module descriptor_cache #(
         if (rst) words <= '0;
     end
 
-    // Third stage: each descriptor is read from its cache line, in a clock in which no line is written. The block RAM holds it until
-    // the item has moved, so the register behind the block RAM needs no enable.
+    // Third stage: each descriptor is read from its cache line, in a clock in which no line is written. The block RAM holds it
+    // until the item has moved, so the register behind the block RAM needs no enable.
     logic                 read_valid, reads, arrives;
     logic [128*WORDS-1:0] cached, descriptor;
 
