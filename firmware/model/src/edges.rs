@@ -37,15 +37,20 @@ type Corner<'a> = ([i16; 3], &'a Projected);
 /// The biases for a face with these corners; those of no face if no part of it has an area on the screen, or for a back face with
 /// `cull`.
 fn face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
-    if let [
+    let [
         (_, Projected::Visible(a)),
         (_, Projected::Visible(b)),
         (_, Projected::Visible(c)),
     ] = corners
-    {
-        return biases(frame, &[*a, *b, *c], cull);
+    else {
+        return clipped_face(frame, corners, cull);
+    };
+    let area = doubled_area([a, b, c]);
+    if !is_drawn(frame, area, cull) {
+        return Biases::default();
     }
-    clipped_face(frame, corners, cull)
+    let (nearest, farthest) = (a.w.max(b.w).max(c.w), a.w.min(b.w).min(c.w));
+    biases([a, b, c], area, nearest - farthest)
 }
 
 /// The biases for a face that may leave the volume of the frame.
@@ -56,60 +61,67 @@ fn clipped_face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases 
     let polygon = clip(frame, corners.map(|(corner, _)| transform(frame, corner)));
     let places = polygon.vertices().iter().map(|vertex| snap(frame, vertex));
     let places: Vec<_, MAX_VERTICES> = places.collect();
-    biases(frame, &places, cull)
-}
-
-/// The biases for a face, a polygon on the screen.
-///
-/// A pixel of a line is up to half a pixel beside the edge, along its minor axis. There the face is nearer by at most half its slope,
-/// and by at most the difference of its depths; the roundings of both depths add 1.52 codes.
-fn biases(frame: &MeshSetup, places: &[ScreenVertex], cull: bool) -> Biases {
     let Some((first, rest)) = places.split_first() else {
         return Biases::default();
     };
     let parts = rest.iter().zip(rest.iter().skip(1));
-    let parts = parts.map(|(b, c)| [*first, *b, *c]);
+    let parts = parts.map(|(b, c)| [first, b, c]);
     // The slopes are most exact in the largest part of the polygon.
-    let Some([a, b, c]) = parts.max_by_key(|part| doubled_area(part).unsigned_abs()) else {
+    let Some(part) = parts.max_by_key(|part| doubled_area(*part).unsigned_abs()) else {
         return Biases::default();
     };
-    let area = doubled_area(&[a, b, c]);
-    // A front face is counter-clockwise on the screen.
-    let is_back = (area > 0) != frame.mirrors;
-    if area == 0 || cull && is_back {
+    let area = doubled_area(part);
+    if !is_drawn(frame, area, cull) {
         return Biases::default();
     }
-    let ways = |x: fn(&ScreenVertex) -> i64| [x(&b) - x(&a), x(&c) - x(&a)];
-    let [x, y, w] = [
-        ways(|v| v.x.into()),
-        ways(|v| v.y.into()),
-        ways(|v| v.w.into()),
-    ];
     let depths = || places.iter().map(|v| v.w);
     let range = depths().max().unwrap_or(0) - depths().min().unwrap_or(0);
-    let bias = |along: [i64; 2]| {
+    biases(part, area, range)
+}
+
+/// Whether a face with this doubled area is drawn. A front face is counter-clockwise on the screen.
+const fn is_drawn(frame: &MeshSetup, area: i64, cull: bool) -> bool {
+    let is_back = (area > 0) != frame.mirrors;
+    area != 0 && !(cull && is_back)
+}
+
+/// The biases for a face, by three of its vertices, the doubled area of their triangle, and the range of the depths of all its vertices.
+///
+/// A pixel of a line is up to half a pixel beside the edge, along its minor axis. There the face is nearer by at most half its slope,
+/// and by at most the difference of its depths; the roundings of both depths add 1.52 codes.
+#[inline(never)]
+fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
+    // Depths have 24 bits, so their differences fit.
+    let w = [b.w as i32 - a.w as i32, c.w as i32 - a.w as i32];
+    let bias = |along: [i32; 2]| {
         // Depths are in 2^-6 codes, ways in 2^-8 pixels, and the area in 2^-16 square pixels.
-        let twice = 4 * (w[0] * along[1] - w[1] * along[0]).unsigned_abs();
-        let half_slope = twice.div_ceil(2 * area.unsigned_abs());
+        let twice = 4 * determinant(w, along).unsigned_abs();
+        let double = 2 * area.unsigned_abs();
+        // Rounded up. The soft core divides 64 bits by a function, which `div_ceil` would call twice.
+        let quotient = twice / double;
+        let half_slope = quotient + u64::from(quotient * double < twice);
         half_slope.min(u64::from(range.div_ceil(64))) + 2
     };
-    [bias(y), bias(x)].map(|bias| u16::try_from(bias).unwrap_or(u16::MAX))
+    let biases = [bias([b.y - a.y, c.y - a.y]), bias([b.x - a.x, c.x - a.x])];
+    biases.map(|bias| u16::try_from(bias).unwrap_or(u16::MAX))
 }
 
 /// Twice the area of a triangle on the screen, in 2^-16 square pixels, positive for a clockwise one.
-fn doubled_area([a, b, c]: &[ScreenVertex; 3]) -> i64 {
-    let way = |v: &ScreenVertex| [v.x - a.x, v.y - a.y].map(i64::from);
-    let ([bx, by], [cx, cy]) = (way(b), way(c));
-    bx * cy - cx * by
+fn doubled_area([a, b, c]: [&ScreenVertex; 3]) -> i64 {
+    determinant([b.x - a.x, c.x - a.x], [b.y - a.y, c.y - a.y])
+}
+
+fn determinant([a, b]: [i32; 2], [c, d]: [i32; 2]) -> i64 {
+    i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c)
 }
 
 /// The line of an edge; `None` if the edge is outside of the volume of the frame. `biases` are the largest ones of the faces at the
 /// edge.
-fn segment(frame: &MeshSetup, ends: [Corner; 2], biases: Biases) -> Option<Segment> {
+fn segment(frame: &MeshSetup, ends: [&Corner; 2], biases: Biases) -> Option<Segment> {
     let [a, b] = if let [(_, Projected::Visible(a)), (_, Projected::Visible(b))] = ends {
         [*a, *b]
     } else {
-        clipped_edge(frame, &ends)?
+        clipped_edge(frame, ends)?
     };
     let x_major = (b.x - a.x).abs() >= (b.y - a.y).abs();
     let [row_major, column_major] = biases;
@@ -126,7 +138,7 @@ fn segment(frame: &MeshSetup, ends: [Corner; 2], biases: Biases) -> Option<Segme
 ///
 /// Not inlined, so that other edges do not load this code into the instruction cache.
 #[inline(never)]
-fn clipped_edge(frame: &MeshSetup, ends: &[Corner; 2]) -> Option<[ScreenVertex; 2]> {
-    let ends = clip_edge(frame, ends.map(|(end, _)| transform(frame, end)))?;
+fn clipped_edge(frame: &MeshSetup, ends: [&Corner; 2]) -> Option<[ScreenVertex; 2]> {
+    let ends = clip_edge(frame, ends.map(|(end, _)| transform(frame, *end)))?;
     Some(ends.map(|end| snap(frame, &end)))
 }

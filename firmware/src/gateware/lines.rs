@@ -84,7 +84,7 @@ impl GatewareRenderer {
         let scratch = cpu.scratch.vertices(frame.scratch_vertices());
         let mut free = records.iter_mut();
         let mut is_full = false;
-        let mut put = |segment: Segment| match free.next() {
+        let mut put = |segment: &Segment| match free.next() {
             Some(record) => *record = segment.words(),
             None => is_full = true,
         };

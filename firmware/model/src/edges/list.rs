@@ -1,6 +1,6 @@
 //! The edges of a mesh, each once, and their segments in a frame.
 
-use glint_core::mesh::{Chunk, Mesh, Triangle};
+use glint_core::mesh::{Mesh, Triangle};
 
 use super::table::{KEY_WORDS, Table};
 use super::{Biases, Corner, EdgeStats, face, segment};
@@ -81,7 +81,8 @@ impl<'m> EdgeList<'m> {
                 }
                 let corners = corners(&triangle, |i| Some(chunk.vertex(i)?.position));
                 let Some(corners) = corners else { continue };
-                for (ends, number) in edges(corners).into_iter().zip(sides) {
+                let [a, b, c] = corners;
+                for (ends, number) in [[a, b], [b, c], [c, a]].into_iter().zip(sides) {
                     let [from, to] = ordered(ends, |at| *at);
                     *number = NONE;
                     if from != to {
@@ -108,7 +109,7 @@ impl<'m> EdgeList<'m> {
         frame: &MeshSetup,
         scratch: &mut [Projected],
         progress: &mut dyn FnMut(),
-        emit: &mut dyn FnMut(Segment),
+        emit: &mut dyn FnMut(&Segment),
     ) -> Result<EdgeStats, RenderError> {
         let (expected, found) = (mesh.largest_chunk(), scratch.len());
         let scratch = scratch
@@ -121,62 +122,72 @@ impl<'m> EdgeList<'m> {
         let biases = rest.get_mut(..self.count).ok_or(full)?;
         biases.fill(0);
 
-        let mut numbers = sides.iter();
-        for chunk in mesh.chunks() {
-            project_chunk(frame, &chunk, scratch);
-            let numbered = chunk.triangles().zip(numbers.by_ref());
-            for (index, (triangle, sides)) in numbered.enumerate() {
-                if index % TRIANGLES_A_CALL == 0 {
-                    progress();
-                }
-                let Some(corners) = projected(&triangle, &chunk, scratch) else {
-                    continue;
-                };
-                let needed = face(frame, &corners, cull);
-                for &number in sides {
-                    if let Some(stored) = biases.get_mut((number & !FIRST) as usize) {
-                        let [a, b] = unpacked(*stored);
-                        *stored = packed([a.max(needed[0]), b.max(needed[1])]);
-                    }
+        let mut widen = |corners: &[Corner; 3], sides: &Sides| {
+            let needed = face(frame, corners, cull);
+            if needed == Biases::default() {
+                return;
+            }
+            for &number in sides {
+                if let Some(stored) = biases.get_mut((number & !FIRST) as usize) {
+                    let [a, b] = unpacked(*stored);
+                    *stored = packed([a.max(needed[0]), b.max(needed[1])]);
                 }
             }
-        }
-
+        };
+        each_triangle(mesh, sides, Some(frame), scratch, progress, &mut widen);
         let mut drawn = 0;
-        let mut numbers = sides.iter();
-        // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
-        let is_projected = mesh.chunks().nth(1).is_none();
-        for chunk in mesh.chunks() {
-            if !is_projected {
-                project_chunk(frame, &chunk, scratch);
-            }
-            let numbered = chunk.triangles().zip(numbers.by_ref());
-            for (index, (triangle, sides)) in numbered.enumerate() {
-                if index % TRIANGLES_A_CALL == 0 {
-                    progress();
-                }
-                let Some(corners) = projected(&triangle, &chunk, scratch) else {
+        let mut draw = |[a, b, c]: &[Corner; 3], &[ab, bc, ca]: &Sides| {
+            for (number, ends) in [(ab, [a, b]), (bc, [b, c]), (ca, [c, a])] {
+                if number & FIRST == 0 {
                     continue;
-                };
-                for (ends, number) in edges(corners).into_iter().zip(sides) {
-                    if number & FIRST == 0 {
-                        continue;
-                    }
-                    let ends = ordered(ends, |(at, _)| *at);
-                    let stored = biases.get((number & !FIRST) as usize);
-                    if let Some(&stored) = stored
-                        && let Some(segment) = segment(frame, ends, unpacked(stored))
-                    {
-                        drawn += 1;
-                        emit(segment);
-                    }
+                }
+                let ends = ordered(ends, |(at, _)| *at);
+                if let Some(&stored) = biases.get((number & !FIRST) as usize)
+                    && let Some(segment) = segment(frame, ends, unpacked(stored))
+                {
+                    drawn += 1;
+                    emit(&segment);
                 }
             }
-        }
+        };
+        // If a mesh has a single chunk, its projected vertices are still in the scratch memory.
+        let projects = mesh.chunks().nth(1).map(|_| frame);
+        each_triangle(mesh, sides, projects, scratch, progress, &mut draw);
         Ok(EdgeStats {
             edges: self.count as u32,
             drawn,
         })
+    }
+}
+
+/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are projected into
+/// `scratch` first; otherwise they are there.
+///
+/// Not inlined, as memory.x puts it beside what it calls, so that both stay in the instruction cache.
+#[inline(never)]
+fn each_triangle(
+    mesh: &Mesh,
+    sides: &[Sides],
+    projects: Option<&MeshSetup>,
+    scratch: &mut [Projected],
+    progress: &mut dyn FnMut(),
+    visit: &mut dyn FnMut(&[Corner; 3], &Sides),
+) {
+    let mut numbers = sides.iter();
+    for chunk in mesh.chunks() {
+        if let Some(frame) = projects {
+            project_chunk(frame, &chunk, scratch);
+        }
+        let numbered = chunk.triangles().zip(numbers.by_ref());
+        for (index, (triangle, sides)) in numbered.enumerate() {
+            if index % TRIANGLES_A_CALL == 0 {
+                progress();
+            }
+            let of = |i| Some((chunk.vertex(i)?.position, scratch.get(i)?));
+            if let Some(corners) = corners(&triangle, of) {
+                visit(&corners, sides);
+            }
+        }
     }
 }
 
@@ -192,22 +203,6 @@ fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T
         return None;
     };
     Some([a, b, c])
-}
-
-/// The corners of a triangle, of a chunk with these projected vertices.
-fn projected<'s>(
-    triangle: &Triangle,
-    chunk: &Chunk,
-    vertices: &'s [Projected],
-) -> Option<[Corner<'s>; 3]> {
-    corners(triangle, |i| {
-        Some((chunk.vertex(i)?.position, vertices.get(i)?))
-    })
-}
-
-/// The edges of a triangle, from each corner to the next one.
-const fn edges<T: Copy>([a, b, c]: [T; 3]) -> [[T; 2]; 3] {
-    [[a, b], [b, c], [c, a]]
 }
 
 /// The ends of an edge from the smaller to the larger position.

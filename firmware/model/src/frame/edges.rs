@@ -27,7 +27,7 @@ impl Frame<'_> {
         };
         buffer.check()?;
         let (mut covered, mut drawn) = (0, 0);
-        let mut draw = |segment: Segment| {
+        let mut draw = |segment: &Segment| {
             covered += segment.covered(buffer) as u64;
             drawn += u64::from(segment.draw(buffer));
         };

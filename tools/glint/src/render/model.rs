@@ -119,9 +119,9 @@ mod tests {
                 let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
                 // Segments of front faces, and of back faces alone, which need no bias.
                 let mut segments = [const { Vec::new() }; 2];
-                let mut put = |segment: Segment| {
+                let mut put = |segment: &Segment| {
                     let is_back = segment.depth == LineDepth::Tested { bias: 0 };
-                    segments[usize::from(is_back)].push(segment);
+                    segments[usize::from(is_back)].push(*segment);
                 };
                 let quiet = &mut || {};
                 let counts = list.segments(&mesh, true, setup, &mut scratch, quiet, &mut put);
