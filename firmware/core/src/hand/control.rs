@@ -38,7 +38,7 @@ pub const CHANNELS: [(Tuning, Q4_28); 3] = [
     (ANGLE, Q4_28::lit("0.000166")),
     (DISTANCE, Q4_28::lit("0.00390625")),
 ];
-/// Corner frequency in Hz of the return to a hand that comes back, a time constant of 0.16 s.
+/// Corner frequency in Hz of each stage of the return to a hand that comes back, a time constant of 0.16 s.
 const RETURN: U16_16 = U16_16::lit("1");
 
 /// A place of the camera on a sphere about the origin, as [`View::spherical`] takes it.
@@ -134,8 +134,9 @@ enum State {
 struct Channel {
     filter: OneEuro,
     zone: Backlash,
-    /// What is left of the way from the place where the camera was held to the place of the hand that came back.
-    offset: Q4_28,
+    /// What is left of the way from the place where the camera was held to the place of the hand that came back: in two stages, a
+    /// low pass behind a low pass, so that the camera also starts smoothly.
+    offsets: [Q4_28; 2],
     output: Q4_28,
 }
 
@@ -144,18 +145,24 @@ impl Channel {
         Self {
             filter: OneEuro::new(output),
             zone: Backlash::new(output),
-            offset: Q4_28::ZERO,
+            offsets: [Q4_28::ZERO; 2],
             output,
         }
     }
 
-    /// Filters the target, and lets the offset fade with the gain `back`. One function for all channels, because the instruction
+    /// Filters the target, and lets the offsets fade with the gain `back`. One function for all channels, because the instruction
     /// cache is small.
     #[inline(never)]
     fn steer(&mut self, target: Q4_28, tuning: &Tuning, zone: Q4_28, step: Step, back: u32) {
         let filtered = self.filter.next(target, tuning, step);
-        self.offset = Q4_28::from_bits(towards(self.offset.to_bits(), 0, back));
-        self.output = self.zone.next(filtered, zone).saturating_add(self.offset);
+        let [first, second] = self.offsets.map(Q4_28::to_bits);
+        let first = towards(first, 0, back);
+        let second = towards(second, first, back);
+        self.offsets = [first, second].map(Q4_28::from_bits);
+        self.output = self
+            .zone
+            .next(filtered, zone)
+            .saturating_add(Q4_28::from_bits(second));
     }
 }
 
@@ -310,14 +317,14 @@ impl Control {
         for (channel, target) in self.channels.iter_mut().zip(target(blob, size)) {
             let offset = channel.output.saturating_sub(target);
             *channel = Channel {
-                offset,
+                offsets: [offset; 2],
                 output: channel.output,
                 ..Channel::at(target)
             };
         }
         // The azimuth goes the shorter way around: the difference of two azimuths loses its whole turns.
         let [azimuth, ..] = &mut self.channels;
-        azimuth.offset = within_a_turn(azimuth.offset);
+        azimuth.offsets = azimuth.offsets.map(within_a_turn);
     }
 
     /// Moves the camera towards the place of the hand.
