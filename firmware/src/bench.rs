@@ -7,6 +7,8 @@ use glint_core::trig::{sin_cos_q14, sin_cos_q30};
 mod attitude;
 #[cfg(feature = "peers")]
 mod geometry;
+#[cfg(feature = "peers")]
+mod gesture;
 mod measure;
 mod object;
 #[cfg(feature = "peers")]
@@ -16,6 +18,8 @@ mod peers;
 pub use attitude::attitude;
 #[cfg(feature = "peers")]
 pub use geometry::geometry;
+#[cfg(feature = "peers")]
+pub use gesture::gesture;
 pub use measure::{Cycles, Report};
 pub use object::object;
 

@@ -4,6 +4,7 @@
 //! - [`errors`]: RMS and maximum of a set of errors.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
+//! - [`hand`]: camera frames with a hand, and the errors of the camera's control by it.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
 //! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
 //! - [`report`]: the measurements and pages of docs/report.
@@ -15,6 +16,7 @@
 
 pub mod camera;
 pub mod errors;
+pub mod hand;
 pub mod imu;
 pub mod line;
 pub mod raymarch;

@@ -101,7 +101,7 @@ enum Task {
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`; or `pages`: rebuild all pages from their tables
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`; or `pages`: rebuild all pages from their tables
         page: String,
         /// Arguments for the report program
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

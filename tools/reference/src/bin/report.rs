@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand};
 use glint_reference::report::cycles::{Cycles, Source};
-use glint_reference::report::experiments::{geometry, gouraud, imu, raymarch, sine, triangle};
+use glint_reference::report::experiments::{
+    geometry, gesture, gouraud, imu, raymarch, sine, triangle,
+};
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
 use glint_reference::report::workspace;
@@ -77,6 +79,11 @@ enum Page {
         /// Shorten long motions to a tenth and leave out motions of a day (half a minute instead of ten)
         #[arg(long)]
         quick: bool,
+        #[command(flatten)]
+        bench: Bench,
+    },
+    /// A hand that steers the camera: errors of its centre, and errors, lag and cycles of filters
+    Gesture {
         #[command(flatten)]
         bench: Bench,
     },
@@ -158,6 +165,7 @@ fn main() -> Result<()> {
         } => measure_gouraud(quick, earlier, &output),
         Page::Geometry { bench } => measure_geometry(&bench),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
+        Page::Gesture { bench } => measure_gesture(&bench),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
             PAGES
@@ -291,4 +299,21 @@ fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
     write_csv(&imu::time::measure(190.0 * part), &file("imu-time.csv"))?;
     output.print(&targets, pages::imu::table)?;
     written("imu", &folder, pages::imu::rebuild)
+}
+
+fn measure_gesture(bench: &Bench) -> Result<()> {
+    let output = &bench.output;
+    let cycles = bench.cycles.measure("gesture")?;
+    let folder = output.folder(false)?;
+    let file = |name: &str| folder.join(name);
+    let recordings = gesture::recordings();
+    let filters = gesture::filters(&recordings, &cycles);
+    output.print(&filters, pages::gesture::table)?;
+    write_csv(&filters, &file("gesture-filters.csv"))?;
+    let centres = gesture::centres(1_000, false);
+    let targets = gesture::targets(&centres, &recordings, &cycles)?;
+    write_csv(&targets, &file("gesture.csv"))?;
+    write_csv(&centres, &file("gesture-centre.csv"))?;
+    write_csv(&gesture::stiff(), &file("gesture-stiff.csv"))?;
+    written("gesture", &folder, pages::gesture::rebuild)
 }

@@ -110,7 +110,7 @@ fn scaled_noise(deviation: f64, random: &mut impl Rng) -> f64 {
 }
 
 /// Draws a random number from the standard normal distribution, by the method of Box and Muller.
-fn normal(random: &mut impl Rng) -> f64 {
+pub(crate) fn normal(random: &mut impl Rng) -> f64 {
     let radius = (-2.0 * (1.0 - uniform(random)).ln()).sqrt();
     radius * (std::f64::consts::TAU * uniform(random)).cos()
 }

@@ -1,6 +1,7 @@
 //! The measurements of the report. Each measurement returns typed rows, and each row becomes a line of a CSV file.
 
 pub mod geometry;
+pub mod gesture;
 pub mod gouraud;
 pub mod imu;
 pub mod raymarch;

@@ -2,6 +2,7 @@
 //! the CSV files.
 
 pub mod geometry;
+pub mod gesture;
 pub mod gouraud;
 pub mod imu;
 pub mod raymarch;
@@ -17,11 +18,12 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 6] = [
+pub const PAGES: [(&str, Rebuild); 7] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
     ("gouraud", gouraud::rebuild),
     ("imu", imu::rebuild),
     ("geometry", geometry::rebuild),
+    ("gesture", gesture::rebuild),
 ];

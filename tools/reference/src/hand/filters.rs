@@ -1,0 +1,216 @@
+//! Filters of the camera's control, and their errors along paths of a hand.
+
+use glint_core::fixed::{Q4_28, U16_16};
+use glint_core::hand::{ANGLE, Backlash, CHANNELS, OneEuro, Step, Tuning};
+use glint_variants::filter::{AlphaBeta, Average, LowPass};
+
+use super::path::{Sample, between};
+use crate::errors::Errors;
+
+/// A filter with its parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Filter {
+    /// No filter.
+    None,
+    /// Mean of the last 2, 4, 8 or 16 frames.
+    Average(usize),
+    /// Low pass of first order with a corner frequency in Hz.
+    LowPass(f64),
+    /// α-β filter with the tracking index λ of Kalata (1984).
+    AlphaBeta(f64),
+    /// 1€ filter with the corner frequencies at rest and of the speed in Hz, and the slope in Hz for a turn a second.
+    OneEuro([f64; 3]),
+    /// The filter in use: the 1€ filter and the dead zone, with the firmware's constants.
+    Shipped,
+}
+
+/// The filter for one channel.
+enum Channel {
+    None,
+    Average2(Average<2>),
+    Average4(Average<4>),
+    Average8(Average<8>),
+    Average16(Average<16>),
+    LowPass(LowPass),
+    AlphaBeta(AlphaBeta),
+    OneEuro(OneEuro, Tuning),
+    Shipped(OneEuro, Backlash),
+}
+
+/// Gains α and β of the tracking index λ, which compares the path's accelerations with the noise (Kalata, 1984).
+pub fn kalata(index: f64) -> [f64; 2] {
+    let r = (4.0 + index - (8.0 * index + index * index).sqrt()) / 4.0;
+    let alpha = 1.0 - r * r;
+    [alpha, 2.0 * (2.0 - alpha) - 4.0 * (1.0 - alpha).sqrt()]
+}
+
+impl Filter {
+    /// Name of the family of filters: that of its kernel in the console's `bench gesture`.
+    pub const fn kernel(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Average(_) => "average",
+            Self::LowPass(_) => "low_pass",
+            Self::AlphaBeta(_) => "alpha_beta",
+            Self::OneEuro(_) => "one_euro",
+            Self::Shipped => "one_euro_zone",
+        }
+    }
+
+    /// Name of the family of filters, for people.
+    pub const fn family(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Average(_) => "moving average",
+            Self::LowPass(_) => "low pass",
+            Self::AlphaBeta(_) => "α-β",
+            Self::OneEuro(_) => "1€",
+            Self::Shipped => "1€ and dead zone",
+        }
+    }
+
+    /// Its parameters as text.
+    pub fn parameters(self) -> String {
+        match self {
+            Self::None => String::new(),
+            Self::Average(frames) => format!("{frames} frames"),
+            Self::LowPass(cutoff) => format!("{cutoff} Hz"),
+            Self::AlphaBeta(index) => format!("λ = {index}"),
+            Self::OneEuro([cutoff, speed, slope]) => {
+                format!("{cutoff} Hz, speed {speed} Hz, slope {slope}")
+            }
+            Self::Shipped => format!(
+                "{} Hz, speed {} Hz, slope {}, 0.06°",
+                ANGLE.cutoff, ANGLE.speed_cutoff, ANGLE.slope
+            ),
+        }
+    }
+
+    /// Makes the filter of one channel at rest at `input`.
+    fn at(self, input: Q4_28) -> Channel {
+        match self {
+            Self::None => Channel::None,
+            Self::Average(2) => Channel::Average2(Average::new(input)),
+            Self::Average(4) => Channel::Average4(Average::new(input)),
+            Self::Average(8) => Channel::Average8(Average::new(input)),
+            Self::Average(_) => Channel::Average16(Average::new(input)),
+            Self::LowPass(cutoff) => {
+                Channel::LowPass(LowPass::new(U16_16::from_num(cutoff), input))
+            }
+            Self::AlphaBeta(index) => {
+                let gains = kalata(index).map(|gain| (gain * 65_536.0).round() as u32);
+                Channel::AlphaBeta(AlphaBeta::new(gains, input))
+            }
+            Self::OneEuro(parameters) => {
+                let [cutoff, speed_cutoff, slope] = parameters.map(U16_16::from_num);
+                let tuning = Tuning {
+                    cutoff,
+                    slope,
+                    speed_cutoff,
+                };
+                Channel::OneEuro(OneEuro::new(input), tuning)
+            }
+            Self::Shipped => Channel::Shipped(OneEuro::new(input), Backlash::new(input)),
+        }
+    }
+
+    /// Filters the targets of samples at a rate in frames a second; returns azimuth and polar angle in turns.
+    pub fn run(self, samples: &[Sample], rate: f64) -> Vec<[f64; 2]> {
+        let step = Step::new((1e6 / rate).round() as u32);
+        let Some(first) = samples.first() else {
+            return vec![];
+        };
+        let mut channels = first.target.map(|input| self.at(input));
+        let outputs = samples.iter().map(|sample| {
+            let mut filtered = [0.0; 2];
+            for ((channel, target), output) in
+                channels.iter_mut().zip(sample.target).zip(&mut filtered)
+            {
+                *output = channel.next(target, step).to_num();
+            }
+            filtered
+        });
+        outputs.collect()
+    }
+}
+
+impl Channel {
+    fn next(&mut self, input: Q4_28, step: Step) -> Q4_28 {
+        match self {
+            Self::None => input,
+            Self::Average2(filter) => filter.next(input),
+            Self::Average4(filter) => filter.next(input),
+            Self::Average8(filter) => filter.next(input),
+            Self::Average16(filter) => filter.next(input),
+            Self::LowPass(filter) => filter.next(input, step),
+            Self::AlphaBeta(filter) => filter.next(input),
+            Self::OneEuro(filter, tuning) => filter.next(input, tuning, step),
+            Self::Shipped(filter, backlash) => {
+                let [(tuning, zone), ..] = CHANNELS;
+                backlash.next(filter.next(input, &tuning, step), zone)
+            }
+        }
+    }
+}
+
+/// Errors of a filter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quality {
+    /// RMS in degrees of the camera's motion about its mean while the hand rests.
+    pub rest: f64,
+    /// Delay in ms behind a steady motion.
+    pub lag: f64,
+    /// RMS in degrees of the difference to the true place during reaches.
+    pub tracking: f64,
+    /// The largest of these differences in degrees.
+    pub largest: f64,
+}
+
+/// The samples that filters are compared on, at a rate in frames a second.
+pub struct Recordings {
+    /// Frames a second.
+    pub rate: f64,
+    /// A hand at rest.
+    pub rest: Vec<Sample>,
+    /// A steady motion, without the frames in which the hand jumps back.
+    pub sweep: Vec<Sample>,
+    /// Reaches.
+    pub reaches: Vec<Sample>,
+}
+
+/// Measures the errors of a filter. The lag is measured in the second half of the sweep.
+pub fn quality(filter: Filter, recordings: &Recordings) -> Quality {
+    let rate = recordings.rate;
+    let rest = motion(&filter.run(&recordings.rest, rate));
+    let sweep = filter.run(&recordings.sweep, rate);
+    let half = sweep.len() / 2;
+    let behind: f64 = core::iter::zip(&recordings.sweep, &sweep)
+        .skip(half)
+        .map(|(sample, output)| sample.truth[0] - output[0])
+        .sum();
+    let truth = |place: usize| recordings.sweep[place].truth[0];
+    let speed = (truth(sweep.len() - 1) - truth(half)) * rate / (sweep.len() - 1 - half) as f64;
+    let mut tracking = Errors::default();
+    for (sample, output) in
+        core::iter::zip(&recordings.reaches, filter.run(&recordings.reaches, rate))
+    {
+        tracking.add(between(sample.truth, output));
+    }
+    Quality {
+        rest,
+        lag: 1e3 * behind / (sweep.len() - half) as f64 / speed,
+        tracking: tracking.rms(),
+        largest: tracking.max,
+    }
+}
+
+/// RMS in degrees of the motion of azimuths and polar angles in turns about their mean.
+pub fn motion(angles: &[[f64; 2]]) -> f64 {
+    let mean = [0, 1]
+        .map(|axis| angles.iter().map(|angle| angle[axis]).sum::<f64>() / angles.len() as f64);
+    let mut errors = Errors::default();
+    angles
+        .iter()
+        .for_each(|&angle| errors.add(between(angle, mean)));
+    errors.rms()
+}

@@ -1,0 +1,245 @@
+//! Pixels of the hand's colour in camera frames, and the gesture engine's statistics of them.
+
+use glint_core::hand::{Region, Setting, Statistics};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use crate::imu::sensor::normal;
+
+/// Columns and rows of a frame.
+pub const SIZE: [u16; 2] = [320, 240];
+const COLUMNS: usize = SIZE[0] as usize;
+const ROWS: usize = SIZE[1] as usize;
+
+/// Outline of a hand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A disc.
+    Disc,
+    /// A palm with four fingers up and a thumb to the left.
+    Hand,
+}
+
+/// The palm's fingers in units of its radius: the end of each, from the palm's centre, and half its width.
+const FINGERS: [([f64; 2], f64); 5] = [
+    ([-0.8, -1.9], 0.27),
+    ([-0.3, -2.2], 0.27),
+    ([0.25, -2.2], 0.27),
+    ([0.8, -1.8], 0.25),
+    ([-1.7, -0.4], 0.28),
+];
+
+impl Shape {
+    /// Distance of a point from the outline, negative inside. The palm or disc has the radius 1 and its centre at the origin.
+    fn distance(self, [x, y]: [f64; 2]) -> f64 {
+        let palm = x.hypot(y) - 1.0;
+        match self {
+            Self::Disc => palm,
+            Self::Hand => FINGERS.iter().fold(palm, |least, &([ex, ey], half)| {
+                let along = ((x * ex + y * ey) / (ex * ex + ey * ey)).clamp(0.0, 1.0);
+                least.min((x - along * ex).hypot(y - along * ey) - half)
+            }),
+        }
+    }
+
+    /// Area and centre of mass of the shape with radius 1, by a sum over squares of 1/200.
+    pub fn area_and_centre(self) -> (f64, [f64; 2]) {
+        let mut sums = [0.0; 3];
+        for row in -600..600 {
+            for column in -600..600 {
+                let [x, y] = [column, row].map(|i| (f64::from(i) + 0.5) / 200.0);
+                if self.distance([x, y]) < 0.0 {
+                    sums[0] += 1.0;
+                    sums[1] += x;
+                    sums[2] += y;
+                }
+            }
+        }
+        (sums[0] / 40_000.0, [sums[1] / sums[0], sums[2] / sums[0]])
+    }
+}
+
+/// A hand in a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn {
+    /// Its outline.
+    pub shape: Shape,
+    /// Coordinates of the palm's centre, in pixels.
+    pub palm: [f64; 2],
+    /// Radius of the palm, in pixels.
+    pub radius: f64,
+}
+
+impl Drawn {
+    /// Makes a hand of `area` pixels with its centre of mass at a place.
+    pub fn new(shape: Shape, centre: [f64; 2], area: f64) -> Self {
+        let (unit, offset) = shape.area_and_centre();
+        let radius = (area / unit).sqrt();
+        let palm = [0, 1].map(|axis| centre[axis] - radius * offset[axis]);
+        Self {
+            shape,
+            palm,
+            radius,
+        }
+    }
+
+    /// Returns the hand moved by a way in pixels.
+    #[must_use]
+    pub fn moved(self, way: [f64; 2]) -> Self {
+        let palm = [0, 1].map(|axis| self.palm[axis] + way[axis]);
+        Self { palm, ..self }
+    }
+}
+
+/// Noise of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Noise {
+    /// Part of the pixels outside of hands that have the hand's colour.
+    pub salt: f64,
+    /// Part of the hand's pixels that do not have its colour.
+    pub pepper: f64,
+    /// Standard deviation of the place of the outline at each pixel, in pixels.
+    pub edge: f64,
+}
+
+impl Noise {
+    /// No noise.
+    pub const NONE: Self = Self {
+        salt: 0.0,
+        pepper: 0.0,
+        edge: 0.0,
+    };
+    /// The noise of the measurements: 5 % of salt, and outlines that scatter by 0.3 pixels.
+    pub const SENSOR: Self = Self {
+        salt: 0.05,
+        pepper: 0.0,
+        edge: 0.3,
+    };
+}
+
+/// The pixels of a frame that have the hand's colour.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    mask: Vec<bool>,
+}
+
+impl Frame {
+    /// Draws hands and noise.
+    pub fn draw(hands: &[Drawn], noise: &Noise, random: &mut Pcg64Mcg) -> Self {
+        let mut mask = vec![false; COLUMNS * ROWS];
+        for (place, pixel) in mask.iter_mut().enumerate() {
+            let [x, y] = [place % COLUMNS, place / COLUMNS].map(|i| i as f64);
+            let distance = hands.iter().map(|hand| {
+                let [dx, dy] = [x - hand.palm[0], y - hand.palm[1]].map(|d| d / hand.radius);
+                // All shapes lie within three radii.
+                if dx.abs().max(dy.abs()) > 4.0 {
+                    return f64::INFINITY;
+                }
+                hand.shape.distance([dx, dy]) * hand.radius
+            });
+            let mut distance = distance.fold(f64::INFINITY, f64::min);
+            if distance.abs() < 5.0 * noise.edge {
+                distance += noise.edge * normal(random);
+            }
+            let (inside, flip) = match distance < 0.0 {
+                true => (true, noise.pepper),
+                false => (false, noise.salt),
+            };
+            *pixel = inside != (flip > 0.0 && random.random::<f64>() < flip);
+        }
+        Self { mask }
+    }
+
+    /// Returns a frame in which only the pixels at the given columns and rows have the hand's colour.
+    pub fn of(pixels: impl IntoIterator<Item = (usize, usize)>) -> Self {
+        let mut mask = vec![false; COLUMNS * ROWS];
+        for (x, y) in pixels {
+            mask[y * COLUMNS + x] = true;
+        }
+        Self { mask }
+    }
+
+    /// Returns a frame whose pixels all have the hand's colour.
+    pub fn full() -> Self {
+        Self {
+            mask: vec![true; COLUMNS * ROWS],
+        }
+    }
+
+    /// Centre of mass of all pixels, in f64.
+    pub fn centre(&self) -> [f64; 2] {
+        let mut sums = [0.0; 3];
+        for (place, _) in self.mask.iter().enumerate().filter(|(_, set)| **set) {
+            sums[0] += 1.0;
+            sums[1] += (place % COLUMNS) as f64;
+            sums[2] += (place / COLUMNS) as f64;
+        }
+        [sums[1] / sums[0], sums[2] / sums[0]]
+    }
+
+    /// The gesture engine's statistics: runs of fewer pixels than the least one are dropped, the rest is counted. The region cuts
+    /// the runs.
+    pub fn statistics(&self, setting: Setting) -> Statistics {
+        let Region { first, last } = setting.region;
+        let least = usize::from(setting.least_run.max(1));
+        let mut statistics = Statistics {
+            size: SIZE,
+            count: 0,
+            sums: [0; 2],
+            bounds: Region {
+                first: [u16::MAX; 2],
+                last: [0; 2],
+            },
+            is_whole: true,
+        };
+        let columns = usize::from(first[0])..COLUMNS.min(usize::from(last[0]) + 1);
+        for y in usize::from(first[1])..ROWS.min(usize::from(last[1]) + 1) {
+            let mut x = columns.start;
+            while x < columns.end {
+                let length = (x..columns.end)
+                    .take_while(|x| self.mask[y * COLUMNS + x])
+                    .count();
+                if length >= least {
+                    statistics.count += length as u32;
+                    statistics.sums[0] += (x..x + length).sum::<usize>() as u32;
+                    statistics.sums[1] += (y * length) as u32;
+                    let bounds = &mut statistics.bounds;
+                    bounds.first = [bounds.first[0].min(x as u16), bounds.first[1].min(y as u16)];
+                    let end = (x + length - 1) as u16;
+                    bounds.last = [bounds.last[0].max(end), bounds.last[1].max(y as u16)];
+                }
+                x += length + 1;
+            }
+        }
+        statistics
+    }
+}
+
+/// Differences in pixels between the centre that the statistics give and that of the same hands without noise in f64, over
+/// `frames` frames of hands of `area` pixels at random places. `setting` makes the engine's setting from the bounds of the hand.
+pub fn centre_errors(
+    shape: Shape,
+    area: f64,
+    noise: &Noise,
+    frames: u32,
+    random: &mut Pcg64Mcg,
+    setting: impl Fn(&Region) -> Setting,
+) -> Vec<f64> {
+    let start = Drawn::new(shape, [0.0; 2], area);
+    let errors = (0..frames).flat_map(|_| {
+        let place = [
+            random.random_range(60.0..260.0),
+            random.random_range(60.0..180.0),
+        ];
+        let hand = start.moved(place);
+        let exact = Frame::draw(&[hand], &Noise::NONE, random);
+        let bounds = exact.statistics(Setting::SEARCHING).bounds;
+        let noisy = Frame::draw(&[hand], noise, random).statistics(setting(&bounds));
+        let centre = noisy
+            .blob()
+            .map_or([f64::NAN; 2], |blob| blob.centre.map(|x| x.to_num::<f64>()));
+        let exact = exact.centre();
+        [centre[0] - exact[0], centre[1] - exact[1]]
+    });
+    errors.collect()
+}

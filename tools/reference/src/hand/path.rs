@@ -1,0 +1,119 @@
+//! Paths of a hand, and the noisy targets that the control computes from the frames along them.
+
+use glint_core::fixed::Q4_28;
+use glint_core::hand::{Control, Presence, target};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+use super::frame::{Drawn, Frame, Noise, SIZE, Shape};
+
+/// Area of the hand in pixels.
+pub const AREA: f64 = 2_000.0;
+
+/// A path of the hand's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Path {
+    /// Rest, off the pixels' grid.
+    Rest,
+    /// A steady motion to the right over 200 pixels, at this speed in pixels a second, then back to the start.
+    Sweep(f64),
+    /// Reaches from place to place within 0.5 s, each followed by a rest of 0.3 s: minimum-jerk motions, as of an arm.
+    Reaches,
+}
+
+/// The places of [`Path::Reaches`], in pixels.
+const PLACES: [[f64; 2]; 8] = [
+    [160.0, 120.0],
+    [90.0, 100.0],
+    [230.0, 140.0],
+    [200.0, 90.0],
+    [190.0, 95.0],
+    [80.0, 150.0],
+    [120.0, 80.0],
+    [240.0, 120.0],
+];
+
+impl Path {
+    /// Place of the centre in pixels at a time in seconds.
+    pub fn at(self, time: f64) -> [f64; 2] {
+        match self {
+            Self::Rest => [160.37, 120.21],
+            Self::Sweep(speed) => [60.0 + (speed * time) % 200.0, 120.0],
+            Self::Reaches => {
+                let number = (time / 0.8).floor();
+                let [from, to] = [0, 1].map(|next| PLACES[(number as usize + next) % PLACES.len()]);
+                let part = ((time - 0.8 * number) / 0.5).min(1.0);
+                // Minimum jerk (Flash and Hogan, 1985): 10p³ − 15p⁴ + 6p⁵.
+                let way = part.powi(3) * (10.0 - 15.0 * part + 6.0 * part * part);
+                [0, 1].map(|axis| from[axis] + way * (to[axis] - from[axis]))
+            }
+        }
+    }
+}
+
+/// A camera frame along a path.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Azimuth and polar angle in turns that belong to the true centre.
+    pub truth: [f64; 2],
+    /// Azimuth and polar angle that the control computed from the frame, before its filters.
+    pub target: [Q4_28; 2],
+    /// Azimuth and polar angle in turns of the camera itself.
+    pub camera: [f64; 2],
+}
+
+/// Azimuth and polar angle in turns that belong to a place in pixels.
+pub fn angles([x, y]: [f64; 2]) -> [f64; 2] {
+    [
+        (x + 0.5) / f64::from(SIZE[0]) - 0.5,
+        (y + 0.5) / f64::from(SIZE[1]) / 2.0,
+    ]
+}
+
+/// Runs the control on the frames along a path, after the second in which it finds the hand.
+///
+/// # Panics
+/// When the control loses the hand.
+pub fn record(path: Path, noise: &Noise, rate: f64, seconds: f64) -> Vec<Sample> {
+    let mut random = Pcg64Mcg::seed_from_u64(3);
+    let start = Drawn::new(Shape::Hand, [0.0; 2], AREA);
+    let mut control = Control::default();
+    let mut frame = |number: u32, time: f64| {
+        let place = path.at(time);
+        let statistics =
+            Frame::draw(&[start.moved(place)], noise, &mut random).statistics(control.setting());
+        let time = (f64::from(number) * 1e6 / rate).round() as u64;
+        let blob = control
+            .on_frame(time, &statistics)
+            .expect("the hand is in the frame");
+        let [theta, phi, _] = target(&blob, SIZE);
+        let pose = control.pose();
+        Sample {
+            truth: angles(place),
+            target: [theta, phi],
+            camera: [pose.theta, pose.phi]
+                .map(|angle| angle.to_signed_degrees().to_num::<f64>() / 360.0),
+        }
+    };
+    let lead = (2.0 * rate) as u32;
+    for number in 0..lead {
+        frame(number, 0.0);
+    }
+    let samples = (0..(seconds * rate) as u32)
+        .map(|number| frame(lead + number, f64::from(number) / rate))
+        .collect();
+    assert_eq!(control.presence(), Presence::Tracked);
+    samples
+}
+
+/// Angle in degrees between the directions of two pairs of azimuth and polar angle in turns.
+pub fn between(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let direction = |[theta, phi]: [f64; 2]| {
+        let [theta, phi] = [theta, phi].map(|turns| turns * std::f64::consts::TAU);
+        [phi.sin() * theta.cos(), phi.sin() * theta.sin(), phi.cos()]
+    };
+    let [a, b] = [direction(a), direction(b)];
+    let across = [0, 1, 2].map(|i| (a[i] - b[i]).powi(2));
+    let half = across.iter().sum::<f64>().sqrt() / 2.0;
+    2.0 * half.min(1.0).asin().to_degrees()
+}

@@ -1,0 +1,284 @@
+//! Experiment: the control of the camera by a hand. Errors of the hand's centre, noise, lag and tracking errors of filters with their
+//! cycles on the soft core, and stiff cases.
+
+use anyhow::{Context, Result};
+use glint_core::hand::{RUN_TRACKING, Region, Setting};
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
+
+use crate::errors::Errors;
+use crate::hand::cases::{Fault, outcome};
+use crate::hand::filters::{Filter, Recordings, motion, quality};
+use crate::hand::frame::{Noise, SIZE, Shape, centre_errors};
+use crate::hand::path::{Path, record};
+use crate::report::cycles::Cycles;
+use crate::report::provenance::Provenance;
+
+/// Frames a second at which filters are compared.
+pub const RATE: f64 = 60.0;
+
+/// Errors of the hand's centre: a line of `gesture-centre.csv`. Errors are in pixels, of each coordinate.
+#[derive(Serialize, Deserialize)]
+pub struct Centre {
+    /// Shape and area of the hand.
+    pub hand: String,
+    /// What the engine counts.
+    pub counted: String,
+    /// Whether the firmware's settings count this.
+    pub shipped: bool,
+    /// Root mean square of the errors.
+    pub rms: f64,
+    /// 99th percentile of their magnitudes.
+    pub p99: f64,
+    /// The largest magnitude.
+    pub max: f64,
+    /// Commit with which the row was measured.
+    pub commit: String,
+}
+
+/// Errors and cycles of a filter: a line of `gesture-filters.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Row {
+    /// Family of filters.
+    pub filter: String,
+    /// Parameters of the filter.
+    pub parameters: String,
+    /// Whether it is the filter in use.
+    pub shipped: bool,
+    /// RMS in degrees of the camera's motion while the hand rests.
+    pub rest: f64,
+    /// Lag in ms behind a steady motion of 112° a second.
+    pub lag: f64,
+    /// RMS in degrees of the tracking error during reaches.
+    pub tracking: f64,
+    /// Largest tracking error in degrees.
+    pub largest: f64,
+    /// Median of the cycles for one channel and frame on the soft core; `None` if it was not measured.
+    pub cycles: Option<u64>,
+    /// Commit with which the row was measured.
+    pub commit: String,
+    /// Versions of the tools with which the row was measured.
+    pub tools: String,
+}
+
+/// A stiff case: a line of `gesture-stiff.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Stiff {
+    /// What the frames show for a second.
+    pub case: String,
+    /// Presence of the hand half a second later.
+    pub presence: String,
+    /// Reason why the frames are not used; empty if they are.
+    pub reason: String,
+    /// Largest angle in degrees between the camera during the case and before it.
+    pub moved: f64,
+    /// Time in ms from the end of the case until the hand steers the camera again.
+    pub back: f64,
+    /// Largest angle in degrees that the camera turns in a frame.
+    pub step: f64,
+    /// Angle in degrees between camera and hand two seconds after the case.
+    pub end: f64,
+    /// Commit with which the row was measured.
+    pub commit: String,
+}
+
+/// A requirement: a line of `gesture.csv`.
+#[derive(Serialize, Deserialize)]
+pub struct Target {
+    /// Description of the figure.
+    pub what: String,
+    /// Unit of the figure.
+    pub unit: String,
+    /// Required upper bound.
+    pub at_least: f64,
+    /// Measured value; `None` if it was not measured.
+    pub measured: Option<f64>,
+    /// Commit with which the figure was measured.
+    pub commit: String,
+}
+
+/// The settings of the engine that are compared.
+const SETTINGS: [(&str, bool, u8); 6] = [
+    ("all pixels", false, 1),
+    ("the region", true, 1),
+    ("runs of 6", false, 6),
+    ("the region, runs of 3", true, 3),
+    ("the region, runs of 4", true, RUN_TRACKING),
+    ("the region, runs of 6", true, 6),
+];
+
+/// Measures the errors of the centre of discs and hands with 5 % of salt noise, over `frames` frames each. With `only_shipped`, only
+/// the firmware's setting is measured.
+pub fn centres(frames: u32, only_shipped: bool) -> Vec<Centre> {
+    let commit = Provenance::find().commit;
+    let noise = Noise {
+        salt: 0.05,
+        ..Noise::NONE
+    };
+    let mut rows = Vec::new();
+    for (name, shape, area) in [
+        ("disc, 500 pixels", Shape::Disc, 500.0),
+        ("hand, 500 pixels", Shape::Hand, 500.0),
+        ("hand, 2000 pixels", Shape::Hand, 2_000.0),
+    ] {
+        for (counted, is_limited, least_run) in SETTINGS {
+            let shipped = is_limited && least_run == RUN_TRACKING;
+            if only_shipped && !shipped {
+                continue;
+            }
+            let mut random = Pcg64Mcg::seed_from_u64(1);
+            let setting = |bounds: &Region| Setting {
+                region: if is_limited {
+                    Setting::around(bounds, SIZE).region
+                } else {
+                    Region::WHOLE
+                },
+                least_run,
+            };
+            let mut sizes = centre_errors(shape, area, &noise, frames, &mut random, setting);
+            let mut errors = Errors::default();
+            for size in &mut sizes {
+                errors.add(*size);
+                *size = size.abs();
+            }
+            sizes.sort_by(f64::total_cmp);
+            rows.push(Centre {
+                hand: name.to_owned(),
+                counted: counted.to_owned(),
+                shipped,
+                rms: errors.rms(),
+                p99: sizes[sizes.len() * 99 / 100],
+                max: errors.max,
+                commit: commit.clone(),
+            });
+        }
+    }
+    rows
+}
+
+/// The compared filters.
+fn compared() -> Vec<Filter> {
+    let mut filters = vec![Filter::None];
+    filters.extend([2, 4, 8, 16].map(Filter::Average));
+    filters.extend([2.0, 4.0, 8.0, 16.0].map(Filter::LowPass));
+    filters.extend([0.01, 0.03, 0.1, 0.3, 1.0].map(Filter::AlphaBeta));
+    filters.extend([30.0, 60.0, 120.0, 240.0].map(|slope| Filter::OneEuro([1.0, 4.0, slope])));
+    filters.push(Filter::Shipped);
+    filters
+}
+
+/// Records the frames that filters are compared on, with the noise of a sensor.
+pub fn recordings() -> Recordings {
+    let record = |path, seconds| record(path, &Noise::SENSOR, RATE, seconds);
+    Recordings {
+        rate: RATE,
+        rest: record(Path::Rest, 10.0),
+        sweep: record(Path::Sweep(100.0), 1.9),
+        reaches: record(Path::Reaches, 12.0),
+    }
+}
+
+/// Measures all filters. `cycles` is the result of the console command `bench gesture`.
+pub fn filters(recordings: &Recordings, cycles: &Cycles) -> Vec<Row> {
+    let Provenance { commit, tools } = Provenance::find();
+    let rows = compared().into_iter().map(|filter| {
+        let quality = quality(filter, recordings);
+        Row {
+            filter: filter.family().to_owned(),
+            parameters: filter.parameters(),
+            shipped: filter == Filter::Shipped,
+            rest: quality.rest,
+            lag: quality.lag,
+            tracking: quality.tracking,
+            largest: quality.largest,
+            cycles: cycles.get(filter.kernel()).map(|figures| figures.median),
+            commit: commit.clone(),
+            tools: tools.clone(),
+        }
+    });
+    rows.collect()
+}
+
+/// Runs the stiff cases.
+pub fn stiff() -> Vec<Stiff> {
+    let commit = Provenance::find().commit;
+    let rows = Fault::ALL.into_iter().map(|fault| {
+        let outcome = outcome(fault);
+        Stiff {
+            case: fault.name().to_owned(),
+            presence: outcome.presence.to_string(),
+            reason: outcome
+                .doubt
+                .map_or_else(String::new, |doubt| doubt.to_string()),
+            moved: outcome.moved,
+            back: outcome.back,
+            step: outcome.step,
+            end: outcome.end,
+            commit: commit.clone(),
+        }
+    });
+    rows.collect()
+}
+
+/// Collects the figures that have a requirement. `centres` and `recordings` are the results of the functions above, `cycles` that of
+/// the console command `bench gesture`.
+///
+/// # Errors
+/// When the shipped setting is missing in `centres`.
+pub fn targets(
+    centres: &[Centre],
+    recordings: &Recordings,
+    cycles: &Cycles,
+) -> Result<Vec<Target>> {
+    let commit = Provenance::find().commit;
+    let target = |what: &str, unit: &str, at_least: f64, measured: Option<f64>| Target {
+        what: what.to_owned(),
+        unit: unit.to_owned(),
+        at_least,
+        measured,
+        commit: commit.clone(),
+    };
+    let centre = |hand: &str| {
+        centres
+            .iter()
+            .find(|row| row.shipped && row.hand == hand)
+            .with_context(|| format!("expected a row of {hand} as shipped"))
+    };
+    let poses: Vec<[f64; 2]> = recordings.rest.iter().map(|sample| sample.camera).collect();
+    let control = |figure: fn(&crate::report::cycles::Figures) -> u64| {
+        cycles.get("control").map(|figures| figure(figures) as f64)
+    };
+    Ok(vec![
+        target(
+            "centre of a disc of 500 pixels with 5 % of salt noise, RMS",
+            " px",
+            0.1,
+            Some(centre("disc, 500 pixels")?.rms),
+        ),
+        target(
+            "centre of a hand of 500 pixels with 5 % of salt noise, RMS",
+            " px",
+            0.1,
+            Some(centre("hand, 500 pixels")?.rms),
+        ),
+        target(
+            "still hand with the sensor's noise: motion of the camera, RMS",
+            "°",
+            0.1,
+            Some(motion(&poses)),
+        ),
+        target(
+            "cycles of a camera frame, code in the cache, median",
+            "",
+            4_000.0,
+            control(|figures| figures.median),
+        ),
+        target(
+            "cycles of a camera frame, code in the cache, largest",
+            "",
+            4_000.0,
+            control(|figures| figures.max),
+        ),
+    ])
+}
