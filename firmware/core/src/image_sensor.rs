@@ -2,8 +2,8 @@
 //!
 //! [`ImageSensor`] finds the chip over any [`I2c`], checks its identity, and writes a short list of registers: RGB565 over the
 //! parallel port, the high byte of a pixel first, a mirrored picture (a hand moves as in a mirror), automatic exposure, gain and
-//! white balance. All other registers keep the values of the chip's reset. The lists follow the data sheets OV7670 1.4 and OV5640
-//! 2.03.
+//! white balance. All other registers keep the values of the chip's reset. The lists follow the registers of public drivers;
+//! they have not been compared with the data sheets, nor tried with a real chip.
 //!
 //! SCCB differs from I2C: a read is two transactions, because its chips know no repeated start. [`TwoWires`] is a bus of two
 //! wires that software moves.
