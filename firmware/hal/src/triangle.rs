@@ -97,7 +97,9 @@ pub struct Lists {
 pub struct Geometry<'a> {
     /// The mesh.
     pub mesh: &'a Mesh<'a>,
-    /// The frame constants of the mesh.
+    /// Size of the picture.
+    pub size: Size,
+    /// The frame constants of the mesh, for a picture of this size.
     pub frame: &'a MeshSetup,
     /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. Its direction is in `frame`.
     /// There must be no ambient light with smooth shading and without `cull`.
@@ -108,7 +110,8 @@ pub struct Geometry<'a> {
     pub shading: Shading,
     /// Colour in place of those of the mesh.
     pub colour: Option<Rgb565>,
-    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size.
+    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size with the
+    /// same colours of the light.
     pub lists: Option<Lists>,
 }
 
@@ -213,13 +216,9 @@ impl TriangleEngine {
 
     /// Writes the registers of a geometry pass, so that the start itself is short. The pass before may still run, if it was started
     /// at least 128 clock cycles ago; the engine has copied its registers.
-    ///
-    /// # Errors
-    /// [`Error::Size`] if the engine does not support this picture size; no register is then written.
-    pub fn prepare_geometry(&mut self, pass: &Geometry) -> Result<Prepared, EngineError> {
+    pub fn prepare_geometry(&mut self, pass: &Geometry) -> Prepared {
         let registers = &self.registers;
         let frame = pass.frame;
-        let size = Size::of(frame.width, frame.height).ok_or(Error::Size)?;
         let records = pass.mesh.records();
         registers.mesh().write(records.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(records) as u32);
@@ -227,6 +226,11 @@ impl TriangleEngine {
             self.write_output(lists);
             registers.exceptions().write(lists.exceptions);
             registers.exception_limit().write(lists.exception_limit);
+            let (colour, ambient) = pass
+                .light
+                .map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
+            registers.light_colour().write(packed(colour));
+            registers.ambient().write(packed(ambient));
         }
         if let Some(colour) = pass.colour {
             registers.colour().write(colour.0);
@@ -247,11 +251,6 @@ impl TriangleEngine {
         registers.light_0().write(light[0]);
         registers.light_1().write(light[1]);
         registers.light_2().write(light[2]);
-        let (colour, ambient) = pass
-            .light
-            .map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
-        registers.light_colour().write(packed(colour));
-        registers.ambient().write(packed(ambient));
         let [x, y, z] = frame.translation;
         registers.tx_low().write(x as u32);
         registers.tx_high().write((x >> 32) as u16);
@@ -266,17 +265,17 @@ impl TriangleEngine {
                 .with_mantissa(frame.depth.mantissa)
                 .with_exponent(frame.depth.exponent as u8),
         );
-        Ok(Prepared {
+        Prepared {
             start: GeometryStart::default()
                 .with_start(true)
                 .with_cull(pass.cull)
                 .with_smooth(pass.shading == Shading::Smooth)
                 .with_orthographic(frame.projection == Projection::Orthographic)
-                .with_size(code(size))
+                .with_size(code(pass.size))
                 .with_append(pass.lists.is_none())
                 .with_mirror(frame.mirrors)
                 .with_recolour(pass.colour.is_some()),
-        })
+        }
     }
 
     /// Writes the registers of a geometry pass of lines, as [`prepare_geometry`](Self::prepare_geometry) does of a mesh. `segments`

@@ -166,6 +166,13 @@ impl<'a> Subject<'a> {
         }
     }
 
+    /// All meshes, in their order.
+    pub fn meshes(&self) -> impl Iterator<Item = &MeshSubject<'a>> {
+        let objects = self.objects().unwrap_or_default();
+        let objects = objects.iter().map(|object| &object.subject);
+        self.mesh_part().into_iter().chain(objects)
+    }
+
     /// The mesh with this number, with the colour in place of its own ones; `None` after the last mesh.
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
@@ -346,9 +353,9 @@ impl FrameConstants {
         };
         for (object, setup) in objects.iter().zip(&mut self.objects) {
             let MeshSubject { mesh, clip, .. } = &object.subject;
-            let volume = camera.volume_of(*clip)?;
+            setup.volume = camera.volume_of(*clip)?;
             let placement = &object.placement;
-            placement.update(setup, view, camera, mesh.radius(), volume)?;
+            placement.update(setup, view, camera, mesh.radius())?;
         }
         Ok(())
     }
@@ -414,11 +421,9 @@ impl<'a> Frame<'a> {
 
     /// Number of vertices for which the scratch memory of [`draw`](Self::draw) needs room.
     pub fn scratch_vertices(&self) -> usize {
-        (0..)
-            .map_while(|number| self.subject.numbered_mesh(number, None))
-            .map(|(subject, _)| subject.mesh.largest_chunk())
-            .max()
-            .unwrap_or(0)
+        let meshes = self.subject.meshes();
+        let chunks = meshes.map(|subject| subject.mesh.largest_chunk());
+        chunks.max().unwrap_or(0)
     }
 
     /// The mesh with this number, with its options and frame constants; `None` after the last mesh.

@@ -42,9 +42,7 @@ pub fn object(report: Report) {
                 // The constants stay where they are made, as in the drawing of a frame.
                 let mut own = own.borrow_mut();
                 let placement: Option<&Placement> = placements.get(number);
-                placement.map(|placement| {
-                    placement.update(&mut own, &view, &camera, RADIUS, camera.volume)
-                })
+                placement.map(|placement| placement.update(&mut own, &view, &camera, RADIUS))
             },
         );
     }

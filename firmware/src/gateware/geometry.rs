@@ -5,6 +5,8 @@
 //!
 //! Some options of meshes need the CPU for all steps before the raster pass, which it then does for all meshes of the frame.
 
+use core::mem;
+
 use glint_core::colour::{Shading, Winding};
 use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
@@ -48,6 +50,9 @@ pub struct GeometryPasses {
     shading: Shading,
     /// Number of the mesh whose pass was started last.
     number: usize,
+    /// Triangles of the meshes whose passes have ended, and number of these that were clipped and then drawn.
+    triangles: u32,
+    drawn_clipped: u32,
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
     /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
@@ -60,6 +65,8 @@ impl GeometryPasses {
         Self {
             shading,
             number: 0,
+            triangles: 0,
+            drawn_clipped: 0,
             prepared: None,
             lack: None,
         }
@@ -88,6 +95,7 @@ impl GeometryPasses {
         let setup = job.constants.numbered_mesh(&job.frame.subject, number);
         let pass = Geometry {
             mesh: &subject.mesh,
+            size: job.frame.size,
             frame: setup.ok_or(EngineError::from(Error::Size))?,
             light: job.constants.light(),
             cull: subject.cull,
@@ -95,7 +103,7 @@ impl GeometryPasses {
             colour,
             lists: (number == 0).then(|| job.buffers.lists(self.shading, job.frame.size)),
         };
-        self.prepared = Some(job.engine.prepare_geometry(&pass)?);
+        self.prepared = Some(job.engine.prepare_geometry(&pass));
         Ok(())
     }
 
@@ -107,7 +115,7 @@ impl GeometryPasses {
             self.set_up(job, cpu)?;
             return Ok(false);
         }
-        self.number = 0;
+        (self.number, self.triangles, self.drawn_clipped) = (0, 0, 0);
         let starts = self.start_prepared(job);
         if starts {
             self.prepare_mesh(job, 1)?;
@@ -126,76 +134,88 @@ impl GeometryPasses {
         true
     }
 
-    /// Continues after the end of a geometry pass: starts that of the next mesh, collects the results of this one, and prepares the
-    /// pass after the next. Returns whether there is a next mesh.
+    /// Continues after the end of a geometry pass: starts that of the next mesh, clips the triangles of this one that need it, and prepares
+    /// the pass after the next. Returns whether there is a next mesh.
     pub fn advance(&mut self, job: &mut Job) -> Result<bool, Fallback> {
         let (number, counts) = (self.number, job.engine.counts());
         let starts = self.start_prepared(job);
-        self.collect(job, number, counts)?;
+        self.triangles += counts.triangles;
+        if counts.exceptions > job.buffers.stats.clipped {
+            self.clip(job, number, &counts)?;
+        }
         if starts {
             self.number = number + 1;
             self.prepare_mesh(job, number + 2)?;
+        } else {
+            self.finish(job, &counts);
         }
         Ok(starts)
     }
 
-    /// Adds the results of the geometry pass of a mesh to those of the frame: the counts, and the triangles that need clipping, which
-    /// are clipped.
-    fn collect(&mut self, job: &mut Job, number: usize, counts: Counts) -> Result<(), EngineError> {
+    /// Clips the triangles that need it in the mesh with this number: the listed ones that were not clipped before.
+    ///
+    /// Not inlined, as few meshes have any.
+    #[inline(never)]
+    fn clip(&mut self, job: &mut Job, number: usize, counts: &Counts) -> Result<(), EngineError> {
         let buffers = &mut *job.buffers;
-        let listed = buffers.stats.clipped;
-        let drawn_before = buffers.sets[0].map_or(0, |set| set.count);
-        buffers.sets[0] = Some(buffers.set(counts.descriptors));
-        let mut drawn = counts.descriptors.saturating_sub(drawn_before);
-        if counts.exceptions > listed {
-            let subject = job
-                .frame
-                .subject
-                .numbered_mesh(number, job.constants.light());
-            let setup = job.constants.numbered_mesh(&job.frame.subject, number);
-            let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
-            cpu::flush_data_cache();
-            let joins = joins_clipped(job.frame);
-            if joins {
-                buffers.clipped_counts = ListCounts::of(buffers.lists, counts.descriptors);
-            } else if buffers.sets[1].is_none() {
-                buffers.clipped_counts = ListCounts::EMPTY;
-            }
-            let listed = listed as usize..counts.exceptions as usize;
-            let list_shift = buffers.list_shift(job.frame.size).into();
-            let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
-            let mut numbers = exceptions.iter().copied();
-            let (descriptors, lists) = if joins {
-                (&mut *buffers.descriptors, &mut *buffers.lists)
-            } else {
-                (
-                    &mut *buffers.clipped_descriptors,
-                    &mut *buffers.clipped_lists,
-                )
-            };
-            let mut writer = ListWriter::new(
-                descriptors,
-                lists,
-                &mut buffers.clipped_counts,
-                setup.width,
-                list_shift,
-                self.shading,
-            );
-            let mut put = |setup: &_, colour| writer.put(setup, colour);
-            drawn += clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-            let count = writer.finish().map_err(|_| Error::Full)?;
-            if joins {
-                buffers.sets[0] = Some(buffers.set(count));
-            } else {
-                buffers.sets[1] = Some(buffers.clipped_set(count));
-            }
+        let subject = job
+            .frame
+            .subject
+            .numbered_mesh(number, job.constants.light());
+        let setup = job.constants.numbered_mesh(&job.frame.subject, number);
+        let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
+        cpu::flush_data_cache();
+        let joins = joins_clipped(job.frame);
+        if joins {
+            buffers.clipped_counts = ListCounts::of(buffers.lists, counts.descriptors);
+        } else if buffers.sets[1].is_none() {
+            buffers.clipped_counts = ListCounts::EMPTY;
         }
-        let stats = &mut buffers.stats;
-        stats.triangles_in += counts.triangles;
-        stats.culled += counts.triangles.saturating_sub(drawn);
-        stats.clipped = counts.exceptions;
-        stats.drawn += drawn;
+        let clipped = mem::replace(&mut buffers.stats.clipped, counts.exceptions);
+        let listed = clipped as usize..counts.exceptions as usize;
+        let list_shift = buffers.list_shift(job.frame.size).into();
+        let exceptions = buffers.exceptions.get(listed).unwrap_or_default();
+        let mut numbers = exceptions.iter().copied();
+        let (descriptors, lists) = if joins {
+            (&mut *buffers.descriptors, &mut *buffers.lists)
+        } else {
+            (
+                &mut *buffers.clipped_descriptors,
+                &mut *buffers.clipped_lists,
+            )
+        };
+        let mut writer = ListWriter::new(
+            descriptors,
+            lists,
+            &mut buffers.clipped_counts,
+            setup.width,
+            list_shift,
+            self.shading,
+        );
+        let mut put = |setup: &_, colour| writer.put(setup, colour);
+        self.drawn_clipped +=
+            clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
+        let count = writer.finish().map_err(|_| Error::Full)?;
+        if joins {
+            buffers.sets[0] = Some(buffers.set(count));
+        } else {
+            buffers.sets[1] = Some(buffers.clipped_set(count));
+        }
         Ok(())
+    }
+
+    /// Takes the results of all geometry passes, after the last one: the descriptors, unless clipped triangles have joined them, and the
+    /// counts of triangles.
+    fn finish(&self, job: &mut Job, counts: &Counts) {
+        let buffers = &mut *job.buffers;
+        if buffers.sets[0].is_none() {
+            buffers.sets[0] = Some(buffers.set(counts.descriptors));
+        }
+        let drawn = counts.descriptors + self.drawn_clipped;
+        let stats = &mut buffers.stats;
+        stats.triangles_in = self.triangles;
+        stats.culled = self.triangles.saturating_sub(drawn);
+        stats.drawn = drawn;
     }
 
     /// Makes the descriptors and lists of all meshes by the CPU.
@@ -255,8 +275,7 @@ const fn joins_clipped(frame: &Frame) -> bool {
 
 /// The first option of the meshes of a frame that geometry passes lack.
 fn lack(frame: &Frame) -> Option<Lack> {
-    let meshes = (0..).map_while(|number| frame.subject.coloured_mesh(number));
-    let lacking = meshes.map(|(subject, _)| subject).find_map(|subject| {
+    let lacking = frame.subject.meshes().find_map(|subject| {
         let sees_dark_sides = subject.shading == Shading::Smooth && !subject.cull;
         if subject.clip != Clip::Guard {
             Some(Lack::Volume)

@@ -402,7 +402,7 @@ impl GatewareRenderer {
         if has_lines && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
         }
-        for (mesh, _) in (0..).map_while(|number| frame.subject.coloured_mesh(number)) {
+        for mesh in frame.subject.meshes() {
             if !self.draws_triangles {
                 return Err(EngineError::from(Error::Triangles).into());
             }

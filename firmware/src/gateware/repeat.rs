@@ -25,7 +25,7 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
         count: u32,
     ) -> Result<Rendered, Fallback> {
-        match (&frame.subject, frame.subject.coloured_mesh(0)) {
+        match (&frame.subject, frame.subject.meshes().next()) {
             (Subject::Wireframe(wireframe), _) => {
                 self.repeat_lines(wireframe, frame, output, count)
             }

@@ -119,6 +119,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     };
     let pass = Geometry {
         mesh: &mesh,
+        size: Size::W640,
         frame: &frame,
         light: Some(&light),
         cull: true,
@@ -134,7 +135,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         }),
     };
     let mut engine = engine.unwrap();
-    let prepared = engine.prepare_geometry(&pass).unwrap();
+    let prepared = engine.prepare_geometry(&pass);
 
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
@@ -201,6 +202,7 @@ fn a_geometry_pass_continues_the_lists_of_the_pass_before() {
     frame.mirrors = true;
     let pass = Geometry {
         mesh: &mesh,
+        size: Size::W640,
         frame: &frame,
         light: None,
         cull: false,
@@ -209,7 +211,7 @@ fn a_geometry_pass_continues_the_lists_of_the_pass_before() {
         lists: None,
     };
     let mut engine = engine.unwrap();
-    let prepared = engine.prepare_geometry(&pass).unwrap();
+    let prepared = engine.prepare_geometry(&pass);
     let r = registers();
     let lists = [r.geometry_descriptors(), r.geometry_lists(), r.exceptions()]
         .map(|register| register.address());

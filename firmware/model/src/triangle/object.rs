@@ -138,12 +138,12 @@ impl Placement {
         radius: u32,
     ) -> Result<MeshSetup, RenderError> {
         let mut setup = *camera;
-        self.update(&mut setup, view, camera, radius, camera.volume)?;
+        self.update(&mut setup, view, camera, radius)?;
         Ok(setup)
     }
 
-    /// Computes the frame constants as [`setup`](Self::setup) does, for another volume of the camera, in place: to copy them takes the soft
-    /// core long.
+    /// Computes the frame constants as [`setup`](Self::setup) does, in place: to copy them takes the soft core long. `setup` has the volume,
+    /// in the units of the camera.
     ///
     /// # Errors
     /// As [`setup`](Self::setup); `setup` must then not be used.
@@ -154,7 +154,6 @@ impl Placement {
         view: &View,
         camera: &MeshSetup,
         radius: u32,
-        volume: Volume,
     ) -> Result<(), RenderError> {
         // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after the first rounding.
         let rows = multiply(&mut setup.u, &camera.u, &self.columns)
@@ -178,7 +177,6 @@ impl Placement {
         setup.near = camera.near;
         setup.near_plane = camera.near_plane;
         setup.depth = camera.depth;
-        setup.volume = volume;
         setup.is_placed = true;
         setup.mirrors = self.matrix.mirrors();
         // Most objects fit the formats of the vertex stage as they are.
