@@ -98,6 +98,10 @@ def _generator(old, new, fails):
     return Mutation("ray_generator.sv", old, new, fails)
 
 
+def _smooth(old, new, fails):
+    return Mutation("smooth_shader.sv", old, new, fails)
+
+
 def _crossbar(old, new, fails):
     return Mutation("memory_crossbar.py", old, new, fails)
 
@@ -295,6 +299,19 @@ MUTATIONS = {
         _cull("room && !again;", "room;", "busy_while_inside"),
         _cull("first_valid || last_valid || !queue_idle;", "first_valid || last_valid;", "busy_while_inside"),
         *_PAUSE,
+    ],
+    "smooth_shader": [
+        _fifo("stored || read_valid && !read_ready;", "stored;", "shown.valid_stays"),
+        _fifo("!read_valid || read_ready;", "!read_valid || read_ready || stored;", "shown.payload_stable"),
+        _smooth("group_valid && (!group_smooth || colours_valid)", "group_valid", "in_order"),
+        _smooth("out_ready && (!group_smooth || colours_valid)", "out_ready", "in_order"),
+        _smooth("in_valid && in_smooth)", "in_valid)", "in_order"),
+        _smooth("takes && is_last)", "takes)", "in_order"),
+        _queue("DEPTH - FLIGHT - 2;", "DEPTH - FLIGHT + 1;", "in_order"),
+        _smooth("assign out_valid   = group_valid &&", "assign out_valid   =", "nothing_made_up"),
+        _queue("level == '0;", "level <= LEVEL_BITS'(1);", "idle_when_empty"),
+        _smooth("finished <= valid[LATENCY] && ends;", "finished <= valid[LATENCY] && ends && !group_valid;", "shown_in_time"),
+        _queue("room  <= level <=", "room  <= level ==", "taken_in_time"),
     ],
     "memory_crossbar": [
         _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),

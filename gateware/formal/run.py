@@ -32,7 +32,7 @@ _AT_A_TIME = 2
 
 
 # Replacements of modules in gateware/rtl, used by the proofs that name them.
-_STAND_INS = ("any_field", "any_level", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
+_STAND_INS = ("any_colour", "any_field", "any_level", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
 
@@ -72,6 +72,7 @@ PROOFS = [
     Proof("band_extents", "band_extents_proof", 27),
     Proof("ray_paint", "ray_paint_proof", 48, ("no_product", "any_tables")),
     Proof("ray_generator", "ray_generator_proof", 40, ("no_product", "any_tables")),
+    Proof("smooth_shader", "smooth_shader_proof", 25, ("any_colour",)),
     Proof("setup", "setup_proof", 22, ("plain_setup",)),
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
     Proof("walker", "walker_proof", 16, ("any_stepper",)),
