@@ -43,12 +43,18 @@ module memory_crossbar_proof #(
         .bank_valid, .bank_we, .bank_addr, .bank_wdata_ready, .bank_rdata_valid, .memory_wdata, .memory_rdata
     );
 
+    // A command that is not taken stays as it is.
+    logic [PORTS-1:0] waiting, was_we, was_row, was_bank, changes;
+
+    assign changes = ~cmd_valid | (cmd_we ^ was_we) | (cmd_row ^ was_row) | (cmd_bank ^ was_bank);
+
+    always_ff @(posedge clk) begin
+        waiting <= rst ? '0 : cmd_valid & ~cmd_ready;
+        {was_we, was_row, was_bank} <= {cmd_we, cmd_row, cmd_bank};
+    end
+
     for (genvar p = 0; p < PORTS; p++) begin : ports
         assign cmd_addr[p] = {cmd_row[p], cmd_bank[p], kept[p]};
-
-        stream_checker #(.WIDTH(3), .GIVEN(1)) given (
-            .clk, .rst, .valid(cmd_valid[p]), .ready(cmd_ready[p]), .data({cmd_we[p], cmd_row[p], cmd_bank[p]})
-        );
     end
 
     // The port whose command is taken.
@@ -136,6 +142,7 @@ module memory_crossbar_proof #(
     end
 
     always_ff @(posedge clk) if (!rst) begin
+        assume ((waiting & changes) == '0);
         assume (!done || levels[done_bank] != '0);
         assume (!cmd_we[1] && cmd_we[2]);
 
