@@ -2,6 +2,7 @@
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
+use virtual_wires::Device;
 
 /// I2C address with AD0 low.
 pub const ADDRESS: u8 = 0x68;
@@ -368,6 +369,56 @@ impl Chip {
             self.missed += u64::from(*status & DATA_RDY);
             *status |= DATA_RDY;
         }
+    }
+}
+
+impl Device for Chip {
+    type Fault = Fault;
+
+    fn number_bytes(&self) -> u8 {
+        1
+    }
+
+    fn set_fault(&mut self, fault: Option<Fault>) {
+        self.fault = fault;
+    }
+
+    fn advance(&mut self, now: u64) {
+        Self::advance(self, now);
+    }
+
+    fn set_addressed(&mut self, is_addressed: bool) {
+        Self::set_addressed(self, is_addressed);
+    }
+
+    fn answers(&self, address: u8) -> bool {
+        Self::answers(self, address)
+    }
+
+    fn acknowledges(&self) -> bool {
+        self.fault != Some(Fault::NoAcknowledge)
+    }
+
+    fn stretch(&self) -> Option<u64> {
+        match self.fault {
+            Some(Fault::Stretched(time)) => Some(time),
+            _ => None,
+        }
+    }
+
+    fn is_stuck(&self, clocks: u32) -> bool {
+        match self.fault {
+            Some(Fault::StuckData(enough)) => enough == 0 || clocks < enough,
+            _ => false,
+        }
+    }
+
+    fn read(&mut self, register: u16) -> u8 {
+        Self::read(self, register as u8)
+    }
+
+    fn write(&mut self, register: u16, value: u8) {
+        Self::write(self, register as u8, value);
     }
 }
 

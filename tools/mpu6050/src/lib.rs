@@ -17,8 +17,9 @@
 
 mod bus;
 mod chip;
-mod wires;
 
 pub use bus::{Bus, Error};
 pub use chip::{ADDRESS, Chip, Counts, Fault, Imperfections, RESET_TIME, Source, State};
-pub use wires::Wires;
+
+/// The chip on the wires SCL and SDA.
+pub type Wires = virtual_wires::Wires<Chip>;

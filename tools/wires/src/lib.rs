@@ -1,6 +1,7 @@
-//! The virtual MPU-6050 on the two wires of the I2C bus, SCL and SDA.
+//! A device on the two wires SCL and SDA of an I2C bus, or of its subset SCCB: [`Wires`] simulates the bus edge by edge, and a
+//! [`Device`] has the registers behind it.
 
-use crate::chip::{Chip, Fault};
+#![forbid(unsafe_code)]
 
 /// Minimum times between edges on SCL and SDA that a master must keep in fast mode (400 kHz), in ns.
 const LOW: u64 = 1_300;
@@ -11,14 +12,41 @@ const DATA_SETUP: u64 = 100;
 const STOP_SETUP: u64 = 600;
 const FREE: u64 = 1_300;
 
-/// State of the transfer between the master and the chip.
+/// The registers behind the wires, and what the device does with the bus.
+pub trait Device {
+    /// A fault of the device, for tests.
+    type Fault;
+
+    /// Number of bytes of a register's number, 1 or 2; the high byte comes first. With 1 byte, the device ignores the high byte.
+    fn number_bytes(&self) -> u8;
+    /// Sets the current fault.
+    fn set_fault(&mut self, fault: Option<Self::Fault>);
+    /// Advances the time to `now`, in ns.
+    fn advance(&mut self, now: u64);
+    /// Tells the device that a transfer starts or ends.
+    fn set_addressed(&mut self, is_addressed: bool);
+    /// Whether the device acknowledges `address`.
+    fn answers(&self, address: u8) -> bool;
+    /// Whether the device acknowledges the bytes after its address.
+    fn acknowledges(&self) -> bool;
+    /// Time in ns by which the device stretches the clock after each byte.
+    fn stretch(&self) -> Option<u64>;
+    /// Whether the device holds SDA low although the master has sent this number of clocks since the fault was set.
+    fn is_stuck(&self, clocks: u32) -> bool;
+    /// Reads a register.
+    fn read(&mut self, register: u16) -> u8;
+    /// Writes a register.
+    fn write(&mut self, register: u16, value: u8);
+}
+
+/// State of the transfer between the master and the device.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// The chip is not addressed and waits for the next start.
+    /// The device is not addressed and waits for the next start.
     Idle,
-    /// The chip receives a byte from the master: the bits so far, their number, and the meaning of the byte.
+    /// The device receives a byte from the master: the bits so far, their number, and the meaning of the byte.
     In { bits: u8, count: u8, what: Byte },
-    /// The chip sends a byte to the master: the byte, and the number of its bits sent so far.
+    /// The device sends a byte to the master: the byte, and the number of its bits sent so far.
     Out { byte: u8, count: u8 },
 }
 
@@ -26,7 +54,8 @@ enum Phase {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Byte {
     Address,
-    Register,
+    /// A byte of a register's number, with the number of its bytes that follow.
+    Register(u8),
     Value,
 }
 
@@ -40,32 +69,32 @@ struct Edges {
     stop: u64,
 }
 
-/// A chip that is driven by the levels of SCL and SDA.
-pub struct Wires {
-    /// The chip.
-    pub chip: Chip,
+/// A device that is driven by the levels of SCL and SDA.
+pub struct Wires<D> {
+    /// The device.
+    pub chip: D,
     /// Log of the traffic; `None` if no log is kept. S is a start, P a stop. A byte is followed by + if it was acknowledged, and
     /// by - if not.
     pub log: Option<Vec<String>>,
     /// Violations of the minimum times by the master, as messages.
     pub violations: Vec<String>,
     phase: Phase,
-    register: u8,
+    register: u16,
     /// Last levels of SCL and SDA; `true` is high.
     wires: (bool, bool),
-    /// Whether the chip pulls SDA low.
+    /// Whether the device pulls SDA low.
     pulls: bool,
-    /// Time until which the chip stretches the clock, in ns.
+    /// Time until which the device stretches the clock, in ns.
     holds: u64,
-    /// Number of clocks since the last call of `set_fault`. Enough clocks free a chip that holds SDA low.
+    /// Number of clocks since the last call of `set_fault`. Enough clocks free a device that holds SDA low.
     clocks: u32,
     edges: Edges,
 }
 
-impl Wires {
-    /// Puts a chip on a free bus.
+impl<D: Device> Wires<D> {
+    /// Puts a device on a free bus.
     #[must_use]
-    pub fn new(chip: Chip) -> Self {
+    pub fn new(chip: D) -> Self {
         Self {
             chip,
             log: None,
@@ -85,7 +114,7 @@ impl Wires {
     pub fn update(&mut self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         self.chip.advance(now);
         let mut wires = self.wires(now, scl, sda);
-        // The chip can change SDA in answer to an edge, so the loop repeats until the levels are stable.
+        // The device can change SDA in answer to an edge, so the loop repeats until the levels are stable.
         while wires != self.wires {
             let (before, after) = (std::mem::replace(&mut self.wires, wires), wires);
             self.on_edge(now, before, after);
@@ -97,15 +126,8 @@ impl Wires {
     fn wires(&self, now: u64, scl: bool, sda: bool) -> (bool, bool) {
         (
             scl && now >= self.holds,
-            sda && !self.pulls && !self.is_stuck(),
+            sda && !self.pulls && !self.chip.is_stuck(self.clocks),
         )
-    }
-
-    fn is_stuck(&self) -> bool {
-        match self.chip.fault {
-            Some(Fault::StuckData(clocks)) => clocks == 0 || self.clocks < clocks,
-            _ => false,
-        }
     }
 
     fn record(&mut self, what: impl Into<String>) {
@@ -191,7 +213,7 @@ impl Wires {
         }
     }
 
-    /// Reads the next register of the chip, and starts to send its value to the master.
+    /// Reads the next register of the device, and starts to send its value to the master.
     fn next_out(&mut self) -> Phase {
         let byte = self.chip.read(self.register);
         self.register = self.register.wrapping_add(1);
@@ -208,13 +230,13 @@ impl Wires {
             } => {
                 self.pulls = match what {
                     Byte::Address => self.chip.answers(bits >> 1),
-                    _ => self.chip.fault != Some(Fault::NoAcknowledge),
+                    _ => self.chip.acknowledges(),
                 };
                 let mark = if self.pulls { '+' } else { '-' };
                 self.record(format!("{bits:02x}{mark}"));
                 if !self.pulls {
                     self.phase = Phase::Idle;
-                } else if let Some(Fault::Stretched(time)) = self.chip.fault {
+                } else if let Some(time) = self.chip.stretch() {
                     self.holds = now.saturating_add(time);
                 }
             }
@@ -227,10 +249,13 @@ impl Wires {
                     self.phase = self.next_out();
                     self.fall(now);
                 }
-                Byte::Address => self.begin(Byte::Register),
-                Byte::Register => {
-                    self.register = bits;
-                    self.begin(Byte::Value);
+                Byte::Address => self.begin(Byte::Register(self.chip.number_bytes() - 1)),
+                Byte::Register(following) => {
+                    self.register = self.register << 8 | u16::from(bits);
+                    self.begin(match following {
+                        0 => Byte::Value,
+                        following => Byte::Register(following - 1),
+                    });
                 }
                 Byte::Value => {
                     self.chip.write(self.register, bits);
@@ -243,9 +268,9 @@ impl Wires {
         }
     }
 
-    /// Sets the chip's fault.
-    pub fn set_fault(&mut self, fault: Option<Fault>) {
-        self.chip.fault = fault;
+    /// Sets the device's fault.
+    pub fn set_fault(&mut self, fault: Option<D::Fault>) {
+        self.chip.set_fault(fault);
         self.clocks = 0;
         self.holds = 0;
     }
