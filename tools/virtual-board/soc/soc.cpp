@@ -41,6 +41,11 @@ constexpr size_t COLUMN_BITS = 7;
 constexpr size_t BANK_BITS = 3;
 constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in one bank.
 
+// Levels of the image sensor's port in a period of PCLK, as for soc_camera_send, and the first bit of its SCCB wires in soc_outputs.
+constexpr uint16_t CAMERA_STILL = 1 << 10;
+constexpr uint16_t CAMERA_INVERTED = 1 << 11;
+constexpr int CAMERA_OUTPUTS = 2;
+
 // Half a period of sys_clk in picoseconds, the unit of time in waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
 
@@ -52,6 +57,13 @@ struct Soc : Harness {
     std::deque<uint8_t> uart_in;
     std::deque<uint8_t> uart_out;
     uint8_t i2c_released = 3;
+    uint8_t camera_released = 3;
+    // PCLK has camera_ticks periods in PIXEL_PERIOD cycles of sys_clk. Each of its periods has the levels of one entry.
+    uint32_t camera_ticks = 0;
+    uint32_t camera_phase = 0;
+    bool camera_second_half = false;
+    std::deque<uint16_t> camera_levels;
+    uint64_t camera_clocks = 0;
     bool video_on = false;
     std::vector<uint32_t> video;
 
@@ -60,6 +72,8 @@ struct Soc : Harness {
         top.serial_source_ready = 1;
         top.i2c_scl_in = 1;
         top.i2c_sda_in = 1;
+        top.camera_scl_in = 1;
+        top.camera_sda_in = 1;
         rom_write(glint_bios, static_cast<size_t>(glint_bios_end - glint_bios));
     }
 
@@ -68,9 +82,12 @@ struct Soc : Harness {
         const bool sent = top.serial_source_valid;
         const uint8_t sent_byte = top.serial_source_data;
         const bool taken = top.serial_sink_valid && top.serial_sink_ready;
+        const bool clocked = top.camera_xclk;
+        move_camera();
         top.sys_clk = 1;
         top.pix_clk = 0;
         eval();
+        camera_clocks += !clocked && top.camera_xclk;
 
         // Input pins change between the edges. pix_clk rises at the falling edge of sys_clk, so two evaluations per cycle serve
         // both clocks.
@@ -81,6 +98,10 @@ struct Soc : Harness {
         const uint8_t wires = i2c_wires();
         top.i2c_scl_in = wires & 1;
         top.i2c_sda_in = wires >> 1;
+        const uint8_t camera_wires = camera_released & outputs() >> CAMERA_OUTPUTS;
+        top.camera_scl_in = camera_wires & 1;
+        top.camera_sda_in = camera_wires >> 1 & 1;
+        move_camera();
         const bool tick = pixel_tick();
         top.sys_clk = 0;
         top.pix_clk = tick;
@@ -94,19 +115,37 @@ struct Soc : Harness {
                         uint32_t(top.vga_r) << 16 | uint32_t(top.vga_g) << 8 | uint32_t(top.vga_b));
     }
 
-    uint8_t i2c_released_by_soc() const {
-        return top.i2c_scl_out | top.i2c_sda_out << 1;
+    // Moves the image sensor's port by half a cycle of sys_clk. The levels of a period change at its beginning, PCLK rises in its middle.
+    void move_camera() {
+        if (camera_levels.empty()) return;
+        camera_phase += camera_ticks;
+        if (camera_phase < PIXEL_PERIOD) return;
+        camera_phase -= PIXEL_PERIOD;
+        const uint16_t levels = camera_levels.front();
+        const bool inverted = levels & CAMERA_INVERTED;
+        top.camera_d = levels & 0xff;
+        top.camera_href = levels >> 8 & 1;
+        top.camera_vsync = levels >> 9 & 1;
+        top.camera_pclk = !(levels & CAMERA_STILL) && camera_second_half != inverted;
+        if (camera_second_half) camera_levels.pop_front();
+        camera_second_half = !camera_second_half;
+    }
+
+    // Outputs to devices that answer edge by edge, coded as for soc_outputs.
+    uint8_t outputs() const {
+        return top.i2c_scl_out | top.i2c_sda_out << 1 | top.camera_scl_out << 2 | top.camera_sda_out << 3 |
+               top.camera_reset_n << 4 | top.camera_power_down << 5;
     }
 
     uint8_t i2c_wires() const {
-        return i2c_released & i2c_released_by_soc();
+        return i2c_released & outputs();
     }
 
-    uint64_t run_to_i2c(uint64_t count) {
+    uint64_t run_to_edge(uint64_t count) {
         Verilated::threadContextp(&context);
-        const uint8_t before = i2c_released_by_soc();
+        const uint8_t before = outputs();
         uint64_t done = 0;
-        while (done < count && i2c_released_by_soc() == before) {
+        while (done < count && outputs() == before) {
             cycle();
             ++done;
         }
@@ -216,8 +255,20 @@ size_t soc_uart_read(Soc *soc, uint8_t *bytes, size_t capacity) {
 
 void soc_i2c_drive(Soc *soc, uint8_t released) { soc->i2c_released = released & 3; }
 uint8_t soc_i2c_wires(const Soc *soc) { return soc->i2c_wires(); }
-uint8_t soc_i2c_released(const Soc *soc) { return soc->i2c_released_by_soc(); }
-uint64_t soc_run_to_i2c(Soc *soc, uint64_t cycles) { return soc->run_to_i2c(cycles); }
+uint8_t soc_outputs(const Soc *soc) { return soc->outputs(); }
+uint64_t soc_run_to_edge(Soc *soc, uint64_t cycles) { return soc->run_to_edge(cycles); }
+
+void soc_camera_drive(Soc *soc, uint8_t released) { soc->camera_released = released & 3; }
+void soc_camera_send(Soc *soc, uint32_t frequency, const uint16_t *levels, size_t count) {
+    soc->camera_ticks = frequency / CLOCK_UNIT;
+    soc->camera_levels.insert(soc->camera_levels.end(), levels, levels + count);
+}
+size_t soc_camera_queued(const Soc *soc) { return soc->camera_levels.size(); }
+void soc_camera_clear(Soc *soc) {
+    soc->camera_levels.clear();
+    soc->camera_second_half = false;
+}
+uint64_t soc_camera_clocks(const Soc *soc) { return soc->camera_clocks; }
 
 void soc_video_record(Soc *soc, int on) { soc->video_on = on != 0; }
 const uint32_t *soc_video_samples(const Soc *soc, size_t *count) {

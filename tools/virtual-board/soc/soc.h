@@ -41,11 +41,24 @@ size_t soc_uart_read(Soc *soc, uint8_t *bytes, size_t capacity);
 void soc_i2c_drive(Soc *soc, uint8_t released);
 /* Levels of the I2C wires: SCL in bit 0, SDA in bit 1. */
 uint8_t soc_i2c_wires(const Soc *soc);
-/* How the SoC drives the I2C wires, coded as for soc_i2c_drive. */
-uint8_t soc_i2c_released(const Soc *soc);
-/* Runs as soc_run does, but stops after the first cycle in which the value of soc_i2c_released changes. Returns the number of
+/* Outputs of the SoC to devices that answer each edge. Bits 0 and 1: SCL and SDA of the I2C bus, bits 2 and 3: SCL and SDA of the
+ * image sensor's SCCB bus, each coded as for soc_i2c_drive. Bit 4: the image sensor's RESET_N, bit 5: its PWDN. */
+uint8_t soc_outputs(const Soc *soc);
+/* Runs as soc_run does, but stops after the first cycle in which the value of soc_outputs changes. Returns the number of
  * cycles run. */
-uint64_t soc_run_to_i2c(Soc *soc, uint64_t cycles);
+uint64_t soc_run_to_edge(Soc *soc, uint64_t cycles);
+
+/* Sets how the image sensor drives its SCCB wires, coded as for soc_i2c_drive. */
+void soc_camera_drive(Soc *soc, uint8_t released);
+/* Queues levels of the image sensor's port, one entry a period of PCLK; `frequency` of PCLK in Hz, a multiple of 250 kHz that is at most that
+ * of sys_clk. The levels change at the beginning of the period, PCLK rises in its middle. Bits 7:0 data, bit 8 HREF, bit 9 VSYNC, bit
+ * 10: PCLK stands still, bit 11: PCLK is inverted. While the queue is empty, nothing changes. */
+void soc_camera_send(Soc *soc, uint32_t frequency, const uint16_t *levels, size_t count);
+/* Number of queued periods. */
+size_t soc_camera_queued(const Soc *soc);
+void soc_camera_clear(Soc *soc);
+/* Periods of the master clock XCLK that the SoC has sent to the image sensor so far. */
+uint64_t soc_camera_clocks(const Soc *soc);
 
 /* Turns the recording of the video pins on or off; it is off at first. */
 void soc_video_record(Soc *soc, int on);

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use litex_pac::memories::MAIN_RAM;
 
+use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
 use crate::library::Soc;
@@ -13,6 +14,12 @@ use crate::{Error, Monitor, Picture, TimingError, boot};
 
 /// Cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
+
+/// Periods of PCLK that are queued for the image sensor's port at least, so that none is late: a slice has fewer.
+const PORT_QUEUE: usize = 2 * SLICE as usize;
+
+/// Cycles without a period of the image sensor's master clock, after which the sensor has none.
+const CLOCK_LOST: u64 = 2 * SLICE;
 
 /// Ticks of the pixel clock, of 74.25 MHz, in two video frames.
 const TICKS_OF_TWO_FRAMES: u64 = 2 * 1650 * 750;
@@ -84,6 +91,8 @@ impl<'a> Builder<'a> {
             soc,
             monitor: Monitor::default(),
             sensor: None,
+            image_sensor: None,
+            camera_clock: (0, 0),
             uart: Vec::new(),
             running: Duration::ZERO,
         };
@@ -113,6 +122,9 @@ pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
     sensor: Option<Wires>,
+    image_sensor: Option<ImageSensor>,
+    /// Periods of the image sensor's master clock so far, and the cycle in which this number was seen to change.
+    camera_clock: (u64, u64),
     /// Serial output of the SoC that the user of the board has not read yet.
     uart: Vec<u8>,
     running: Duration,
@@ -132,14 +144,14 @@ impl VirtualBoard {
         let mut left = cycles;
         while left > 0 {
             let slice = left.min(SLICE);
-            left -= match self.sensor {
-                None => {
-                    self.soc.run(slice);
-                    slice
-                }
-                Some(_) => self.soc.run_to_i2c(slice),
+            left -= if self.sensor.is_none() && self.image_sensor.is_none() {
+                self.soc.run(slice);
+                slice
+            } else {
+                self.soc.run_to_edge(slice)
             };
             self.update_wires();
+            self.update_image_sensor();
             self.collect();
         }
         self.running += start.elapsed();
@@ -171,12 +183,45 @@ impl VirtualBoard {
 
     /// Passes the SoC's I2C outputs to the sensor, and the sensor's outputs to the SoC.
     fn update_wires(&mut self) {
-        let now = u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz());
-        let soc = self.soc.i2c_released();
+        let now = self.nanoseconds();
+        let [scl, sda] = self.soc.outputs().i2c;
         if let Some(sensor) = &mut self.sensor {
-            let (scl, sda) = sensor.update(now as u64, soc & 1 != 0, soc & 2 != 0);
+            let (scl, sda) = sensor.update(now, scl, sda);
             self.soc.i2c_drive(u8::from(scl) | u8::from(sda) << 1);
         }
+    }
+
+    /// Passes the SoC's outputs to the image sensor, and the sensor's SCCB wires and frames to the SoC.
+    fn update_image_sensor(&mut self) {
+        let now = self.nanoseconds();
+        let outputs = self.soc.outputs();
+        let Some(image_sensor) = &mut self.image_sensor else {
+            return;
+        };
+        let [scl, sda] = outputs.camera;
+        let (scl, sda) = image_sensor.wires.update(now, scl, sda);
+        self.soc.camera_drive(u8::from(scl) | u8::from(sda) << 1);
+        let (clocks, cycle) = (self.soc.camera_clocks(), self.soc.cycles());
+        if clocks != self.camera_clock.0 {
+            self.camera_clock = (clocks, cycle);
+        }
+        let has_clock = cycle < self.camera_clock.1 + CLOCK_LOST;
+        let is_awake = has_clock && !outputs.camera_power_down;
+        if image_sensor.set_inputs(outputs.camera_reset_n, is_awake) {
+            self.soc.camera_clear();
+        }
+        let queued = self.soc.camera_queued();
+        if queued < PORT_QUEUE {
+            let clock = image_sensor.timing.clock;
+            let begin = now as f64 * 1e-9 + queued as f64 / f64::from(clock);
+            let levels = image_sensor.frame(begin);
+            self.soc.camera_send(clock, &levels);
+        }
+    }
+
+    /// Time since the start in ns.
+    fn nanoseconds(&self) -> u64 {
+        (u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz())) as u64
     }
 
     /// Takes new serial output and video from the SoC.
@@ -291,6 +336,17 @@ impl VirtualBoard {
     pub fn unplug(&mut self) -> Option<Wires> {
         self.soc.i2c_drive(0b11);
         self.sensor.take()
+    }
+
+    /// Connects an image sensor instead of the present one, if any.
+    pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
+        self.soc.camera_clear();
+        self.image_sensor = Some(image_sensor);
+    }
+
+    /// The image sensor, if there is one. Its faults take effect with the next frame that it begins.
+    pub fn image_sensor(&mut self) -> Option<&mut ImageSensor> {
+        self.image_sensor.as_mut()
     }
 
     /// Drives the I2C wires in the role of a device: SCL with bit 0, SDA with bit 1; 0 pulls a wire low, 1 releases it.

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::slice;
 
 use glint_testbench::{Instance, LoadError};
+use virtual_image_sensor::Levels;
 
 use crate::Error;
 
@@ -43,14 +44,32 @@ functions! {
     uart_read: fn(Handle, *mut u8, usize) -> usize;
     i2c_drive: fn(Handle, u8);
     i2c_wires: fn(Handle) -> u8;
-    i2c_released: fn(Handle) -> u8;
-    run_to_i2c: fn(Handle, u64) -> u64;
+    outputs: fn(Handle) -> u8;
+    run_to_edge: fn(Handle, u64) -> u64;
+    camera_drive: fn(Handle, u8);
+    camera_send: fn(Handle, u32, *const u16, usize);
+    camera_queued: fn(Handle) -> usize;
+    camera_clear: fn(Handle);
+    camera_clocks: fn(Handle) -> u64;
     video_record: fn(Handle, c_int);
     video_samples: fn(Handle, *mut usize) -> *const u32;
     video_clear: fn(Handle);
     ddr_read: fn(Handle, u32, *mut u8, usize);
     ddr_write: fn(Handle, u32, *const u8, usize);
     rom_write: fn(Handle, *const u8, usize);
+}
+
+/// Outputs of the SoC to devices that answer each edge. SCL and SDA are released when `true`, and pulled low when `false`.
+#[derive(Clone, Copy)]
+pub(crate) struct Outputs {
+    /// SCL and SDA of the I2C bus.
+    pub i2c: [bool; 2],
+    /// SCL and SDA of the image sensor's SCCB bus.
+    pub camera: [bool; 2],
+    /// Level of the image sensor's RESET_N.
+    pub camera_reset_n: bool,
+    /// Level of the image sensor's PWDN.
+    pub camera_power_down: bool,
 }
 
 /// One verilated SoC.
@@ -162,16 +181,52 @@ impl Soc {
         unsafe { (self.functions.i2c_wires)(self.raw()) }
     }
 
-    /// I2C outputs of the SoC: SCL in bit 0, SDA in bit 1; 0 pulls low, 1 releases.
-    pub fn i2c_released(&self) -> u8 {
+    /// Outputs of the SoC to devices that answer each edge, in the order of their bits.
+    pub fn outputs(&self) -> Outputs {
         // SAFETY: the handle belongs to a live SoC.
-        unsafe { (self.functions.i2c_released)(self.raw()) }
+        let bits = unsafe { (self.functions.outputs)(self.raw()) };
+        let bit = |number: u32| bits >> number & 1 != 0;
+        Outputs {
+            i2c: [bit(0), bit(1)],
+            camera: [bit(2), bit(3)],
+            camera_reset_n: bit(4),
+            camera_power_down: bit(5),
+        }
     }
 
-    /// Runs until the SoC changes its I2C outputs, but at most `cycles` cycles. Returns the number of cycles run.
-    pub fn run_to_i2c(&mut self, cycles: u64) -> u64 {
+    /// Runs until the SoC changes one of its [`Outputs`], but at most `cycles` cycles. Returns the number of cycles run.
+    pub fn run_to_edge(&mut self, cycles: u64) -> u64 {
         // SAFETY: the handle belongs to a live SoC that nothing else uses.
-        unsafe { (self.functions.run_to_i2c)(self.raw(), cycles) }
+        unsafe { (self.functions.run_to_edge)(self.raw(), cycles) }
+    }
+
+    pub fn camera_drive(&mut self, released: u8) {
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
+        unsafe { (self.functions.camera_drive)(self.raw(), released) }
+    }
+
+    /// Queues levels of the image sensor's port, one a period of PCLK, whose frequency in Hz is a multiple of 250 kHz.
+    pub fn camera_send(&mut self, frequency: u32, levels: &[Levels]) {
+        let levels: Vec<u16> = levels.iter().map(|levels| levels.0).collect();
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the levels are copied during the call.
+        unsafe {
+            (self.functions.camera_send)(self.raw(), frequency, levels.as_ptr(), levels.len());
+        }
+    }
+
+    pub fn camera_queued(&self) -> usize {
+        // SAFETY: the handle belongs to a live SoC.
+        unsafe { (self.functions.camera_queued)(self.raw()) }
+    }
+
+    pub fn camera_clear(&mut self) {
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
+        unsafe { (self.functions.camera_clear)(self.raw()) }
+    }
+
+    pub fn camera_clocks(&self) -> u64 {
+        // SAFETY: the handle belongs to a live SoC.
+        unsafe { (self.functions.camera_clocks)(self.raw()) }
     }
 
     pub fn video_record(&mut self, on: bool) {
