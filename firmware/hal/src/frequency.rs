@@ -94,6 +94,15 @@ impl Frequency {
         span.as_secs().saturating_mul(hertz).saturating_add(part)
     }
 
+    /// Converts ns to clock cycles, rounded up. Up to 4 ms this takes few cycles itself, without a division of 64 bits.
+    #[must_use]
+    pub const fn cycles_of_nanoseconds(self, nanoseconds: u32) -> u64 {
+        match nanoseconds.checked_mul(self.hertz / UNIT) {
+            Some(product) => product.div_ceil(1_000_000_000 / UNIT) as u64,
+            None => self.cycles(Duration::from_nanos(nanoseconds as u64)),
+        }
+    }
+
     /// Converts µs to clock cycles, rounded up.
     #[must_use]
     pub const fn cycles_of_microseconds(self, microseconds: u32) -> u64 {
@@ -152,6 +161,12 @@ mod tests {
                 );
             }
             assert_eq!(frequency.milliseconds(u64::from(hertz) * 3_600), 3_600_000);
+            for nanoseconds in [0, 1, 2_500, 1_000_000, 4_294_967, 20_000_000, u32::MAX] {
+                assert_eq!(
+                    frequency.cycles_of_nanoseconds(nanoseconds),
+                    frequency.cycles(Duration::from_nanos(nanoseconds.into()))
+                );
+            }
         }
     }
 

@@ -15,9 +15,8 @@
 //! There is no arbitration between masters: a wire that is low instead of high is reported as an error.
 
 use core::fmt;
-use core::future::{Future, poll_fn};
-use core::pin::pin;
-use core::task::{Context, Poll, Waker};
+use core::future::poll_fn;
+use core::task::Poll;
 use core::time::Duration;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation, SevenBitAddress};
@@ -26,7 +25,7 @@ use litex_pac::i2c::{
     self, Command, Control, Error, EvEnable, EvPending, Operation as Action, Rounds, Status,
 };
 
-use crate::timer::{Clock, Deadline};
+use crate::timer::{Clock, Deadline, block_on};
 
 /// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
 /// after which the master reports `ClockStuck`, and than the 1 ms that the 33 bytes of a full queue take on the bus.
@@ -467,17 +466,6 @@ impl PeriodicI2c for I2c {
             ..periodic
         });
         Ok(self.clock.frequency().microseconds(periodic.next))
-    }
-}
-
-/// Polls a future until it is ready; the CPU does nothing else meanwhile.
-fn block_on<T>(future: impl Future<Output = T>) -> T {
-    let mut future = pin!(future);
-    let mut context = Context::from_waker(Waker::noop());
-    loop {
-        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
-            return output;
-        }
     }
 }
 

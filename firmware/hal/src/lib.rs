@@ -10,6 +10,7 @@
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`scanout`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
+//! | [`gesture`] | `gesture`, which finds a hand in the frames of a camera, and the camera's pins | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into the frames of `triangle` | |
 //!
 //! Drivers access registers only through `litex-pac`. On a host a model replaces the bus, so tests run the same drivers.
@@ -21,6 +22,7 @@ extern crate std;
 
 mod absent;
 pub mod frequency;
+pub mod gesture;
 pub mod gpio;
 pub mod i2c;
 pub mod interrupt;

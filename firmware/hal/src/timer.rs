@@ -4,8 +4,9 @@
 //! which interrupt handlers may use too: a reading that is interrupted by another reading still gives a time between its
 //! own start and end.
 
-use core::future::poll_fn;
-use core::task::Poll;
+use core::future::{Future, poll_fn};
+use core::pin::pin;
+use core::task::{Context, Poll, Waker};
 use core::time::Duration;
 
 use embedded_hal::delay::DelayNs;
@@ -102,6 +103,28 @@ impl DelayNs for Clock {
     fn delay_ns(&mut self, ns: u32) {
         let deadline = self.after(Duration::from_nanos(ns.into()));
         while !deadline.passed() {}
+    }
+}
+
+/// A delay for futures of which nothing polls meanwhile: the CPU waits, as for `embedded_hal`'s delays.
+pub struct Waiting(pub Clock);
+
+impl embedded_hal_async::delay::DelayNs for Waiting {
+    async fn delay_ns(&mut self, ns: u32) {
+        let Self(clock) = *self;
+        let deadline = clock.after_cycles(clock.frequency.cycles_of_nanoseconds(ns));
+        while !deadline.passed() {}
+    }
+}
+
+/// Polls a future until it is ready; the CPU does nothing else meanwhile.
+pub(crate) fn block_on<T>(future: impl Future<Output = T>) -> T {
+    let mut future = pin!(future);
+    let mut context = Context::from_waker(Waker::noop());
+    loop {
+        if let Poll::Ready(output) = future.as_mut().poll(&mut context) {
+            return output;
+        }
     }
 }
 
@@ -254,9 +277,6 @@ pub(crate) mod tests {
 
     #[test]
     fn a_delay_is_over_in_time_and_asks_to_be_woken() {
-        use core::future::Future;
-        use core::task::{Context, Waker};
-
         let asked = std::rc::Rc::new(core::cell::Cell::new(0));
         bus::connect(Alarm(Uptime::new(1_000), asked.clone()));
         let mut clock = clock();

@@ -1,7 +1,9 @@
 use std::cell::RefCell;
 use std::collections::VecDeque;
+use std::pin::pin;
 use std::rc::Rc;
 use std::string::String;
+use std::task::{Context, Waker};
 use std::vec::Vec;
 
 use embedded_hal::i2c::I2c as _;
