@@ -6,6 +6,7 @@ mod appearance;
 mod bench;
 mod camera;
 mod frame;
+pub mod gesture;
 pub mod imu;
 mod machine;
 mod object;

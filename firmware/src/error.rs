@@ -4,16 +4,18 @@ use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
+use glint_core::hand::CalibrationError as HandColourError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::picture::Size;
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
+use glint_hal::gesture::SetUpError;
 use glint_model::RenderError;
 
 use crate::gateware::Fallback;
-use crate::models::{FIELDS, MAX_MESHES, NameError, RemoveError, SIMPLEGPU};
+use crate::models::{FIELDS, HOLOFORGE, MAX_MESHES, NameError, RemoveError, SIMPLEGPU};
 use crate::objects::{OBJECTS, ObjectError};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::shapes::Shapes;
@@ -102,6 +104,16 @@ pub enum CommandError<'l> {
     Calibration(CalibrationError),
     /// The sensor gives no samples.
     Sensor(SensorError),
+    /// The SoC has no gesture engine.
+    NoGesture,
+    /// The image sensor is off.
+    GestureOff,
+    /// The image sensor cannot be set up.
+    ImageSensor(SetUpError),
+    /// The image sensor gave no whole frame in time.
+    NoSensorFrame,
+    /// The windows of the hand's colour were not found.
+    HandColour(HandColourError),
     /// The upload is not a log.
     Log(LogError),
     /// No log has been completely replayed since the last upload.
@@ -122,7 +134,7 @@ impl Display for CommandError<'_> {
                 let fields = FIELDS.iter().map(|(name, _)| *name);
                 let mut names = Shapes::names()
                     .chain(fields)
-                    .chain([OBJECTS, SIMPLEGPU, WIREFRAME]);
+                    .chain([OBJECTS, SIMPLEGPU, HOLOFORGE, WIREFRAME]);
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
             }
@@ -205,6 +217,15 @@ impl Display for CommandError<'_> {
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
             Self::Calibration(error) => write!(f, "imu calibrate: {error}"),
             Self::Sensor(error) => write!(f, "imu: {error}"),
+            Self::NoGesture => f.write_str("gesture: no gesture engine in this SoC"),
+            Self::GestureOff => {
+                f.write_str("gesture: the image sensor is off, expected `gesture on` first")
+            }
+            Self::ImageSensor(error) => write!(f, "gesture: {error}"),
+            Self::NoSensorFrame => f.write_str(
+                "gesture: no whole frame came within 500 ms, `gesture` shows what the image sensor sends",
+            ),
+            Self::HandColour(error) => write!(f, "gesture calibrate: {error}"),
             Self::Log(error) => write!(f, "replay: {error}"),
             Self::NoReplay => {
                 f.write_str("replay: no attitudes, expected an upload of a log first")

@@ -1,29 +1,45 @@
 //! The interrupt handler, and sleeping until the next interrupt.
 
-use glint_hal::{i2c, interrupt, raymarch, scanout, timer, triangle};
+use glint_hal::{gesture as engine, i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
+use crate::gesture;
 use crate::sensor;
 use crate::terminal::ConsoleUart;
 
 /// The UART, shared by its interrupt and the program.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
-/// Enables the interrupts of the UART, and of the parts of the SoC for which an argument is true. Call this once, after
-/// the start of all devices that the handler accesses.
-pub fn start(with_devices: bool, with_scanout: bool, with_triangle: bool) {
+/// Parts of the SoC that this build has.
+pub struct Present {
+    /// I2C and timer.
+    pub devices: bool,
+    /// Scan-out.
+    pub scanout: bool,
+    /// The triangle engine.
+    pub triangle: bool,
+    /// The gesture engine.
+    pub gesture: bool,
+}
+
+/// Enables the interrupts of the UART, and of the parts of the SoC that are present. Call this once, after the start of all
+/// devices that the handler accesses.
+pub fn start(present: Present) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
         interrupt::enable(Interrupt::Uart);
-        if with_devices {
+        if present.devices {
             interrupt::enable(Interrupt::I2c);
             interrupt::enable(Interrupt::Timer0);
         }
-        if with_scanout {
+        if present.scanout {
             interrupt::enable(Interrupt::Scanout);
         }
-        if with_triangle {
+        if present.triangle {
             interrupt::enable(Interrupt::Triangle);
+        }
+        if present.gesture {
+            interrupt::enable(Interrupt::Gesture);
         }
         riscv::register::mie::set_mext();
         riscv::interrupt::enable();
@@ -49,6 +65,10 @@ fn handle() {
         Interrupt::Scanout => scanout::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
         Interrupt::Raymarch => raymarch::acknowledge(),
+        Interrupt::Gesture => {
+            engine::acknowledge();
+            gesture::on_interrupt(start);
+        }
         Interrupt::I2c => {
             i2c::acknowledge();
             sensor::advance(start);
@@ -57,8 +77,8 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // The interrupts of the buttons and of the gesture engine are never enabled; if one comes nevertheless, its line is disabled.
-        Interrupt::Buttons | Interrupt::Gesture => interrupt::disable(interrupt.bit()),
+        // The interrupt of the buttons is never enabled; if it comes nevertheless, its line is disabled.
+        Interrupt::Buttons => interrupt::disable(interrupt.bit()),
     });
     interrupt::disable(unexpected);
 }

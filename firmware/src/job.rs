@@ -3,6 +3,7 @@
 use core::task::Poll;
 
 use glint_core::fixed::Turns;
+use glint_hal::timer::Deadline;
 
 use crate::error::CommandError;
 use crate::scene::{Scene, Sphere};
@@ -38,6 +39,16 @@ pub enum Job {
     Sensor(SensorJob),
     /// Compute the attitudes after the samples of an uploaded log.
     Replay,
+    /// Calibrate the hand's colour, or send its mask.
+    Gesture(GestureJob),
+}
+
+/// A job that waits for a small picture of the image sensor.
+pub struct GestureJob {
+    /// Whether the picture has colours, for a calibration, or marks, to be sent.
+    pub is_colour: bool,
+    /// Time at which the job fails.
+    pub end: Deadline,
 }
 
 /// A job of the sensor.

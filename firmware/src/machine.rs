@@ -5,6 +5,7 @@ use glint_hal::i2c::I2c;
 use glint_hal::timer::Clock;
 use litex_pac::ctrl::Ctrl;
 
+use crate::gesture::Gesture;
 use crate::interrupts::UART;
 use crate::models::Models;
 use crate::renderer::Renderer;
@@ -63,6 +64,8 @@ pub struct Machine {
     pub renderer: Renderer,
     /// The sensor's samples, attitude and calibration.
     pub imu: Imu,
+    /// The hand that steers the camera; `None` without the gesture engine.
+    pub gesture: Option<Gesture>,
     /// The devices; `None` if the build ids differ.
     pub devices: Option<Devices>,
     /// The buttons, and the requests of the wireframe's keys.
@@ -78,7 +81,7 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// A machine in the state after reset.
+    /// A machine in the state after reset, without the gesture engine.
     pub fn new(
         identity: Identity,
         clock: Clock,
@@ -97,6 +100,7 @@ impl Machine {
             models,
             renderer,
             imu: Imu::default(),
+            gesture: None,
             devices,
             keypad: Keypad::default(),
             ctrl,

@@ -5,12 +5,12 @@
 //!
 //! ```text
 //! start, main_loop
-//! commands (scene, object, appearance, camera, imu, replay, frame, statistics, bench, machine)
+//! commands (scene, object, appearance, camera, imu, gesture, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
 //! machine (state) ─┬─ renderer, gateware, scene, models, objects, shapes, arena, memory
 //!                  ├─ terminal, transfer
-//!                  ├─ sensor, replay
+//!                  ├─ sensor, gesture, replay
 //!                  └─ interrupts
 //! panic (traps, panics)    bench (kernels)
 //! ```
@@ -27,12 +27,14 @@ mod cube;
 mod error;
 mod format;
 mod gateware;
+mod gesture;
 #[allow(unsafe_code)] // Enables interrupts.
 mod interrupts;
 mod job;
 mod machine;
 #[allow(unsafe_code)] // Starts the sensor's stream in a function that does not return.
 mod main_loop;
+mod mark;
 #[allow(unsafe_code)] // Makes slices of the memory at linker symbols.
 mod memory;
 #[allow(unsafe_code)] // Keeps meshes and programs beyond the borrow of their memory.

@@ -10,16 +10,18 @@ use core::time::Duration;
 
 use embedded_hal::digital::StatefulOutputPin;
 use glint_core::calibration::SAMPLES;
+use glint_core::hand::Pose;
 use glint_core::mpu6050::Stream;
 use glint_hal::timer::{Clock, Deadline};
 use litex_pac::cpu;
 
-use crate::commands::{self, imu, replay, statistics};
+use crate::commands::{self, gesture as gesture_commands, imu, replay, statistics};
 use crate::error::CommandError;
+use crate::gesture;
 use crate::interrupts;
 use crate::job::{Job, Reply};
 use crate::machine::{Devices, Machine};
-use crate::scene::Scene;
+use crate::scene::{Scene, Sphere};
 use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::Input;
 use crate::wireframe::{self, Keypad};
@@ -82,6 +84,7 @@ impl MainLoop {
             self.poll_buttons();
             self.machine.terminal.listen();
             sensor::deliver(&mut self.machine.imu);
+            self.follow_hand();
             self.answer();
             self.steer();
             self.step();
@@ -97,6 +100,7 @@ impl MainLoop {
             || self.machine.keypad.is_changing()
             || self.may_step()
             || sensor::has_events()
+            || gesture::has_frame()
             || matches!(self.job, Some(Job::Replay))
             || !self.machine.renderer.display.is_visible()
     }
@@ -142,16 +146,34 @@ impl MainLoop {
         }
     }
 
-    /// Turns the camera to the sensor's attitude, if a frame can be drawn.
+    /// Computes the camera's place from a frame of the image sensor.
+    fn follow_hand(&mut self) {
+        if let Some(gesture) = &mut self.machine.gesture {
+            gesture.poll();
+        }
+    }
+
+    /// Turns the camera to the sensor's attitude or moves it to the place that the hand demands, if a frame can be drawn.
     fn steer(&mut self) {
         let Machine {
             renderer,
             scene,
             imu,
+            gesture,
             ..
         } = &mut self.machine;
         if renderer.is_busy() || renderer.display.back().is_none() {
             return;
+        }
+        if let Some(gesture) = gesture {
+            if let Some(Pose { r, theta, phi }) = gesture.move_to() {
+                // The control keeps the distance in its range.
+                let _ = scene.set_sphere(Sphere { r, theta, phi });
+                if !scene.changed() {
+                    gesture.on_unchanged();
+                }
+            }
+            scene.set_mark(gesture.mark());
         }
         let (eye, radius) = (scene.view().eye(), scene.sphere().r);
         if let Some(Ok(view)) = imu.view(eye, radius) {
@@ -200,6 +222,7 @@ impl MainLoop {
             devices,
             keypad,
             clock,
+            gesture,
             ..
         } = &mut self.machine;
         if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && scene.changed()
@@ -221,6 +244,9 @@ impl MainLoop {
         }
         if let Some(drawn) = renderer.draw(models, scene, progress) {
             scene.set_drawn(drawn);
+            if let Some(gesture) = gesture {
+                gesture.on_drawn();
+            }
         }
     }
 
@@ -231,6 +257,7 @@ impl MainLoop {
         let result = match job {
             Job::Sensor(job) => imu::poll(machine, job),
             Job::Replay => replay::poll(machine),
+            Job::Gesture(job) => gesture_commands::poll(machine, job),
             _ if machine.scene.changed() => Poll::Pending,
             Job::Draw => Poll::Ready(Ok(())),
             Job::Render => Poll::Ready(statistics::print(machine, false)),

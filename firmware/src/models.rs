@@ -24,6 +24,9 @@ pub const MAX_MESHES: usize = 16;
 /// Name of the scene of SimpleGPU.
 pub const SIMPLEGPU: &str = "simplegpu";
 
+/// Name of the scene that a hand turns.
+pub const HOLOFORGE: &str = "holoforge";
+
 /// Fields that the command `scene` shows, with their names.
 pub const FIELDS: [(&str, Field); 2] = [
     (

@@ -52,9 +52,21 @@ impl Renderer {
             Err(fallback) => self.draw_by_cpu(&frame, fallback, progress)?,
         };
         if drawn.is_ok() {
+            self.draw_mark(scene);
             self.display.show(scene.size());
         }
         Some(drawn)
+    }
+
+    /// Draws the mark of the hand's place, if there is one, into the frame that was just drawn.
+    fn draw_mark(&mut self, scene: &Scene) {
+        let (Some(mark), Some(back)) = (scene.mark(), self.display.back()) else {
+            return;
+        };
+        mark.draw(back, scene.size());
+        if let Some(gateware) = &mut self.gateware {
+            gateware.invalidate(back);
+        }
     }
 
     /// Whether this board draws and shows pictures of this size.

@@ -13,6 +13,7 @@ use glint_model::scenes::{MeshOptions, Settings};
 use glint_model::{Clip, FieldSubject, Frame, FrameStats, RenderError, Subject, WireframeSubject};
 
 use crate::gateware::{Fallback, Lack};
+use crate::mark::Mark;
 use crate::models::Models;
 
 /// A camera on a sphere about the origin.
@@ -81,6 +82,7 @@ pub struct Scene {
     backend: Backend,
     changed: bool,
     wants_depth: bool,
+    mark: Option<Mark>,
     drawn: Option<Result<Drawn, RenderError>>,
 }
 
@@ -107,6 +109,7 @@ impl Scene {
             backend,
             changed: true,
             wants_depth: false,
+            mark: None,
             drawn: None,
         })
     }
@@ -356,6 +359,17 @@ impl Scene {
     /// Requests depth codes in memory for the next frame. The gateware writes them on request only.
     pub const fn want_depth(&mut self, wanted: bool) {
         self.wants_depth = wanted;
+    }
+
+    /// The mark of the hand's place, if it is drawn.
+    pub const fn mark(&self) -> Option<Mark> {
+        self.mark
+    }
+
+    /// Sets the mark of the hand's place; `None` draws none.
+    pub fn set_mark(&mut self, mark: Option<Mark>) {
+        self.changed |= self.mark != mark;
+        self.mark = mark;
     }
 
     /// Marks the scene as changed, after a change of the mesh that it shows.

@@ -7,6 +7,7 @@ use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_hal::frequency::{Frequency, NotAFrequency};
+use glint_hal::gesture::GestureEngine;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::raymarch::Raymarcher;
@@ -18,7 +19,8 @@ use glint_model::edges::EdgeList;
 use litex_pac::{BUILD_ID, Peripherals};
 
 use crate::gateware::GatewareRenderer;
-use crate::interrupts::{self, UART};
+use crate::gesture::Gesture;
+use crate::interrupts::{self, Present, UART};
 use crate::machine::{Devices, Identity, Machine};
 use crate::memory::{self, Memory};
 use crate::models::Models;
@@ -123,7 +125,7 @@ pub fn machine() -> Result<Machine, StartError> {
     let memory = Memory::take().ok_or(StartError::Started)?;
     let clock = Clock::new(peripherals.timer0, frequency).map_err(StartError::Clock)?;
     UART.start(peripherals.uart);
-    let (scanout, engine, raymarcher, devices) = if identity.matches() {
+    let (scanout, engine, raymarcher, gesture, devices) = if identity.matches() {
         let devices = Devices {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
@@ -134,12 +136,18 @@ pub fn machine() -> Result<Machine, StartError> {
             Scanout::probe(peripherals.scanout).ok(),
             TriangleEngine::probe(peripherals.triangle).ok(),
             Raymarcher::probe(peripherals.raymarch).ok(),
+            GestureEngine::probe(peripherals.gesture).ok(),
             Some(devices),
         )
     } else {
-        (None, None, None, None)
+        (None, None, None, None, None)
     };
-    interrupts::start(devices.is_some(), scanout.is_some(), engine.is_some());
+    interrupts::start(Present {
+        devices: devices.is_some(),
+        scanout: scanout.is_some(),
+        triangle: engine.is_some(),
+        gesture: gesture.is_some(),
+    });
     let gateware = engine.and_then(|engine| {
         let first_buffer = memory.frames[0].as_ptr().addr() as u32;
         GatewareRenderer::new(engine, raymarcher, memory.lists, first_buffer, frequency)
@@ -153,7 +161,7 @@ pub fn machine() -> Result<Machine, StartError> {
     let program = Program::new_checked(CUBE.as_flattened());
     let program = program.map_err(StartError::Program)?;
 
-    Ok(Machine::new(
+    let mut machine = Machine::new(
         identity,
         clock,
         Scene::new(backend).map_err(StartError::Camera)?,
@@ -168,5 +176,7 @@ pub fn machine() -> Result<Machine, StartError> {
         },
         devices,
         peripherals.ctrl,
-    ))
+    );
+    machine.gesture = gesture.map(|engine| Gesture::new(engine, clock));
+    Ok(machine)
 }

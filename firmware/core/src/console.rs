@@ -15,10 +15,10 @@ mod table;
 mod values;
 
 pub use command::{
-    AppearanceCommands, CameraCommands, Command, Executor, FrameCommands, ImuCommands,
-    MachineCommands, ObjectCommands, SceneCommands, write_help,
+    AppearanceCommands, CameraCommands, Command, Executor, FrameCommands, GestureCommands,
+    ImuCommands, MachineCommands, ObjectCommands, SceneCommands, write_help,
 };
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use error::ParseError;
 pub use object::ObjectAction;
-pub use values::ImuAction;
+pub use values::{GestureAction, ImuAction};

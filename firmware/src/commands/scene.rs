@@ -3,17 +3,19 @@
 use glint_core::choice::switch_name;
 use glint_core::console::SceneCommands;
 use glint_core::field::Field;
+use glint_core::image_sensor::FrameSize;
+use glint_core::picture::Size;
 use glint_core::stereo::Stereo;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
 use glint_model::scenes::{self, Settings};
 
-use super::upload;
+use super::{gesture, upload};
 use crate::error::CommandError;
 use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::{FIELDS, MAX_MESHES, MODEL, SIMPLEGPU};
+use crate::models::{FIELDS, HOLOFORGE, MAX_MESHES, MODEL, SIMPLEGPU};
 use crate::objects::OBJECTS;
 use crate::wireframe::WIREFRAME;
 
@@ -157,7 +159,7 @@ fn list(machine: &mut Machine) {
     }
     let state = if objects { "shown" } else { "there" };
     terminal.print(format_args!(
-        "scene {OBJECTS} {state}\nscene {SIMPLEGPU} there\n"
+        "scene {OBJECTS} {state}\nscene {SIMPLEGPU} there\nscene {HOLOFORGE} there\n"
     ));
     let state = if wireframe { "shown" } else { "there" };
     terminal.print(format_args!("scene {WIREFRAME} {state}\n"));
@@ -188,6 +190,21 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>
         scene.set_field(None);
         scene.touch();
         return Ok(());
+    }
+    if name == HOLOFORGE {
+        // The uploaded mesh, or the one that was shown last.
+        let is_other = models.show(MODEL).unwrap_or(false);
+        scene.set_field(None);
+        scene.set_size(Size::W320);
+        scene.set_cull(true);
+        if is_other {
+            scene.touch();
+        }
+        let gesture = machine.gesture.as_mut().ok_or(CommandError::NoGesture)?;
+        return match gesture.sensor() {
+            Some(Ok(_)) => Ok(()),
+            _ => gesture::start(gesture, FrameSize::Qvga),
+        };
     }
     if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
         scene.set_field(Some(*field));

@@ -8,8 +8,8 @@ use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::commands;
 use super::values::{
-    FieldOfView, HalfTurn, Imu, LookAt, MeshName, Mounting, Name, Sensitivity, Size, Upload, View,
-    Whole,
+    FieldOfView, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name, Sensitivity, Size,
+    Upload, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::field::Field;
@@ -82,6 +82,11 @@ commands! {
         mounting Mounting(mounting: Option<Mounting>): "show or set the sensor axes that point into the scene and up on the screen";
         sensitivity Sensitivity(gain: Option<Sensitivity>): "show or set camera gain (0.125 to 8)";
         replay Replay(upload: Option<Upload>): "upload a log (binary) and compute its attitudes, or download the last attitudes (binary)";
+    }
+
+    /// Commands of the hand in front of the image sensor.
+    GestureCommands {
+        gesture Gesture(action: Option<GestureAction>): "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }
 
     /// Commands for drawing frames.

@@ -376,3 +376,32 @@ group! {
     Imu: ImuAction = (action: Action, samples: Option<Whole<{ MOST_SAMPLES[1] }>>)
         => ImuAction::new(action, samples)
 }
+
+/// An action of the command `gesture`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GestureAction {
+    /// Set up the image sensor for 320×240, and let the hand steer the camera.
+    On,
+    /// The same for 640×480.
+    Vga,
+    /// Turn the image sensor off; the camera stays.
+    Off,
+    /// Find the windows of the hand's colour.
+    Calibrate,
+    /// Send a small picture of the pixels of the hand's colour.
+    Mask,
+    /// Draw the place of the hand in a corner of the picture.
+    Mark,
+    /// Draw it no longer.
+    Unmark,
+}
+
+choices!(GestureAction {
+    On: "on",
+    Vga: "vga",
+    Off: "off",
+    Calibrate: "calibrate",
+    Mask: "mask",
+    Mark: "mark",
+    Unmark: "unmark",
+});

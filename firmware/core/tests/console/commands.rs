@@ -2,7 +2,7 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::console::{Command, ImuAction, LINE_MAX, ObjectAction};
+use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX, ObjectAction};
 use glint_core::field::{Field, Menger};
 use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
@@ -275,6 +275,15 @@ fn every_command_is_understood() {
     imu("imu orbit", ImuAction::Follow(Some(Follow::Orbit)));
     imu("imu off", ImuAction::Follow(None));
     imu("imu recentre", ImuAction::Recentre);
+    assert_parses("gesture", Command::Gesture { action: None });
+    for action in GestureAction::ALL {
+        assert_parses(
+            &format!("gesture {action}"),
+            Command::Gesture {
+                action: Some(action),
+            },
+        );
+    }
     assert_parses("mounting", Command::Mounting { mounting: None });
     assert_parses(
         "mounting -x z",

@@ -1,0 +1,258 @@
+//! The hand in front of the image sensor: its frames, and how it steers the camera.
+//!
+//! The interrupt at the end of an image sensor's frame notes the time. The main loop then reads the statistics of this frame,
+//! computes the camera's place, and sets what the engine counts in the next frame.
+
+use core::cell::Cell;
+
+use critical_section::Mutex;
+use glint_core::hand::{Blob, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate};
+use glint_core::image_sensor::{FrameSize, Model};
+use glint_hal::gesture::{GestureEngine, SetUpError};
+use glint_hal::timer::Clock;
+use glint_model::gesture::{Channel, channels};
+use litex_pac::cpu;
+
+use crate::mark::Mark;
+
+/// Windows of Cr and Cb before a calibration: skin in the light of lamps or of day.
+const SKIN: [Window; 2] = [
+    Window {
+        lower: 137,
+        upper: 180,
+    },
+    Window {
+        lower: 85,
+        upper: 122,
+    },
+];
+
+/// Low word of the time in clock cycles at which the last frame ended, until the main loop takes it.
+static FRAME: Mutex<Cell<Option<u32>>> = Mutex::new(Cell::new(None));
+
+/// Notes that a frame has ended. Call this in its interrupt, which began at `start`.
+pub fn on_interrupt(start: u32) {
+    critical_section::with(|token| FRAME.borrow(token).set(Some(start)));
+}
+
+/// Whether a frame waits for [`Gesture::poll`].
+pub fn has_frame() -> bool {
+    critical_section::with(|token| FRAME.borrow(token).get().is_some())
+}
+
+/// Clock cycles of the work for one frame, and from the end of a frame to its picture.
+#[derive(Clone, Copy, Default)]
+pub struct Cycles {
+    /// Number of frames so far.
+    pub frames: u32,
+    /// Cycles of the soft core for all frames, with interrupts during this work.
+    pub total: u64,
+    /// Cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
+    pub latency: u32,
+    /// The largest latency so far.
+    pub worst: u32,
+}
+
+/// The gesture engine, the image sensor, and the control of the camera.
+pub struct Gesture {
+    engine: GestureEngine,
+    clock: Clock,
+    size: FrameSize,
+    /// The image sensor, while it is on, or the reason why it is not.
+    sensor: Option<Result<Model, SetUpError>>,
+    windows: [Window; 2],
+    control: Control,
+    /// What the last frame showed.
+    seen: Option<Result<Blob, Doubt>>,
+    /// The place to which the camera was moved last.
+    steered: Option<Pose>,
+    /// Low word of the time at which the last frame that moved the camera ended, until its picture is drawn.
+    waiting: Option<u32>,
+    is_marked: bool,
+    cycles: Cycles,
+}
+
+impl Gesture {
+    /// A hand that does not steer yet: the image sensor is off.
+    pub fn new(mut engine: GestureEngine, clock: Clock) -> Self {
+        engine.set_windows(SKIN);
+        Self {
+            engine,
+            clock,
+            size: FrameSize::Qvga,
+            sensor: None,
+            windows: SKIN,
+            control: Control::default(),
+            seen: None,
+            steered: None,
+            waiting: None,
+            is_marked: false,
+            cycles: Cycles::default(),
+        }
+    }
+
+    /// Sets the image sensor up for a size, which takes some 50 ms, and lets the hand steer the camera.
+    ///
+    /// # Errors
+    /// There is no image sensor, or it does not accept its set-up.
+    pub fn start(&mut self, size: FrameSize) -> Result<Model, SetUpError> {
+        self.stop();
+        self.size = size;
+        self.control = Control::default();
+        self.engine.set_gate(&self.control.setting());
+        let started = self.engine.start(size, self.clock);
+        self.sensor = Some(started);
+        started
+    }
+
+    /// Turns the image sensor off; the camera stays.
+    pub fn stop(&mut self) {
+        self.engine.set_power(false);
+        self.sensor = None;
+        self.seen = None;
+        self.steered = None;
+        self.waiting = None;
+    }
+
+    /// Takes the statistics of a frame if one has ended.
+    #[inline(never)]
+    pub fn poll(&mut self) {
+        let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
+            return;
+        };
+        let start = cpu::cycles_low();
+        // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
+        if let Some((_, statistics)) = self.engine.statistics() {
+            let age = start.wrapping_sub(ended);
+            let ended_at = cpu::cycles() - u64::from(age);
+            let time = self.clock.frequency().microseconds(ended_at);
+            let before = self.control.pose();
+            let setting = self.control.setting();
+            self.seen = Some(self.control.on_frame(time, &statistics));
+            if self.control.setting() != setting {
+                self.engine.set_gate(&self.control.setting());
+            }
+            if self.control.pose() != before {
+                self.waiting = Some(ended);
+            }
+            self.cycles.frames = self.cycles.frames.wrapping_add(1);
+            self.cycles.total += u64::from(cpu::cycles_low().wrapping_sub(start));
+        }
+    }
+
+    /// The place to which the camera is to move; `None` if it is there.
+    pub fn move_to(&mut self) -> Option<Pose> {
+        let pose = self.control.pose();
+        let is_new = matches!(self.sensor, Some(Ok(_))) && self.steered != Some(pose);
+        is_new.then(|| {
+            self.steered = Some(pose);
+            pose
+        })
+    }
+
+    /// Notes that a picture was drawn after the last call of [`move_to`](Self::move_to).
+    pub fn on_drawn(&mut self) {
+        if self.steered == Some(self.control.pose())
+            && let Some(ended) = self.waiting.take()
+        {
+            self.cycles.latency = cpu::cycles_low().wrapping_sub(ended);
+            self.cycles.worst = self.cycles.worst.max(self.cycles.latency);
+        }
+    }
+
+    /// Notes that the camera's move is too small for another picture.
+    pub const fn on_unchanged(&mut self) {
+        self.waiting = None;
+    }
+
+    /// The mark of the hand's place, if it is to be drawn.
+    pub fn mark(&self) -> Option<Mark> {
+        let blob = self.seen.and_then(Result::ok);
+        self.is_marked.then(|| {
+            let size = self.size.pixels();
+            Mark::new(
+                blob.map(|blob| blob.centre),
+                size,
+                self.presence() == Presence::Tracked,
+            )
+        })
+    }
+
+    /// Sets whether the hand's place is drawn in a corner of the picture.
+    pub const fn set_marked(&mut self, is_marked: bool) {
+        self.is_marked = is_marked;
+    }
+
+    /// Requests a small picture of the next frame: colours for a calibration, or marks of the hand's colour.
+    pub fn request_picture(&mut self, is_colour: bool) {
+        let step = self.step(is_colour);
+        self.engine.request_picture(step, is_colour);
+    }
+
+    /// Columns and rows of a small picture of colours or marks.
+    pub fn picture_size(&self, is_colour: bool) -> [u16; 2] {
+        let step = self.step(is_colour);
+        self.size.pixels().map(|length| length >> step)
+    }
+
+    /// A small picture has 40×30 colours or 160×120 marks. This is the exponent of its step in pixels.
+    const fn step(&self, is_colour: bool) -> u8 {
+        let enlarged = matches!(self.size, FrameSize::Vga) as u8;
+        enlarged + if is_colour { 3 } else { 1 }
+    }
+
+    /// The words of the small picture, if its frame has ended.
+    pub fn picture(&self) -> Option<impl Iterator<Item = u16> + Clone> {
+        self.engine.picture()
+    }
+
+    /// Finds the windows of the hand's colour from the small picture of colours; `None` if its frame has not ended.
+    pub fn calibrate(&mut self) -> Option<Result<glint_core::hand::Calibrated, CalibrationError>> {
+        let [columns, rows] = self.picture_size(true);
+        let chroma = self.engine.picture()?.map(|colour| {
+            let channels = channels(glint_core::colour::Rgb565(colour));
+            [Channel::Cr, Channel::Cb].map(|channel| channels[channel as usize])
+        });
+        let found = calibrate(columns, rows, chroma);
+        if let Ok(calibrated) = found {
+            self.windows = calibrated.windows;
+            self.engine.set_windows(self.windows);
+        }
+        Some(found)
+    }
+
+    /// The engine.
+    pub const fn engine(&self) -> &GestureEngine {
+        &self.engine
+    }
+
+    /// The image sensor, while it is on, or the reason why it is not.
+    pub const fn sensor(&self) -> Option<Result<Model, SetUpError>> {
+        self.sensor
+    }
+
+    /// Windows of Cr and Cb.
+    pub const fn windows(&self) -> [Window; 2] {
+        self.windows
+    }
+
+    /// Whether a hand steers the camera.
+    pub const fn presence(&self) -> Presence {
+        self.control.presence()
+    }
+
+    /// What the last frame showed.
+    pub const fn seen(&self) -> Option<Result<Blob, Doubt>> {
+        self.seen
+    }
+
+    /// The camera's place.
+    pub fn pose(&self) -> Pose {
+        self.control.pose()
+    }
+
+    /// Clock cycles of the work for one frame, and from the end of a frame to its picture.
+    pub const fn cycles(&self) -> Cycles {
+        self.cycles
+    }
+}
