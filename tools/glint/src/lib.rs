@@ -11,6 +11,7 @@
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
+//! | [`gesture`] | the hand in front of a board's camera, and the camera of the virtual board |
 //! | [`fuzz`] | fuzz targets for everything that parses external bytes |
 #![forbid(unsafe_code)]
 
@@ -24,6 +25,7 @@ pub mod flash;
 pub mod formats;
 pub mod fuzz;
 pub mod generate;
+pub mod gesture;
 pub mod imu;
 pub mod model;
 pub mod normals;

@@ -5,6 +5,7 @@ mod convert;
 mod demo;
 mod field;
 mod flash;
+mod gesture;
 mod imu;
 mod render;
 mod terminal;
@@ -36,6 +37,8 @@ enum Command {
     #[command(subcommand)]
     Imu(imu::ImuCommand),
     #[command(subcommand)]
+    Gesture(gesture::GestureCommand),
+    #[command(subcommand)]
     Wireframe(wireframe::WireframeCommand),
 }
 
@@ -51,6 +54,7 @@ impl Arguments {
             Command::Console(arguments) => arguments.run(),
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
+            Command::Gesture(command) => command.run(),
             Command::Wireframe(command) => command.run(),
         }
     }

@@ -1,0 +1,97 @@
+//! `glint gesture`.
+
+use super::common::{LineArguments, advance, bar, named, say, spinner, write_whole};
+use anyhow::Context;
+use clap::{Args, Subcommand};
+use glint::board::{Board, BoardName};
+use glint::console::Console;
+use glint::gesture::{self, SensorFault};
+use std::path::PathBuf;
+use virtual_board::virtual_image_sensor::{Images, Source};
+
+/// Size of the frames of the synthetic hand: that of the sensor's set-up.
+const SIZE: [usize; 2] = [320, 240];
+
+/// The hand in front of the image sensor: its mask.
+#[derive(Subcommand)]
+pub enum GestureCommand {
+    Mask(MaskArguments),
+}
+
+impl GestureCommand {
+    pub fn run(self) -> anyhow::Result<()> {
+        match self {
+            Self::Mask(arguments) => arguments.run(),
+        }
+    }
+}
+
+/// Options of a board with an image sensor.
+#[derive(Args)]
+struct SensorArguments {
+    /// Board of the image sensor: `virtual` (the verilated SoC with a virtual OV7670) or a serial port.
+    #[arg(long)]
+    board: BoardName,
+    /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
+    #[arg(long, value_name = "FOLDER")]
+    pictures: Option<PathBuf>,
+    /// Fault of the virtual image sensor.
+    #[arg(long, value_parser = named(SensorFault::ALL, SensorFault::name))]
+    fault: Option<SensorFault>,
+    #[command(flatten)]
+    line: LineArguments,
+}
+
+impl SensorArguments {
+    fn open(&self) -> anyhow::Result<Box<dyn Board>> {
+        let port = match &self.board {
+            BoardName::Serial(port) => port,
+            BoardName::Virtual => {
+                let source: Box<dyn Source> = match &self.pictures {
+                    None => Box::new(gesture::moving_hand(SIZE)),
+                    Some(folder) => Box::new(Images::read(folder)?),
+                };
+                let mut sensor = gesture::image_sensor(source);
+                if let Some(fault) = self.fault {
+                    fault.apply(&mut sensor, SIZE[1] / 2);
+                }
+                let mut board = self.line.virtual_board()?;
+                board.inner().plug_image_sensor(sensor);
+                return Ok(Box::new(board));
+            }
+        };
+        anyhow::ensure!(
+            self.pictures.is_none() && self.fault.is_none(),
+            "--pictures and --fault: expected --board virtual"
+        );
+        Ok(Box::new(self.line.serial_board(port)?))
+    }
+}
+
+/// Set the image sensor up, and write the pixels of the hand's colour in its next frame as a picture.
+#[derive(Args)]
+pub struct MaskArguments {
+    #[command(flatten)]
+    sensor: SensorArguments,
+    /// Picture to write (.png), white where a pixel has the hand's colour.
+    #[arg(long, value_name = "FILE.png")]
+    out: PathBuf,
+}
+
+impl MaskArguments {
+    fn run(self) -> anyhow::Result<()> {
+        let mut board = self.sensor.open()?;
+        let spinner = spinner("the image sensor is set up");
+        let bar = bar("mask");
+        let mask = gesture::mask(&mut Console::new(board.as_mut()), &mut advance(&bar));
+        spinner.finish_and_clear();
+        bar.finish_and_clear();
+        let mask = mask.context("mask")?;
+        write_whole(&self.out, |out| mask.write(out))?;
+        let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();
+        say(format_args!(
+            "{}x{} pixels, {marked} of the hand's colour",
+            mask.width, mask.height
+        ))
+    }
+}
