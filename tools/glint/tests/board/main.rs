@@ -6,6 +6,7 @@ mod attitudes;
 mod common;
 mod edges;
 mod fields;
+mod gesture;
 mod meshes;
 mod objects;
 mod sensor;
