@@ -23,8 +23,8 @@ from pathlib import Path
 
 _PROGRAMS = Path(sys.executable).parent
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
-# The router for designs of this size, and a density of cells below the placer's usual 0.9, since a dense region has too few wires.
-_ROUTABLE = ["--seed", "1", "--router", "router2", "--placer-heap-beta", "0.6"]
+# The router for designs of this size.
+_ROUTABLE = ["--seed", "1", "--router", "router2"]
 # FIFOs of at least 32 bits a word, which go to block RAM: LUT memory takes six LUTs for 16 places of four bits, and a multiplexer of
 # more places, while half of the block RAM is free. A place that is just written may read as anything there.
 _WIDE_FIFOS = "t:$mem_v2 a:no_rw_check %i r:WIDTH>=32 %i"
