@@ -1,7 +1,7 @@
 //! A hand in front of an image sensor that moves the camera on a sphere about the origin.
 //!
 //! The gesture engine counts the pixels of the hand's colour in each camera frame, and adds up their coordinates
-//! ([`Statistics`]). From these numbers come centre, width and confidence ([`Blob`]), then a target for the camera ([`target`]):
+//! ([`Statistics`]). From these numbers come centre, width and confidence ([`Blob`]), then a target for the camera ([`target()`]):
 //!
 //! | hand | camera |
 //! |---|---|
