@@ -6,7 +6,10 @@
 use core::cell::Cell;
 
 use critical_section::Mutex;
-use glint_core::hand::{Blob, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate};
+use glint_core::colour::Rgb565;
+use glint_core::hand::{
+    Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
+};
 use glint_core::image_sensor::{FrameSize, Model};
 use glint_hal::gesture::{GestureEngine, SetUpError};
 use glint_hal::timer::Clock;
@@ -207,10 +210,10 @@ impl Gesture {
     }
 
     /// Finds the windows of the hand's colour from the small picture of colours; `None` if its frame has not ended.
-    pub fn calibrate(&mut self) -> Option<Result<glint_core::hand::Calibrated, CalibrationError>> {
+    pub fn calibrate(&mut self) -> Option<Result<Calibrated, CalibrationError>> {
         let [columns, rows] = self.picture_size(true);
         let chroma = self.engine.picture()?.map(|colour| {
-            let channels = channels(glint_core::colour::Rgb565(colour));
+            let channels = channels(Rgb565(colour));
             [Channel::Cr, Channel::Cb].map(|channel| channels[channel as usize])
         });
         let found = calibrate(columns, rows, chroma);

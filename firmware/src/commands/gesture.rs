@@ -112,7 +112,7 @@ fn print_status<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         Some(Err(error)) => terminal.print_entry("sensor", &error),
     }
     let signal = gesture.engine().signal();
-    let running = if signal.is_running { "runs" } else { "stands" };
+    let running = if signal.is_running { "runs" } else { "stopped" };
     terminal.print_entry("pclk", &running);
     let [pixels, lines] = signal.seen;
     terminal.print(format_args!("received {pixels} {lines}\n"));

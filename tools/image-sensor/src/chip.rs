@@ -101,7 +101,7 @@ pub struct Polarity {
 impl BitXor for Polarity {
     type Output = Self;
 
-    /// Inverts what is set in `other`.
+    /// Inverts each polarity that is set in `other`.
     fn bitxor(self, other: Self) -> Self {
         Self {
             vsync_low: self.vsync_low ^ other.vsync_low,

@@ -78,11 +78,11 @@ pub enum Fault {
     Unplugged,
     /// VSYNC does not become active.
     NoSync,
-    /// The middle of a line loses this number of bytes, or repeats a byte so many times if it is negative.
+    /// The middle of a line loses or repeats bytes.
     Slip {
         /// Number of the line.
         line: usize,
-        /// Number of lost bytes.
+        /// Number of bytes that the middle of a line loses; if negative, number of times that a byte is repeated.
         bytes: isize,
     },
     /// The frame has this number of lines less, or more if it is negative.

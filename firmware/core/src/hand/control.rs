@@ -134,8 +134,8 @@ enum State {
 struct Channel {
     filter: OneEuro,
     zone: Backlash,
-    /// What is left of the way from the place where the camera was held to the place of the hand that came back: in two stages, a
-    /// low pass behind a low pass, so that the camera also starts smoothly.
+    /// Rest of the way from the place where the camera was held to the hand's new place. It fades through two low passes in series,
+    /// so that the camera also starts smoothly.
     offsets: [Q4_28; 2],
     output: Q4_28,
 }
