@@ -66,13 +66,13 @@ module i2c_engine #(
     // High for one clock at the end of a transaction or of a batch, or at an error.
     output logic        ended,
     // The wires: `scl` and `sda` are their states after a spike filter, `*_in` are the input pins, and `*_out` the drivers (0
-    // pulls low, 1 releases).
+    // pulls low, 1 releases). The wires are released from power-up on, so that the first clock is no edge.
     output logic        scl,
     output logic        sda,
     input  wire         scl_in,
-    output logic        scl_out,
+    output logic        scl_out = 1'b1,
     input  wire         sda_in,
-    output logic        sda_out
+    output logic        sda_out = 1'b1
 );
     localparam logic [1:0] START = i2c_registers_pkg::OPERATION_START, WRITE = i2c_registers_pkg::OPERATION_WRITE,
                            READ = i2c_registers_pkg::OPERATION_READ, STOP = i2c_registers_pkg::OPERATION_STOP;
