@@ -65,8 +65,6 @@ pub struct Gesture {
     sensor: Option<Result<Model, SetUpError>>,
     windows: [Window; 2],
     control: Control,
-    /// What the last frame showed.
-    seen: Option<Result<Blob, Doubt>>,
     /// The place to which the camera was moved last.
     steered: Option<Pose>,
     /// Low word of the time at which the last frame that moved the camera ended, until its picture is drawn.
@@ -86,7 +84,6 @@ impl Gesture {
             sensor: None,
             windows: SKIN,
             control: Control::default(),
-            seen: None,
             steered: None,
             waiting: None,
             is_marked: false,
@@ -117,7 +114,7 @@ impl Gesture {
         self.waiting = None;
     }
 
-    /// Takes the statistics of a frame if one has ended.
+    /// Takes the statistics of a frame if one has ended; otherwise looks at the image sensor at times.
     #[inline(never)]
     pub fn poll(&mut self) {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
@@ -130,11 +127,8 @@ impl Gesture {
             let ended_at = cpu::cycles() - u64::from(age);
             let time = self.clock.frequency().microseconds(ended_at);
             let before = self.control.pose();
-            let setting = self.control.setting();
-            self.seen = Some(self.control.on_frame(time, &statistics));
-            if self.control.setting() != setting {
-                self.engine.set_gate(&self.control.setting());
-            }
+            let _ = self.control.on_frame(time, &statistics);
+            self.engine.set_gate(&self.control.setting());
             if self.control.pose() != before {
                 self.waiting = Some(ended);
             }
@@ -170,7 +164,7 @@ impl Gesture {
 
     /// The mark of the hand's place, if it is to be drawn.
     pub fn mark(&self) -> Option<Mark> {
-        let blob = self.seen.and_then(Result::ok);
+        let blob = self.seen().and_then(Result::ok);
         self.is_marked.then(|| {
             let size = self.size.pixels();
             Mark::new(
@@ -244,9 +238,14 @@ impl Gesture {
         self.control.presence()
     }
 
-    /// What the last frame showed.
-    pub const fn seen(&self) -> Option<Result<Blob, Doubt>> {
-        self.seen
+    /// What the last frame showed, while the image sensor is on.
+    pub fn seen(&self) -> Option<Result<Blob, Doubt>> {
+        matches!(self.sensor, Some(Ok(_))).then(|| self.control.seen())
+    }
+
+    /// Columns and rows of a frame.
+    pub const fn size(&self) -> [u16; 2] {
+        self.size.pixels()
     }
 
     /// The camera's place.

@@ -14,7 +14,8 @@
 //! [`calibrate`] finds the windows of the hand's colour from a small picture.
 //!
 //! Noise pixels that are spread over the frame pull the mean of all pixels to the frame's middle: 5 % of them, by 80 pixels for a
-//! hand of 500 pixels at the border. Therefore the engine drops runs of few pixels in a line, and counts in the region alone.
+//! hand of 500 pixels at the border. Therefore the engine drops runs of few pixels in a line, and counts in the region alone. Around
+//! a hand at rest the region is small, so that shorter runs may count, as in the tips of fingers.
 
 mod blob;
 mod calibration;
@@ -25,8 +26,8 @@ mod target;
 pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
 pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
 pub use control::{
-    ANGLE, CHANNELS, Control, DISTANCE, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_SEARCHING,
-    RUN_TRACKING, Setting,
+    ANGLE, CHANNELS, Control, DISTANCE, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_MOVING,
+    RUN_RESTING, RUN_SEARCHING, Setting,
 };
 pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
 pub use target::{POLE, WIDTHS, target};

@@ -92,7 +92,7 @@ fn the_centre_is_the_mean_of_the_pixels() {
         blob.width.to_num::<f64>(),
         (0.875_f64.sqrt() * 65_536.0).floor() / 65_536.0
     );
-    assert_eq!(blob.confidence, 254);
+    assert_eq!(blob.confidence(size), 254);
 }
 
 #[test]
@@ -162,7 +162,7 @@ fn frames_without_a_hand_are_refused() {
         },
         ..good
     };
-    assert_eq!(scattered.blob().map(|blob| blob.confidence), Ok(0));
+    assert_eq!(scattered.blob().map(|blob| blob.confidence(SIZE)), Ok(0));
     assert_eq!(Run::new().frame(&scattered), Err(Doubt::Scattered));
 }
 
@@ -269,7 +269,7 @@ fn a_hand_in_three_frames_steers_the_camera() {
     let setting = run.control.setting();
     assert_eq!(
         (setting.region.first, setting.region.last),
-        ([30, 15], [130, 105])
+        ([20, 10], [140, 110])
     );
     run.frames(120, &hand(80, 60, 20));
     let [theta, phi, r] = run.pose();
@@ -292,7 +292,9 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
     let region = run.control.setting();
     run.frames(5, &EMPTY);
     assert_eq!(run.control.presence(), Presence::Held);
-    assert_eq!((run.pose(), run.control.setting()), (held, region));
+    // The hand may have left the region of a hand at rest, so that for a hand in motion is around it.
+    let larger = Setting::moving(&region.region, SIZE);
+    assert_eq!((run.pose(), run.control.setting()), (held, larger));
     // Back within the region: at once, without a jump.
     assert!(run.frame(&hand(70, 60, 20)).is_ok());
     assert_eq!(

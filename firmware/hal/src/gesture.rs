@@ -127,16 +127,17 @@ impl GestureEngine {
 
     /// Sets what the engine counts.
     pub fn set_gate(&mut self, setting: &Setting) {
-        let Region { first, last } = setting.region;
-        let [left, top] = first.map(|place| place.min(LAST));
-        let [right, bottom] = last.map(|place| place.min(LAST));
+        let Region {
+            first: [left, top],
+            last: [right, bottom],
+        } = setting.region;
+        let columns = RegionX::default().with_first(left);
+        let rows = RegionY::default().with_first(top);
         let registers = &self.registers;
         registers
             .region_x()
-            .write(RegionX::default().with_first(left).with_last(right));
-        registers
-            .region_y()
-            .write(RegionY::default().with_first(top).with_last(bottom));
+            .write(columns.with_last(right.min(LAST)));
+        registers.region_y().write(rows.with_last(bottom.min(LAST)));
         registers.least_run().write(setting.least_run);
     }
 

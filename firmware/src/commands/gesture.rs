@@ -129,7 +129,7 @@ fn print_status<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         Some(Err(doubt)) => terminal.print_entry("doubt", &doubt),
         Some(Ok(blob)) => {
             let [x, y] = blob.centre;
-            let (count, confidence) = (blob.count, blob.confidence);
+            let (count, confidence) = (blob.count, blob.confidence(gesture.size()));
             terminal.print(format_args!(
                 "centre {x:.3} {y:.3}\narea {count}\nconfidence {confidence}\n"
             ));

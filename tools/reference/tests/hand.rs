@@ -7,16 +7,15 @@ use glint_reference::report::experiments::gesture::{centres, recordings};
 
 #[test]
 fn the_centre_of_a_noisy_hand_is_within_a_tenth_of_a_pixel() {
-    let rows = centres(200, true);
+    let rows = centres(40, true);
     let rms = |hand: &str| {
         let row = rows.iter().find(|row| row.shipped && row.hand == hand);
         row.expect("a row").rms
     };
-    let disc = rms("disc, 500 pixels");
-    assert!(disc < 0.1, "{disc} pixels");
-    // Runs of 4 pixels cut the tips of fingers that are 5 pixels wide.
-    let hand = rms("hand, 500 pixels");
-    assert!(hand < 0.2, "{hand} pixels");
+    for hand in ["disc, 500 pixels", "hand, 500 pixels", "hand, 2000 pixels"] {
+        let rms = rms(hand);
+        assert!(rms < 0.1, "{hand}: {rms} pixels");
+    }
 }
 
 #[test]
@@ -53,7 +52,7 @@ fn stiff_cases_have_their_stated_outcomes() {
         (Fault::Border, Tracked, None, 112.0, 7.0),
         (Fault::Elsewhere, Absent, Some(Doubt::Few), 0.0, 7.0),
         (Fault::SecondFar, Tracked, None, 0.1, 0.1),
-        (Fault::SecondNear, Tracked, None, 40.0, 12.0),
+        (Fault::SecondNear, Tracked, None, 40.0, 16.0),
         (Fault::TwoAtStart, Absent, Some(Doubt::Scattered), 0.0, 4.0),
         (Fault::LightLittle, Tracked, None, 0.1, 0.1),
         (Fault::LightMuch, Absent, None, 0.1, 0.1),

@@ -30,17 +30,23 @@ impl Region {
         ]
     }
 
-    /// Returns the rectangle enlarged on each side by the numbers of columns and rows `margin`, within a frame of `size`.
+    /// Number of its pixels; saturates.
+    pub const fn area(&self) -> u32 {
+        let [columns, rows] = self.size();
+        columns.saturating_mul(rows)
+    }
+
+    /// Returns the rectangle enlarged on each side by the numbers of columns and rows `margin`. It begins in the frame, and may end
+    /// beyond it.
     #[must_use]
-    pub fn grown(&self, margin: [u16; 2], size: [u16; 2]) -> Self {
-        let mut grown = *self;
-        for axis in [0, 1] {
-            grown.first[axis] = self.first[axis].saturating_sub(margin[axis]);
-            grown.last[axis] = self.last[axis]
-                .saturating_add(margin[axis])
-                .min(size[axis].saturating_sub(1));
+    pub const fn grown(&self, margin: [u16; 2]) -> Self {
+        let [left, top] = self.first;
+        let [right, bottom] = self.last;
+        let [columns, rows] = margin;
+        Self {
+            first: [left.saturating_sub(columns), top.saturating_sub(rows)],
+            last: [right.saturating_add(columns), bottom.saturating_add(rows)],
         }
-        grown
     }
 }
 
@@ -62,6 +68,8 @@ pub struct Statistics {
 /// Reason why a camera frame does not show a hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
+    /// There was no frame yet.
+    Missing,
     /// The frame was received with a fault.
     Faulty,
     /// Fewer pixels than 1/1024 of the frame have the hand's colour.
@@ -79,6 +87,7 @@ pub enum Doubt {
 impl fmt::Display for Doubt {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
+            Self::Missing => "no camera frame has come yet",
             Self::Faulty => "the camera frame is faulty",
             Self::Few => "no hand: too few pixels have its colour",
             Self::Most => "no hand: most pixels of the frame have its colour",
@@ -111,13 +120,23 @@ pub struct Blob {
     pub width: U0_16,
     /// The smallest rectangle with all its pixels.
     pub bounds: Region,
-    /// How certain it is that this is one hand, in units of 1/256. It grows with the area, from the least area to four times that,
-    /// and with the part of the bounds that the pixels fill, from 1/8 to 3/8.
-    pub confidence: u8,
+}
+
+impl Blob {
+    /// How certain it is that this is one hand in a frame of `size` columns and rows, in units of 1/256. It grows with the area, from
+    /// the least area to four times that, and with the part of the bounds that the pixels fill, from 1/8 to 3/8.
+    pub fn confidence(&self, size: [u16; 2]) -> u8 {
+        let least = least_area(u32::from(size[0]) * u32::from(size[1]));
+        let certain = ramp(self.count / (least >> 2).max(1), [4, 4 << FULL_AREA]);
+        // A rectangle beyond 2^24 pixels is filled by less than 1/16, because a frame is smaller than 2^20 pixels.
+        let within = self.bounds.area().clamp(1, 1 << 24);
+        let filled = ramp((self.count << 8) / within, FILL);
+        ((certain * filled) >> 8) as u8
+    }
 }
 
 impl Statistics {
-    /// Computes centre, width and confidence. Each quotient is a long division of 32-bit numbers in two steps.
+    /// Computes centre and width. Each quotient is a long division of 32-bit numbers in two steps.
     ///
     /// # Errors
     /// The frame is faulty, has too few or too many pixels of the hand's colour, or the statistics contradict themselves.
@@ -132,38 +151,36 @@ impl Statistics {
         if area >= 1 << 20 || count > area {
             return Err(Doubt::Contradiction);
         }
-        let least = (area >> LEAST_AREA).max(1);
-        if count < least {
+        if count < least_area(area) {
             return Err(Doubt::Few);
         }
         if count > area - area / 8 {
             return Err(Doubt::Most);
         }
-        let [columns, rows] = self.bounds.size();
-        // The product of two numbers of at most 2^16 saturates; a larger one is no reason for doubt here.
-        let within = columns.saturating_mul(rows);
         let centre = self.sums.map(|sum| U20_12::from_bits(quotient(sum, count)));
         let outside = [0, 1].iter().any(|&axis| {
             let place = centre[axis].to_num::<u32>();
             place < u32::from(self.bounds.first[axis]) || place > u32::from(self.bounds.last[axis])
         });
-        if outside || count > within {
+        if outside || count > self.bounds.area() {
             return Err(Doubt::Contradiction);
         }
         // The quotient has 24 fraction bits and is below 1; the root of 32 fraction bits has 16.
         let upper = (count << 12) / area;
         let part = upper << 12 | fraction((count << 12) - upper * area, area);
-        let certain = ramp(count / (least >> 2).max(1), [4, 4 << FULL_AREA]);
-        // A rectangle beyond 2^24 pixels is filled by less than 1/16, because the frame is smaller than 2^20 pixels.
-        let filled = ramp((count << 8) / within.clamp(1, 1 << 24), FILL);
         Ok(Blob {
             count,
             centre,
-            width: U0_16::from_bits((part << 8).isqrt() as u16),
+            width: U0_16::from_bits(root(part << 8)),
             bounds: self.bounds,
-            confidence: ((certain * filled) >> 8) as u8,
         })
     }
+}
+
+/// Smallest number of a hand's pixels in a frame of `area` pixels.
+const fn least_area(area: u32) -> u32 {
+    let least = area >> LEAST_AREA;
+    if least == 0 { 1 } else { least }
 }
 
 /// Computes the quotient of `number` and `divisor` with 12 fraction bits, rounded down. The divisor is from 1 to 2^20 − 1. A
@@ -181,6 +198,27 @@ fn quotient(number: u32, divisor: u32) -> u32 {
 /// Computes 12 fraction bits of the quotient of `rest` and `divisor`; the rest is below the divisor, which is below 2^20.
 const fn fraction(rest: u32, divisor: u32) -> u32 {
     (rest << 12) / divisor
+}
+
+/// Returns the square root, rounded down, bit by bit. `u32::isqrt` takes fewer cycles once its code and its table are in the caches,
+/// where they are not when a frame comes.
+#[inline(never)]
+const fn root(square: u32) -> u16 {
+    let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
+    // The number of rounds is not known to the compiler, which would write out sixteen of them.
+    while bit > square {
+        bit >>= 2;
+    }
+    while bit != 0 {
+        let tried = root | bit;
+        root >>= 1;
+        if rest >= tried {
+            rest -= tried;
+            root |= bit;
+        }
+        bit >>= 2;
+    }
+    root as u16
 }
 
 /// Returns 0 below the first limit, 255 from the second one on, and the linear interpolation between them. Limits are below 2^24.

@@ -6,13 +6,15 @@ use super::blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics};
 use super::filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
 use super::target::{DISTANCES, POLARS, target};
 use crate::camera::{View, ViewError};
-use crate::fixed::{Q4_28, Q32_32, Turns, U16_16};
+use crate::fixed::{Q4_28, Q32_32, Turns, U16_16, U20_12};
 
 /// Smallest number of pixels in a run that the engine counts, in the whole frame: a run of noise pixels is so long in one of 1,000
 /// frames of 320×240 with 5 % of noise pixels.
 pub const RUN_SEARCHING: u8 = 6;
-/// The same in the region around the hand, where less noise comes in, and narrow parts of the hand are to count.
-pub const RUN_TRACKING: u8 = 4;
+/// The same in the region around a hand in motion, where less noise comes in, and narrow parts of the hand are to count.
+pub const RUN_MOVING: u8 = 4;
+/// The same in the smaller region around a hand at rest: the tips of fingers that are 5 pixels wide are to count.
+pub const RUN_RESTING: u8 = 3;
 /// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame.
 pub const PATIENCE: u64 = 250_000;
 /// Longest time between two frames after which tracking goes on, in µs. It is that of [`PATIENCE`].
@@ -102,20 +104,32 @@ impl Setting {
         least_run: RUN_SEARCHING,
     };
 
-    /// The setting around a hand with the given bounds. On each side there is room for a sixteenth of the frame, the way of a fast
-    /// hand in two frames, and for a quarter of the hand.
-    pub fn around(bounds: &Region, size: [u16; 2]) -> Self {
-        let [columns, rows] = bounds.size();
-        // The bounds lie in the frame, so a quarter of their size fits 16 bits.
-        let margin = [
-            size[0] / 16 + (columns / 4) as u16,
-            size[1] / 16 + (rows / 4) as u16,
-        ];
+    /// The setting around a hand in motion with the given bounds. On each side there is room for an eighth of the frame, the way of a
+    /// fast hand in two frames.
+    pub const fn moving(bounds: &Region, size: [u16; 2]) -> Self {
         Self {
-            region: bounds.grown(margin, size),
-            least_run: RUN_TRACKING,
+            region: bounds.grown([size[0] / 8, size[1] / 8]),
+            least_run: RUN_MOVING,
         }
     }
+
+    /// The setting around a hand at rest, which may begin to move: room for a thirty-second of the frame. A larger region would hold a
+    /// run of noise pixels in most frames. Such a run enlarges the bounds, and so the next region.
+    pub const fn resting(bounds: &Region, size: [u16; 2]) -> Self {
+        Self {
+            region: bounds.grown([size[0] / 32, size[1] / 32]),
+            least_run: RUN_RESTING,
+        }
+    }
+}
+
+/// Area and place of the hand in the last frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Last {
+    /// Number of the hand's pixels; 0 if the frame counted longer runs.
+    count: u32,
+    /// Coordinates x and y of its centre.
+    centre: [U20_12; 2],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,9 +137,9 @@ enum State {
     Absent,
     /// The hand of the last frame, and the number of frames that showed it.
     Appearing(Blob, u8),
-    /// Number of the hand's pixels in the last frame; 0 if it counted other runs.
-    Tracked(u32),
-    /// The same of the last frame with a hand, and the time of that frame in µs.
+    /// The hand of the last frame.
+    Tracked(Last),
+    /// Number of pixels in the last frame with the hand, 0 if it is not known, and the time of the first one without it in µs.
     Held(u32, u64),
 }
 
@@ -174,6 +188,8 @@ pub struct Control {
     /// Time of the last frame in µs.
     time: Option<u64>,
     setting: Setting,
+    /// What the last frame showed.
+    seen: Result<Blob, Doubt>,
     /// Azimuth, polar angle and distance.
     channels: [Channel; 3],
 }
@@ -186,6 +202,7 @@ impl Default for Control {
             state: State::Absent,
             time: None,
             setting: Setting::SEARCHING,
+            seen: Err(Doubt::Missing),
             channels: start.map(Channel::at),
         }
     }
@@ -218,6 +235,14 @@ impl Control {
         }
     }
 
+    /// What the last frame showed.
+    ///
+    /// # Errors
+    /// It did not show the hand.
+    pub const fn seen(&self) -> Result<Blob, Doubt> {
+        self.seen
+    }
+
     /// Takes the statistics of a new camera frame and its time in µs, and returns the hand that it shows.
     ///
     /// A hand appears when three frames in a row show one with enough confidence, of nearly the same area and place. The camera then
@@ -226,15 +251,54 @@ impl Control {
     ///
     /// # Errors
     /// The frame does not show the hand; the camera stays.
+    #[inline]
     pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
-        let gap = match self.time.replace(time) {
-            None => LONGEST_GAP,
-            Some(before) if before < time => time - before,
-            Some(before) => {
-                self.time = Some(before);
-                return statistics.blob();
-            }
+        self.take(time, statistics);
+        // A caller that drops this result has no copy of it.
+        self.seen
+    }
+
+    /// Does the work of [`on_frame`](Self::on_frame). Every frame with a hand runs all of this code, which the instruction cache has to
+    /// load, so what runs rarely is in other functions.
+    #[inline(never)]
+    fn take(&mut self, time: u64, statistics: &Statistics) {
+        self.seen = statistics.blob();
+        let gap = self
+            .time
+            .map_or(LONGEST_GAP, |before| time.saturating_sub(before));
+        if gap == 0 {
+            return;
+        }
+        self.time = Some(time);
+        let size = statistics.size;
+        let (State::Tracked(last), Ok(blob)) = (self.state, self.seen) else {
+            return self.seek(time, gap, size);
         };
+        if gap > LONGEST_GAP || !is_like(last.count, &blob) {
+            return self.seek(time, gap, size);
+        }
+        self.state = State::Tracked(Last {
+            count: blob.count,
+            centre: blob.centre,
+        });
+        // A hand at rest moves by at most 1/64 of the frame.
+        let rests = |axis: usize| {
+            let moved = last.centre[axis].abs_diff(blob.centre[axis]);
+            moved.to_bits() <= u32::from(size[axis]) << (12 - 6)
+        };
+        self.setting = if rests(0) && rests(1) {
+            Setting::resting(&blob.bounds, size)
+        } else {
+            Setting::moving(&blob.bounds, size)
+        };
+        // The gap is at most `LONGEST_GAP`.
+        self.steer(target(&blob, size), Step::new(gap as u32));
+    }
+
+    /// Takes a frame that does not simply go on with a tracked hand, `gap` µs after the last one.
+    #[cold]
+    #[inline(never)]
+    fn seek(&mut self, time: u64, gap: u64, size: [u16; 2]) {
         let waited = match self.state {
             State::Held(_, since) => time.saturating_sub(since),
             _ => gap,
@@ -243,21 +307,12 @@ impl Control {
             // The statistics of this frame may be those of the hand's region alone, so the search begins with the next one.
             self.search();
         }
-        let seen = statistics.blob();
-        let size = statistics.size;
-        match (self.state, &seen) {
-            (State::Tracked(count), Ok(blob)) if is_like(count, blob) => {
-                self.state = State::Tracked(blob.count);
-                self.setting = Setting::around(&blob.bounds, size);
-                // A gap in tracking is at most `PATIENCE`.
-                self.steer(target(blob, size), Step::new(gap as u32));
+        match self.state {
+            State::Tracked(Last { count, .. }) | State::Held(count, _) => {
+                self.hold(count, time, size);
             }
-            (State::Tracked(count) | State::Held(count, _), _) => {
-                return self.hold(count, time, seen, size);
-            }
-            _ => return self.appear(seen, size),
+            _ => self.seen = self.appear(size),
         }
-        seen
     }
 
     /// Begins to search the whole frame.
@@ -266,15 +321,12 @@ impl Control {
         self.setting = Setting::SEARCHING;
     }
 
-    /// Looks for a hand in three successive frames. Rare code is separate from that of every frame, because the instruction cache is
-    /// small.
-    #[cold]
-    #[inline(never)]
-    fn appear(&mut self, seen: Result<Blob, Doubt>, size: [u16; 2]) -> Result<Blob, Doubt> {
+    /// Looks for a hand in three successive frames.
+    fn appear(&mut self, size: [u16; 2]) -> Result<Blob, Doubt> {
         let before = self.state;
         self.search();
-        let blob = seen?;
-        if blob.confidence < LEAST_CONFIDENCE {
+        let blob = self.seen?;
+        if blob.confidence(size) < LEAST_CONFIDENCE {
             return Err(Doubt::Scattered);
         }
         let frames = match before {
@@ -288,32 +340,28 @@ impl Control {
         Ok(blob)
     }
 
-    /// Waits for the hand in its region, from the first frame without it on.
-    #[cold]
-    #[inline(never)]
-    fn hold(
-        &mut self,
-        count: u32,
-        time: u64,
-        seen: Result<Blob, Doubt>,
-        size: [u16; 2],
-    ) -> Result<Blob, Doubt> {
-        match seen {
-            Ok(blob) if is_like(count, &blob) => {
-                self.enter(&blob, size);
-                return seen;
-            }
-            _ if !matches!(self.state, State::Held(..)) => self.state = State::Held(count, time),
-            _ => {}
+    /// Waits for the hand in its region, from the first frame without it on. The region becomes larger, because a hand that began to
+    /// move fast has left that of a hand at rest.
+    fn hold(&mut self, count: u32, time: u64, size: [u16; 2]) {
+        match self.seen {
+            Ok(blob) if is_like(count, &blob) => return self.enter(&blob, size),
+            Ok(_) => self.seen = Err(Doubt::Jump),
+            Err(_) => {}
         }
-        seen.and(Err(Doubt::Jump))
+        if !matches!(self.state, State::Held(..)) {
+            self.state = State::Held(count, time);
+            self.setting = Setting::moving(&self.setting.region, size);
+        }
     }
 
     /// Begins to follow a hand: the filters start at its place, and the way from the camera's place to it becomes the offset.
     fn enter(&mut self, blob: &Blob, size: [u16; 2]) {
         // The next frame counts shorter runs, so its area may be larger.
-        self.state = State::Tracked(0);
-        self.setting = Setting::around(&blob.bounds, size);
+        self.state = State::Tracked(Last {
+            count: 0,
+            centre: blob.centre,
+        });
+        self.setting = Setting::moving(&blob.bounds, size);
         for (channel, target) in self.channels.iter_mut().zip(target(blob, size)) {
             let offset = channel.output.saturating_sub(target);
             *channel = Channel {

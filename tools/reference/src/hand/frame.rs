@@ -215,31 +215,39 @@ impl Frame {
     }
 }
 
+/// Successive frames of a hand at one place.
+const FRAMES: u32 = 8;
+
 /// Differences in pixels between the centre that the statistics give and that of the same hands without noise in f64, over
-/// `frames` frames of hands of `area` pixels at random places. `setting` makes the engine's setting from the bounds of the hand.
+/// `places` random places of a hand of `area` pixels, with several frames each. `setting` makes the engine's setting from the bounds
+/// in the frame before, as the control does; they are those of the hand without noise for the first frame.
 pub fn centre_errors(
     shape: Shape,
     area: f64,
     noise: &Noise,
-    frames: u32,
+    places: u32,
     random: &mut Pcg64Mcg,
     setting: impl Fn(&Region) -> Setting,
 ) -> Vec<f64> {
     let start = Drawn::new(shape, [0.0; 2], area);
-    let errors = (0..frames).flat_map(|_| {
+    let mut errors = Vec::new();
+    for _ in 0..places {
         let place = [
             random.random_range(60.0..260.0),
             random.random_range(60.0..180.0),
         ];
         let hand = start.moved(place);
         let exact = Frame::draw(&[hand], &Noise::NONE, random);
-        let bounds = exact.statistics(Setting::SEARCHING).bounds;
-        let noisy = Frame::draw(&[hand], noise, random).statistics(setting(&bounds));
-        let centre = noisy
-            .blob()
-            .map_or([f64::NAN; 2], |blob| blob.centre.map(|x| x.to_num::<f64>()));
+        let mut bounds = exact.statistics(Setting::SEARCHING).bounds;
         let exact = exact.centre();
-        [centre[0] - exact[0], centre[1] - exact[1]]
-    });
-    errors.collect()
+        for _ in 0..FRAMES {
+            let noisy = Frame::draw(&[hand], noise, random).statistics(setting(&bounds));
+            bounds = noisy.bounds;
+            let centre = noisy
+                .blob()
+                .map_or([f64::NAN; 2], |blob| blob.centre.map(|x| x.to_num::<f64>()));
+            errors.extend([centre[0] - exact[0], centre[1] - exact[1]]);
+        }
+    }
+    errors
 }

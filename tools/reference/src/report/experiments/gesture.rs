@@ -2,7 +2,7 @@
 //! cycles on the soft core, and stiff cases.
 
 use anyhow::{Context, Result};
-use glint_core::hand::{RUN_TRACKING, Region, Setting};
+use glint_core::hand::{RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region, Setting};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
@@ -98,19 +98,59 @@ pub struct Target {
     pub commit: String,
 }
 
+/// A setting of the engine that is compared.
+struct Compared {
+    /// Description.
+    counted: &'static str,
+    /// Region for a hand with these bounds.
+    region: fn(&Region) -> Region,
+    /// Smallest number of pixels in a run that counts.
+    least_run: u8,
+    /// Whether the firmware uses this setting for a hand at rest.
+    shipped: bool,
+}
+
+impl Compared {
+    const fn new(counted: &'static str, region: fn(&Region) -> Region, least_run: u8) -> Self {
+        Self {
+            counted,
+            region,
+            least_run,
+            shipped: false,
+        }
+    }
+}
+
+fn whole(_: &Region) -> Region {
+    Region::WHOLE
+}
+
+fn small(bounds: &Region) -> Region {
+    Setting::resting(bounds, SIZE).region
+}
+
+fn large(bounds: &Region) -> Region {
+    Setting::moving(bounds, SIZE).region
+}
+
 /// The settings of the engine that are compared.
-const SETTINGS: [(&str, bool, u8); 6] = [
-    ("all pixels", false, 1),
-    ("the region", true, 1),
-    ("runs of 6", false, 6),
-    ("the region, runs of 3", true, 3),
-    ("the region, runs of 4", true, RUN_TRACKING),
-    ("the region, runs of 6", true, 6),
+const SETTINGS: [Compared; 8] = [
+    Compared::new("all pixels", whole, 1),
+    Compared::new("runs of 6", whole, RUN_SEARCHING),
+    Compared::new("the large region, runs of 3", large, 3),
+    Compared::new("the large region, runs of 4", large, RUN_MOVING),
+    Compared::new("the small region", small, 1),
+    Compared::new("the small region, runs of 2", small, 2),
+    Compared {
+        shipped: true,
+        ..Compared::new("the small region, runs of 3", small, RUN_RESTING)
+    },
+    Compared::new("the small region, runs of 4", small, 4),
 ];
 
-/// Measures the errors of the centre of discs and hands with 5 % of salt noise, over `frames` frames each. With `only_shipped`, only
-/// the firmware's setting is measured.
-pub fn centres(frames: u32, only_shipped: bool) -> Vec<Centre> {
+/// Measures the errors of the centre of discs and hands with 5 % of salt noise, at `places` places each. With `only_shipped`, only
+/// the firmware's setting for a hand at rest is measured.
+pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
     let commit = Provenance::find().commit;
     let noise = Noise {
         salt: 0.05,
@@ -122,21 +162,16 @@ pub fn centres(frames: u32, only_shipped: bool) -> Vec<Centre> {
         ("hand, 500 pixels", Shape::Hand, 500.0),
         ("hand, 2000 pixels", Shape::Hand, 2_000.0),
     ] {
-        for (counted, is_limited, least_run) in SETTINGS {
-            let shipped = is_limited && least_run == RUN_TRACKING;
-            if only_shipped && !shipped {
+        for compared in SETTINGS {
+            if only_shipped && !compared.shipped {
                 continue;
             }
             let mut random = Pcg64Mcg::seed_from_u64(1);
             let setting = |bounds: &Region| Setting {
-                region: if is_limited {
-                    Setting::around(bounds, SIZE).region
-                } else {
-                    Region::WHOLE
-                },
-                least_run,
+                region: (compared.region)(bounds),
+                least_run: compared.least_run,
             };
-            let mut sizes = centre_errors(shape, area, &noise, frames, &mut random, setting);
+            let mut sizes = centre_errors(shape, area, &noise, places, &mut random, setting);
             let mut errors = Errors::default();
             for size in &mut sizes {
                 errors.add(*size);
@@ -145,8 +180,8 @@ pub fn centres(frames: u32, only_shipped: bool) -> Vec<Centre> {
             sizes.sort_by(f64::total_cmp);
             rows.push(Centre {
                 hand: name.to_owned(),
-                counted: counted.to_owned(),
-                shipped,
+                counted: compared.counted.to_owned(),
+                shipped: compared.shipped,
                 rms: errors.rms(),
                 p99: sizes[sizes.len() * 99 / 100],
                 max: errors.max,
