@@ -4,6 +4,7 @@
 //! computes the camera's place, and sets what the engine counts in the next frame.
 
 use core::cell::Cell;
+use core::time::Duration;
 
 use critical_section::Mutex;
 use glint_core::colour::Rgb565;
@@ -12,7 +13,7 @@ use glint_core::hand::{
 };
 use glint_core::image_sensor::{FrameSize, Model};
 use glint_hal::gesture::{GestureEngine, SetUpError};
-use glint_hal::timer::Clock;
+use glint_hal::timer::{Clock, Deadline};
 use glint_model::gesture::{Channel, channels};
 use litex_pac::cpu;
 
@@ -56,6 +57,18 @@ pub struct Cycles {
     pub worst: u32,
 }
 
+/// Time between two looks at an image sensor that is on.
+const LOOK: Duration = Duration::from_millis(50);
+/// The same after a set-up that failed: the set-ups of a damaged sensor hold the main loop for at most a tenth of the time.
+const PAUSE: Duration = Duration::from_millis(500);
+
+/// Watches an image sensor that is on: it may be unplugged, and lose its registers.
+struct Watch {
+    look: Deadline,
+    /// Whole and dropped frames at the last look.
+    frames: [u32; 2],
+}
+
 /// The gesture engine, the image sensor, and the control of the camera.
 pub struct Gesture {
     engine: GestureEngine,
@@ -63,6 +76,8 @@ pub struct Gesture {
     size: FrameSize,
     /// The image sensor, while it is on, or the reason why it is not.
     sensor: Option<Result<Model, SetUpError>>,
+    /// While `gesture on` was successful.
+    watch: Option<Watch>,
     windows: [Window; 2],
     control: Control,
     /// The place to which the camera was moved last.
@@ -82,6 +97,7 @@ impl Gesture {
             clock,
             size: FrameSize::Qvga,
             sensor: None,
+            watch: None,
             windows: SKIN,
             control: Control::default(),
             steered: None,
@@ -102,14 +118,61 @@ impl Gesture {
         self.engine.set_gate(&self.control.setting());
         let started = self.engine.start(size, self.clock);
         self.sensor = Some(started);
+        if started.is_ok() {
+            self.look_after(LOOK);
+        }
         started
+    }
+
+    /// Looks at the image sensor after this time.
+    fn look_after(&mut self, span: Duration) {
+        let counters = self.engine.counters();
+        self.watch = Some(Watch {
+            look: self.clock.after(span),
+            frames: [counters.frames, counters.frames_dropped],
+        });
+    }
+
+    /// Looks whether the image sensor sends whole frames. If not, and it has lost its registers, it was unplugged, or had no supply: it
+    /// is set up again as soon as it answers, and the control goes on with the camera's place. The gyroscope's samples wait in their
+    /// queue meanwhile.
+    #[cold]
+    #[inline(never)]
+    fn watch(&mut self) {
+        let Some(Watch { look, frames }) = &self.watch else {
+            return;
+        };
+        if !look.passed() {
+            return;
+        }
+        let counters = self.engine.counters();
+        let [whole, dropped] = *frames;
+        let are_whole = counters.frames != whole && counters.frames_dropped == dropped;
+        let found = match self.sensor {
+            Some(Ok(_)) if are_whole => None,
+            Some(Ok(model)) => match self.engine.keeps(model, self.size, self.clock) {
+                Ok(true) => None,
+                Ok(false) => Some(Ok(model)),
+                Err(error) => Some(Err(error)),
+            },
+            _ => Some(self.engine.find(self.clock)),
+        };
+        let mut pause = LOOK;
+        if let Some(found) = found {
+            self.sensor = Some(found.and_then(|_| {
+                let started = self.engine.start(self.size, self.clock);
+                pause = if started.is_ok() { LOOK } else { PAUSE };
+                started
+            }));
+        }
+        self.look_after(pause);
     }
 
     /// Turns the image sensor off; the camera stays.
     pub fn stop(&mut self) {
         self.engine.set_power(false);
         self.sensor = None;
-        self.seen = None;
+        self.watch = None;
         self.steered = None;
         self.waiting = None;
     }
@@ -118,7 +181,7 @@ impl Gesture {
     #[inline(never)]
     pub fn poll(&mut self) {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
-            return;
+            return self.watch();
         };
         let start = cpu::cycles_low();
         // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.

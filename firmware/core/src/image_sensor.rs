@@ -209,8 +209,27 @@ impl<B: I2c> ImageSensor<B> {
         Ok(model)
     }
 
+    /// Whether the chip still has the settings of [`start`](Self::start) in the registers that it reads back. A chip that was without
+    /// supply has lost them.
+    ///
+    /// # Errors
+    /// The chip does not answer.
+    pub async fn keeps(&mut self, model: Model, size: FrameSize) -> Result<bool, Error<B::Error>> {
+        for &step in model.steps(size).into_iter().flatten() {
+            if let Step::Check(register, expected) = step
+                && self.read(model, register).await? != expected
+            {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
     /// Finds a known chip by its address and product number. A chip that is not known does not hide a known one.
-    async fn find(&mut self) -> Result<Model, Error<B::Error>> {
+    ///
+    /// # Errors
+    /// There is no chip, or only unknown ones.
+    pub async fn find(&mut self) -> Result<Model, Error<B::Error>> {
         let mut reason = Error::Absent;
         for model in Model::ALL {
             match self.product(model).await {

@@ -324,6 +324,32 @@ fn a_register_that_does_not_keep_its_value_is_an_error() {
 }
 
 #[test]
+fn a_chip_that_was_without_supply_has_lost_its_settings() {
+    for (model, product) in [(Model::Ov7670, 0x7673), (Model::Ov5640, 0x5640)] {
+        let chip = shared(model, product);
+        let mut sensor = ImageSensor::new(Bytes(chip.clone()));
+        let size = FrameSize::Qvga;
+        assert_eq!(
+            run(sensor.start(size, &mut Clock::default())),
+            Ok(model),
+            "{model}"
+        );
+        let writes = chip.borrow().writes.len();
+        assert_eq!(run(sensor.keeps(model, size)), Ok(true));
+        assert_eq!(run(sensor.keeps(model, FrameSize::Vga)), Ok(false));
+        *chip.borrow_mut() = Chip::new(model, product);
+        assert_eq!(run(sensor.keeps(model, size)), Ok(false));
+        assert!(writes > 0 && chip.borrow().writes.is_empty());
+        // Another chip in its place.
+        chip.borrow_mut().model = match model {
+            Model::Ov7670 => Model::Ov5640,
+            Model::Ov5640 => Model::Ov7670,
+        };
+        assert!(run(sensor.keeps(model, size)).is_err());
+    }
+}
+
+#[test]
 fn two_wires_carry_the_same_bytes() {
     for (model, product) in [(Model::Ov7670, 0x7673), (Model::Ov5640, 0x5640)] {
         let direct = shared(model, product);

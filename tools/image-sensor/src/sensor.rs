@@ -74,7 +74,8 @@ impl Timing {
 /// A fault of the frames, for tests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
-    /// The cable is out: all wires are low and nothing moves.
+    /// The cable is out: the chip has no supply and does not answer, all wires of its port are low, and nothing moves. A chip that is
+    /// plugged in again has the registers of its reset.
     Unplugged,
     /// VSYNC does not become active.
     NoSync,
@@ -126,11 +127,12 @@ impl ImageSensor {
     /// power-down. Returns whether the sensor starts or stops.
     pub fn set_inputs(&mut self, reset_n: bool, is_awake: bool) -> bool {
         let chip = &mut self.wires.chip;
-        if !reset_n {
+        let runs = reset_n && self.fault != Some(Fault::Unplugged);
+        if !runs {
             chip.reset();
         }
         let was_awake = chip.is_awake;
-        chip.is_awake = is_awake && reset_n;
+        chip.is_awake = is_awake && runs;
         chip.is_awake != was_awake
     }
 

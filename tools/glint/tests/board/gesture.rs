@@ -5,6 +5,7 @@ use crate::common::{console, mesh, running_board};
 use glint::board::SimulatedBoard;
 use glint::console::{Console, value};
 use glint::gesture::{self, SensorFault, image_sensor};
+use glint::imu::sensor;
 use glint::picture::{Image, write_animation};
 use glint::render::{Frame, Subject, on_model};
 use glint::transfer;
@@ -12,7 +13,7 @@ use glint_core::console::Command;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use std::sync::{Arc, Mutex};
-use virtual_board::virtual_image_sensor::{Place, Scene};
+use virtual_board::virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
 
 /// Clock cycles of a millisecond.
 const MS: u64 = 81_250;
@@ -22,6 +23,30 @@ const COMMAND: &str = "gesture";
 
 /// Where the hand was in each camera frame.
 type Path = Arc<Mutex<Vec<Place>>>;
+
+/// What an image sensor sees, as a test sets it: hands, and the brightness of the light.
+#[derive(Clone)]
+struct View(Arc<Mutex<(Vec<Place>, f64)>>);
+
+impl View {
+    /// One hand in full light.
+    fn new(hand: Place) -> Self {
+        Self(Arc::new(Mutex::new((vec![hand], 1.0))))
+    }
+
+    fn show(&self, hands: &[Place], light: f64) {
+        *self.0.lock().unwrap() = (hands.to_vec(), light);
+    }
+
+    /// A source of frames with the noise of a sensor.
+    fn scene(&self) -> Scene {
+        let [hands, light] = [self.clone(), self.clone()];
+        let mut scene = Scene::new(SIZE, move |_| hands.0.lock().unwrap().0.clone());
+        scene.light = Box::new(move |_| light.0.lock().unwrap().1);
+        scene.noise = 2.0;
+        scene
+    }
+}
 
 /// An image sensor that sees a hand on a path over the time in s, with the noise of a sensor and a face beside the hand.
 fn sensor_with(hand: impl Fn(f64) -> Place + Send + 'static) -> (Scene, Path) {
@@ -188,10 +213,21 @@ fn faults() -> Vec<(SensorFault, &'static str, &'static str)> {
     rows.collect()
 }
 
-/// With every fault the camera stays, and afterwards the hand is tracked again.
+/// Where the camera is at first.
+const MIDDLE: Place = Place {
+    centre: [159.5, 119.5],
+    area: 4_800.0,
+};
+
+/// Time in ms until a sensor that was unplugged is set up again and the hand is found: to the next look at it, for its set-up, and for
+/// three frames.
+const RETURN: u64 = 125;
+
+/// With every fault the camera stays, and afterwards the hand is tracked again; so it is with each row of what the sensor sees.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let mut board = running_board();
+    board.inner().plug(sensor::virtual_sensor(None));
     let mut console = console(&mut board);
     let quiet = &mut |_: u64, _: u64| {};
     let faults = faults();
@@ -209,30 +245,26 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let refused = gesture::mask(&mut console, quiet).unwrap_err().to_string();
     assert!(refused.contains("0x2640"), "{refused}");
 
-    // Where the camera is at first.
-    let place = Place {
-        centre: [159.5, 119.5],
-        area: 4_800.0,
-    };
-    let (scene, _) = sensor_with(move |_| place);
-    console
-        .board()
-        .inner()
-        .plug_image_sensor(image_sensor(scene));
+    let view = View::new(MIDDLE);
+    let board = console.board().inner();
+    board.plug_image_sensor(image_sensor(view.scene()));
     let mask = gesture::mask(&mut console, quiet).unwrap();
     let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();
     // Every second pixel of every second line.
     assert_eq!([mask.width, mask.height], [160, 120]);
     assert!((1_120..1_280).contains(&marked), "{marked}");
 
+    sensor::wait(&mut console).unwrap();
+    let samples = |console: &mut Console<SimulatedBoard>| {
+        let lines = console.command("imu").unwrap();
+        ["samples", "failures", "gaps"].map(|key| value::<u64>("imu", &lines, key).unwrap())
+    };
+    let [first, ..] = samples(&mut console);
+    let began = console.board().inner().cycles();
     for (fault, text, clock) in later {
         run(&mut console, 16);
         let before = status(&mut console);
         assert_eq!(entry::<String>(&before, "hand"), "tracked", "{fault:?}");
-        let mend = |console: &mut Console<SimulatedBoard>| {
-            let board = console.board().inner();
-            board.image_sensor().unwrap().fault = None;
-        };
         let board = console.board().inner();
         fault.apply(board.image_sensor().unwrap(), SIZE[1] / 2);
         run(&mut console, 16);
@@ -242,20 +274,85 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
         if clock != "stops and starts" {
             assert_eq!(entry::<String>(&lines, "pclk"), clock, "{fault:?}");
         }
-        let [was, is] = [&before, &lines].map(|lines| numbers(lines, "camera"));
-        // Before the fault began, the filter may have gone on.
-        for (was, is) in was.into_iter().zip(is) {
-            assert!((was - is).abs() < 0.2, "{fault:?}: {was}, {is}");
+        stays(&before, &lines, &format!("{fault:?}"));
+        let board = console.board().inner();
+        board.image_sensor().unwrap().fault = None;
+        if fault == SensorFault::Unplugged {
+            run(&mut console, RETURN);
         }
-        mend(&mut console);
     }
     run(&mut console, 16);
     let lines = status(&mut console);
     assert_eq!(entry::<String>(&lines, "hand"), "tracked");
     assert_eq!(entry::<String>(&lines, "fault"), "none");
+    // The gyroscope was read all the time, once a millisecond.
+    let [last, failures, gaps] = samples(&mut console);
+    let passed = (console.board().inner().cycles() - began) / MS;
+    assert!(
+        (last - first).abs_diff(passed) < 5,
+        "{first} {last} {passed}"
+    );
+    assert_eq!([failures, gaps], [0; 2]);
+
+    sights_have_their_outcomes(&mut console, &view);
 }
 
-/// A hand in the middle calibrates its colour, in full light and in half of it.
+/// The camera stays, apart from what the filter does with the frames before.
+fn stays(before: &[String], after: &[String], case: &str) {
+    for (was, is) in core::iter::zip(numbers(before, "camera"), numbers(after, "camera")) {
+        assert!((was - is).abs() < 0.2, "{case}: {was}, {is}");
+    }
+}
+
+/// What the image sensor sees in the rows of the table of docs/hand.md, one after the other: the hands, the light, and the time in ms.
+fn sights() -> [(&'static str, Vec<Place>, f64, u64); 5] {
+    let far = Place {
+        centre: [285.0, 150.0],
+        area: 2_400.0,
+    };
+    let right = Place {
+        centre: [183.5, 119.5],
+        ..MIDDLE
+    };
+    [
+        ("a second hand, 125 pixels away", vec![MIDDLE, far], 1.0, 16),
+        ("one hand, in half of the light", vec![MIDDLE], 0.5, 16),
+        ("the full light again", vec![MIDDLE], 1.0, 16),
+        ("no hand", vec![], 1.0, 16),
+        ("the hand, 24 pixels to the right", vec![right], 1.0, 50),
+    ]
+}
+
+/// Walks the table of what the image sensor sees.
+fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard>, view: &View) {
+    let rows = include_str!("../../../../docs/hand.md").lines();
+    let mut rows = rows.skip_while(|row| !row.starts_with("| the image sensor sees |"));
+    for ((name, hands, light, time), row) in core::iter::zip(sights(), rows.by_ref().skip(2)) {
+        let [_, sight, presence, camera, _] = row.split('|').map(str::trim).collect::<Vec<_>>()[..]
+        else {
+            panic!("expected a row of three cells, found {row}");
+        };
+        assert_eq!(sight, name);
+        let before = status(console);
+        view.show(&hands, light);
+        run(console, time);
+        let after = status(console);
+        println!("{name}: {after:#?}");
+        assert_eq!(entry::<String>(&after, "hand"), presence, "{name}");
+        if camera == "stays" {
+            stays(&before, &after, name);
+            continue;
+        }
+        // On its way to the hand.
+        let [was, is] = [&before, &after].map(|lines| numbers(lines, "camera")[1]);
+        let hand = target(&hands[0])[1];
+        let part = (is - was) / (hand - was);
+        assert!((0.01..1.0).contains(&part), "{name}: {was}, {is}, {hand}");
+    }
+    assert!(!rows.next().is_some_and(|row| row.starts_with('|')));
+}
+
+/// A hand in front of an OV5640 calibrates its colour.
 #[test]
 fn a_calibration_finds_the_hand() {
     let mut board = running_board();
@@ -264,11 +361,9 @@ fn a_calibration_finds_the_hand() {
         centre: [160.0, 110.0],
         area: 18_000.0,
     };
-    let (scene, _) = sensor_with(move |_| place);
-    console
-        .board()
-        .inner()
-        .plug_image_sensor(image_sensor(scene));
+    let scene = View::new(place).scene();
+    let sensor = ImageSensor::new(Model::Ov5640, scene, Timing::SHORT);
+    console.board().inner().plug_image_sensor(sensor);
     let refused = console.command("gesture calibrate").unwrap_err();
     assert!(refused.to_string().contains("expected `gesture on` first"));
     console.command("gesture on").unwrap();
@@ -280,7 +375,9 @@ fn a_calibration_finds_the_hand() {
     assert!(cr[0] < 157.0 && 157.0 < cr[1] && cr[0] > 130.0, "{cr:?}");
     assert!(cb[0] < 103.0 && 103.0 < cb[1] && cb[1] < 126.0, "{cb:?}");
     run(&mut console, 20);
-    assert_eq!(entry::<String>(&status(&mut console), "hand"), "tracked");
+    let lines = status(&mut console);
+    assert_eq!(entry::<String>(&lines, "sensor"), "OV5640");
+    assert_eq!(entry::<String>(&lines, "hand"), "tracked");
     // The mark of the hand's place is in the lower right corner.
     console.command("gesture mark").unwrap();
     run(&mut console, 40);
