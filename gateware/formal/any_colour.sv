@@ -1,4 +1,5 @@
-// Stand-in for the module pixel_colour in proofs. The colour is the light in red, which identifies the pixel.
+// Stand-in for the module pixel_colour in proofs, with a latency of 2 clocks. The colour is the low 7 bits of the light in red,
+// which identify the pixel.
 
 `default_nettype none
 
@@ -8,7 +9,7 @@ module pixel_colour (
     input  wire  [2:0][31:0] light,
     output logic [15:0]      colour
 );
-    delay #(.WIDTH(16), .CLOCKS(7)) waits (.clk, .enable(1'b1), .in(light[0][15:0]), .out(colour));
+    delay #(.WIDTH(16), .CLOCKS(2)) waits (.clk, .enable(1'b1), .in({9'd0, light[0][6:0]}), .out(colour));
 
     wire _unused = &{1'b0, depth, light};
 endmodule

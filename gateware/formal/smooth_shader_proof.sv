@@ -1,8 +1,8 @@
 // Proof of the queues of `smooth_shader`, for groups of flat and smooth triangles in any order, with any gaps between them and any
 // pattern of ready at the output. Groups are numbered; a group without a covered pixel is dropped on its way to the module. Each
 // other group comes out once, in order, with the colour of its number if it is flat, and otherwise with a colour in each covered
-// pixel that the number and the lane give. No group waits without limit. To keep the proof short, the FIFOs are shorter than those
-// of the engine, and a group covers any pixels of one half, the left or the right one.
+// pixel that the number and the lane give. No group waits without limit. To keep the proof short, the FIFOs and the latency of a
+// colour are shorter than those of the engine, and a group covers any pixels of one half, the left or the right one.
 
 `default_nettype none
 
@@ -13,10 +13,10 @@ module smooth_shader_proof (
     input wire [7:0] in_mask,
     input wire       out_ready
 );
-    localparam int unsigned BITS = 5, FLIGHT = 2;
+    localparam int unsigned BITS = 4;
     // Upper bound on the clocks in which a group is inside and none is at the output: the latency of a smooth group with four
     // pixels.
-    localparam int unsigned WITHIN = 18;
+    localparam int unsigned WITHIN = 13;
 
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
@@ -28,10 +28,9 @@ module smooth_shader_proof (
     } group_t;
 
     group_t            made, came, group;
-    logic              idle, room, sent, out_valid, goes, right;
-    logic [FLIGHT-1:0] flight;
+    logic              idle, room, sent, comes, out_valid, goes, right;
     logic [BITS-1:0]   kept = '0, arrived = '0, went = '0;
-    logic [4:0]        unseen = '0;
+    logic [3:0]        unseen = '0;
     logic [1:0]        refused = '0;
     logic [7:0][15:0]  colours;
 
@@ -39,12 +38,13 @@ module smooth_shader_proof (
     assign sent = in_valid && room && in_mask != '0;
     assign goes = out_valid && out_ready;
 
-    always_ff @(posedge clk) flight <= rst ? '0 : FLIGHT'({flight, sent});
+    always_ff @(posedge clk) begin
+        comes <= sent && !rst;
+        came  <= made;
+    end
 
-    delay #(.WIDTH($bits(made)), .CLOCKS(FLIGHT)) way (.clk, .enable(1'b1), .in(made), .out(came));
-
-    smooth_shader #(.GROUP_BITS($bits(group)), .FLIGHT(FLIGHT), .GROUPS(8), .COLOURS(16)) dut (
-        .clk, .rst, .idle, .room, .in_valid(flight[FLIGHT-1]), .in_group(came), .in_mask(came.mask), .in_colour(16'(came.number)),
+    smooth_shader #(.GROUP_BITS($bits(group)), .FLIGHT(1), .GROUPS(4), .LATENCY(2)) dut (
+        .clk, .rst, .idle, .room, .in_valid(comes), .in_group(came), .in_mask(came.mask), .in_colour(16'(came.number)),
         .in_smooth(came.smooth), .in_depth('0), .in_depth_step_x('0), .in_light({64'd0, 32'({came.number, 3'd0})}),
         .in_light_step_x({64'd0, 32'd1}), .out_valid, .out_ready, .out_group(group), .out_colours(colours)
     );
@@ -61,20 +61,19 @@ module smooth_shader_proof (
 
     always_ff @(posedge clk) if (!rst) begin
         kept    <= kept + BITS'(sent);
-        arrived <= arrived + BITS'(flight[FLIGHT-1]);
+        arrived <= arrived + BITS'(comes);
         went    <= went + BITS'(goes);
         unseen  <= arrived != went && !out_valid ? unseen + 1'b1 : '0;
         refused <= !room && kept == went ? refused + 1'b1 : '0;
 
-        assume (kept != '1);
         assume (in_mask[7:4] == '0 || in_mask[3:0] == '0);
         nothing_made_up:  assert (!out_valid || arrived != went);
         in_order:         assert (!out_valid || right);
         idle_when_empty:  assert (idle == (arrived == went));
-        shown_in_time:    assert (unseen < 5'(WITHIN));
+        shown_in_time:    assert (unseen < 4'(WITHIN));
         taken_in_time:    assert (refused < 2'd3);
 
-        filled:  cover (arrived - went == BITS'(8));
+        filled:  cover (arrived - went == BITS'(4));
         shaded:  cover (goes && group.smooth && group.mask == 8'h90);
     end
 endmodule

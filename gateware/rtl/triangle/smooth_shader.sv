@@ -2,7 +2,7 @@
 //
 //            ┌─ pipeline_fifo: groups ───────────────────────────────────────────────┐
 //   group ──▶┤                                                                       ├──▶ group with eight colours
-//            └─ fifo: light ─▶ pixel: light, depth ─▶ pixel_colour ─▶ pipeline_fifo ─┘
+//            └─ fifo: light ─▶ pixel: light, depth ─▶ pixel_colour ─▶ fifo ──────────┘
 //                                  ▲      │ + step_x
 //                                  └──────┘
 //
@@ -19,9 +19,10 @@
 module smooth_shader #(
     parameter int unsigned GROUP_BITS = 8,
     parameter int unsigned FLIGHT     = 5,
-    // Places of the FIFOs of groups and of the FIFO of their colours, powers of two.
+    // Places of each FIFO, a power of two.
     parameter int unsigned GROUPS     = 16,
-    parameter int unsigned COLOURS    = 32
+    // Clocks of pixel_colour.
+    parameter int unsigned LATENCY    = 7
 ) (
     input  wire                   clk,
     input  wire                   rst,
@@ -57,7 +58,7 @@ module smooth_shader #(
 
     // Four accumulators: the depth, then red, green and blue. The FIFO holds some of the groups, so it has room for a group
     // whenever the other FIFO has.
-    logic             light_valid, light_room, takes, is_first, is_last, upper, may_start;
+    logic             light_valid, light_room, takes, is_first, is_last, upper;
     logic [2:0]       lane, last_lane;
     logic [3:0][31:0] starts, steps, values;
 
@@ -75,7 +76,7 @@ module smooth_shader #(
     // The pixel in lane `next_lane` enters the pipeline.
     logic [2:0] next_lane;
 
-    assign takes     = light_valid && may_start;
+    assign takes     = light_valid;
     assign next_lane = is_first ? {upper, 2'd0} : lane + 1'b1;
     assign is_last   = next_lane == last_lane;
 
@@ -90,10 +91,8 @@ module smooth_shader #(
     end
 
     // The place of a pixel in its group goes with it through pixel_colour.
-    localparam int unsigned LATENCY = 7;
-
     logic [LATENCY:0] valid;
-    logic             ends_1, ends, finished, none_finished;
+    logic             ends_1, ends, finished, colours_room;
     logic [2:0]       place;
     logic [15:0]      colour;
     logic [7:0][15:0] collected;
@@ -117,13 +116,13 @@ module smooth_shader #(
             if (place == 3'(i)) collected[i] <= colour;
     end
 
-    // Clocks from `takes` of a group's last pixel to `finished`.
-    pipeline_fifo #(.WIDTH(8 * 16), .DEPTH(COLOURS), .FLIGHT(LATENCY + 2)) finished_colours (
-        .clk, .rst, .idle(none_finished), .room(may_start), .in_valid(finished), .in_data(collected),
+    // The FIFO has only colours of groups that are in the first FIFO, so it has room for them.
+    fifo #(.WIDTH(8 * 16), .DEPTH(GROUPS)) finished_colours (
+        .clk, .rst, .in_valid(finished), .in_ready(colours_room), .in_data(collected),
         .out_valid(colours_valid), .out_ready(out_ready && group_valid && group_smooth), .out_data(smooth_colours)
     );
 
-    wire _unused = &{1'b0, light_room, none_finished};
+    wire _unused = &{1'b0, light_room, colours_room};
 endmodule
 
 `default_nettype wire
