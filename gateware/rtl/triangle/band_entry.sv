@@ -45,8 +45,8 @@ module band_entry #(
     input  wire                            out_ready,
     output logic                           out_odd,
     output raster_pkg::placed_t            out_triangle,
-    // Outputs that come, and hold, one clock later than `out_triangle`. The planes of light have the format of `in_planes`, with
-    // their values at the triangle's first row in the band, in lane 0.
+    // Outputs that come, and hold, one clock later than `out_triangle`, and the planes of light LIGHT_LATER clocks after that.
+    // These have the format of `in_planes`, with their values at the triangle's first row in the band, in lane 0.
     output raster_pkg::placed_late_t       out_late,
     output logic [PLANES_BITS-1:0]         out_planes
 );
@@ -216,17 +216,20 @@ module band_entry #(
     end
 
     if (SMOOTH) begin : light
-        logic smooth, held_smooth;
+        logic smooth, held_smooth, give;
+
+        // A held triangle stays unchanged for as long as its planes come later.
+        delay #(.WIDTH(1), .CLOCKS(raster_pkg::LIGHT_LATER)) give_delay (.clk, .enable(1'b1), .in(moved), .out(give));
 
         always_ff @(posedge clk) begin
             if (in_ready)     smooth <= in_planes[288];
             if (pass == LAST) held_smooth <= smooth;
-            if (moved)        out_planes[288] <= held_smooth;
+            if (give)         out_planes[288] <= held_smooth;
         end
 
         for (genvar k = 0; k < 3; k++) begin : channels
             plane_entry plane (
-                .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .result(ending[3]), .give(moved),
+                .clk, .take(in_ready), .pass, .advance, .offset, .hold(pass == LAST), .begins(ending[1]), .result(ending[3]), .give,
                 .in_plane(in_planes[96 * k +: 96]), .out_plane(out_planes[96 * k +: 96])
             );
         end

@@ -2,7 +2,7 @@
 // the band: start + step_y * offset, modulo 2^32, with `offset` the number of rows from the triangle's first row to that row.
 //
 // The module `band_entry` drives the control inputs and counts the passes, steps 0 to 7 of a triangle: the low 24 bits of
-// step_y are multiplied in pass 5, its high 8 bits in pass 7.
+// step_y are multiplied in pass 6, its high 8 bits in pass 7, and the start is added to the first product.
 
 `default_nettype none
 
@@ -13,14 +13,16 @@ module plane_entry (
     input  wire         advance,
     input  wire  [9:0]  offset,
     input  wire         hold,      // the triangle moves to the held stage
+    input  wire         begins,    // the first product comes
     input  wire         result,    // the value is computed
     input  wire         give,      // the held value goes out
     input  wire  [95:0] in_plane,  // {step_y, step_x, start}
     output logic [95:0] out_plane  // {step_y, step_x, value at the row}
 );
-    localparam logic [2:0] LOW = 3'd5, START = 3'd6;
+    localparam logic [2:0] LOW = 3'd6;
 
-    logic [31:0]        start, step_x, step_y, held_step_x, held_step_y, held;
+    // The start waits in `late_start` for the first product, when the next triangle may have entered.
+    logic [31:0]        start, late_start, step_x, step_y, held_step_x, held_step_y, held;
     logic signed [24:0] a;
     logic signed [17:0] b;
     logic signed [47:0] c, sum;
@@ -28,11 +30,13 @@ module plane_entry (
     assign a = pass == LOW ? {1'b0, step_y[23:0]} : {step_y[31:24], 17'd0};
     assign b = pass == LOW ? {8'd0, offset}       : {1'b0, offset, 7'd0};
 
+    assign c = begins ? {16'd0, late_start} : sum;
+
     multiply_add #(.BITS(48)) dsp (.clk, .enable(advance), .a, .b, .c, .p(sum));
 
     always_ff @(posedge clk) begin
         if (take)    {step_y, step_x, start} <= in_plane;
-        if (advance) c <= pass == START ? {16'd0, start} : sum;
+        late_start <= start;
         if (hold)    {held_step_y, held_step_x} <= {step_y, step_x};
         if (result)  held <= sum[31:0];
         if (give)    out_plane <= {held_step_y, held_step_x, held};

@@ -50,6 +50,10 @@ package raster_pkg;
         logic [31:0] depth_step_x;
         logic [15:0] colour;
     } late_t;
+
+    // The planes of light come this number of clocks later than the other late fields, so that the light of a group comes
+    // together with its mask, which `lanes` computes.
+    localparam int unsigned LIGHT_LATER = 3;
 endpackage
 
 `default_nettype wire

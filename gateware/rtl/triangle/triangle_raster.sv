@@ -119,21 +119,19 @@ module triangle_raster #(
     );
 
     if (SMOOTH) begin : light
-        // Depth and light of a group, which come one clock and two clocks after the group, wait until its mask is known.
-        logic [63:0]  found_depth;
-        logic [192:0] found_light;
+        // The depth of a group waits until its mask is known; light comes at that time (LIGHT_LATER).
+        logic [63:0] found_depth;
 
         delay #(.WIDTH(64), .CLOCKS(FLIGHT - 1)) depth_delay (
             .clk, .enable(1'b1), .in({walked_late.depth_step_x, walked_late.depth}), .out(found_depth)
         );
-        delay #(.WIDTH(193), .CLOCKS(FLIGHT - 2)) light_delay (.clk, .enable(1'b1), .in(walked_light), .out(found_light));
 
         smooth_shader #(.GROUP_BITS(GROUP_BITS), .FLIGHT(FLIGHT)) smooth_shader (
             .clk, .rst, .idle(fifo_idle), .room, .in_valid(found_valid), .in_group(found), .in_mask(found.mask),
-            .in_colour(found_colour), .in_smooth(found_light[192]),
+            .in_colour(found_colour), .in_smooth(walked_light[192]),
             .in_depth(found_depth[31:0]), .in_depth_step_x(found_depth[63:32]),
-            .in_light({found_light[128 +: 32], found_light[64 +: 32], found_light[0 +: 32]}),
-            .in_light_step_x({found_light[160 +: 32], found_light[96 +: 32], found_light[32 +: 32]}),
+            .in_light({walked_light[128 +: 32], walked_light[64 +: 32], walked_light[0 +: 32]}),
+            .in_light_step_x({walked_light[160 +: 32], walked_light[96 +: 32], walked_light[32 +: 32]}),
             .out_valid(group_valid), .out_ready(group_ready), .out_group(group), .out_colours(group_colours)
         );
     end else begin : flat

@@ -34,7 +34,7 @@
 // clocks that are spent on a group.
 //
 // Only the edge functions and the group's number affect the next move. Depth, line and colour make the same moves one clock
-// later, and light two clocks later.
+// later, and light another 1 + LIGHT_LATER clocks later.
 
 `default_nettype none
 
@@ -51,13 +51,13 @@ module walker #(
     output logic                          in_ready,
     input  wire raster_pkg::placed_t      in_triangle,
     input  wire raster_pkg::placed_late_t in_late,      // a clock after `in_triangle`
-    input  wire  [PLANES_BITS-1:0]        in_planes,    // a clock after `in_triangle`
+    input  wire  [PLANES_BITS-1:0]        in_planes,    // LIGHT_LATER clocks after `in_late`
     output logic                          out_valid,
     input  wire                           out_ready,
     output raster_pkg::candidate_t        out_group,
     output raster_pkg::late_t             out_late,     // a clock after `out_group`
-    // Light of the group, two clocks after `out_group`: {smooth, blue, green, red}; each channel is {step_x, accumulator
-    // in lane 0}.
+    // Light of the group, 1 + LIGHT_LATER clocks after `out_late`: {smooth, blue, green, red}; each channel is {step_x,
+    // accumulator in lane 0}.
     output logic [VALUES_BITS-1:0]        out_light
 );
     // The triangle.
@@ -222,16 +222,21 @@ module walker #(
         .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
     );
 
-    // The move of the clock before that, for light.
+    // An earlier move, for light. Its controls wait, in place of the light, which has many more bits.
     if (SMOOTH) begin : light
-        raster_pkg::move_t      light_move;
-        logic                   light_keep, light_resume, light_advance;
+        raster_pkg::move_t      early_move, light_move;
+        logic                   early_keep, early_resume, early_advance, light_keep, light_resume, light_advance;
         logic [PLANES_BITS-1:0] planes;
 
+        delay #(.WIDTH(5), .CLOCKS(raster_pkg::LIGHT_LATER)) move_delay (
+            .clk, .enable(1'b1), .in({late_keep, late_resume, late_advance, late_move}),
+            .out({early_keep, early_resume, early_advance, early_move})
+        );
+
         always_ff @(posedge clk) begin
-            {light_keep, light_resume, light_advance} <= {late_keep, late_resume, late_advance};
-            light_move <= late_move;
-            if (late_advance && late_move == raster_pkg::LOAD) planes <= in_planes;
+            {light_keep, light_resume, light_advance} <= {early_keep, early_resume, early_advance};
+            light_move <= early_move;
+            if (early_advance && early_move == raster_pkg::LOAD) planes <= in_planes;
             out_light[192] <= planes[288];
         end
 
