@@ -27,7 +27,7 @@ module flat_shade (
 );
     logic signed [24:0] a;
     logic signed [17:0] b;
-    logic signed [43:0] c, p;
+    logic signed [43:0] addend, c, p;
     logic signed [16:0] component, towards;
     // A queue of shares, red first; in clocks 6 to 8 its head is the intensity.
     logic        [8:0]  head, second, third, intensity, share;
@@ -55,13 +55,13 @@ module flat_shade (
 
         // The addend comes two clocks after the factors of its product.
         unique case (count)
-            4'd2:             c = 44'd1 << 28;
-            4'd3, 4'd4:       c = p;
-            4'd5, 4'd6, 4'd7: c = 44'd1 << 7;
-            4'd8:             c = {27'b0, ambient[0], 8'h80};
-            4'd9:             c = {27'b0, ambient[1], 8'h80};
-            default:          c = {27'b0, ambient[2], 8'h80};
+            4'd2:             addend = 44'd1 << 28;
+            4'd5, 4'd6, 4'd7: addend = 44'd1 << 7;
+            4'd8:             addend = {27'b0, ambient[0], 8'h80};
+            4'd9:             addend = {27'b0, ambient[1], 8'h80};
+            default:          addend = {27'b0, ambient[2], 8'h80};
         endcase
+        c = count == 4'd3 || count == 4'd4 ? p : addend;
 
         // The intensity is 0 where the sum is negative, 1 where the sum is at least 1, otherwise the fraction of the sum.
         intensity = p[43] ? '0 : p[42:37] != '0 ? 9'h100 : {1'b0, p[36:29]};

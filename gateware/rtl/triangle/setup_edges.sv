@@ -36,11 +36,7 @@ module setup_edges (
         a    = 25'($signed(count[0] ? px : py));
         step = count[2] ? (count[0] ? y20 : x02) : (count[0] ? y01 : x10);
         b    = count[1] ? 18'($signed(step[20:17])) : {1'b0, step[16:0]};
-        unique case (count[1:0])
-            2'd2:    c = {44{count[2] ? bias2 : bias0}};
-            2'd0:    c = p >>> 17;
-            default: c = p;
-        endcase
+        c    = count[0] ? p : count[1] ? {44{count[2] ? bias2 : bias0}} : p >>> 17;
     end
 
     always_ff @(posedge clk) begin

@@ -31,11 +31,7 @@ module setup_normal (
         a      = $signed(count[2] ^ count[0] ? w20 : w10);
         factor = count[2] ? (count[0] ? x02 : x10) : (count[0] ? y01 : y20);
         b      = count[1] ? {1'b0, factor[16:0]} : 18'($signed(factor[20:17]));
-        unique case (count[1:0])
-            2'd2:    c = '0;
-            2'd0:    c = {p[28:0], 17'b0};
-            default: c = p;
-        endcase
+        c      = count[0] ? p : count[1] ? '0 : {p[28:0], 17'b0};
     end
 
     always_ff @(posedge clk) begin

@@ -35,9 +35,7 @@ module setup_start (
             2'd1:    b = {1'b0, gradient[33:17]};
             default: b = {12'b0, gradient[39:34]};
         endcase
-        if (count == 4'd2)  c = {4'b0, value, 16'b0};
-        else if (!count[0]) c = p >>> 17;
-        else                c = p;
+        c = count[0] ? p : count == 4'd2 ? {4'b0, value, 16'b0} : p >>> 17;
     end
 
     always_ff @(posedge clk) begin

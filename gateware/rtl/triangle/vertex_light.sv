@@ -35,7 +35,7 @@ module vertex_light (
     logic        [15:0]      colour, colour_held, colour_late;
     logic signed [24:0]      a, channel;
     logic signed [17:0]      b;
-    logic signed [43:0]      c, p, product;
+    logic signed [43:0]      addend, c, p, product;
     logic        [15:0]      high, rounded;
     logic        [8:0]       intensity, share;
     logic                    back, back_held, back_late, dark, whole, carry;
@@ -58,12 +58,12 @@ module vertex_light (
             default:  b = {9'b0, intensity};
         endcase
         case (1'b1)
-            since[3], since[4]: c = p;
-            since[11]:          c = {27'b0, ambient[0], 8'h80};
-            since[12]:          c = {27'b0, ambient[1], 8'h80};
-            since[13]:          c = {27'b0, ambient[2], 8'h80};
-            default:            c = '0;
+            since[11]: addend = {27'b0, ambient[0], 8'h80};
+            since[12]: addend = {27'b0, ambient[1], 8'h80};
+            since[13]: addend = {27'b0, ambient[2], 8'h80};
+            default:   addend = '0;
         endcase
+        c = since[3] || since[4] ? p : addend;
         case (1'b1)
             since[13]: channel = {20'b0, colour_late[15:11]};
             since[14]: channel = {19'b0, colour_late[10:5]};
