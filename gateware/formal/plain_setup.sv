@@ -23,7 +23,7 @@ module cull #(
     output logic             out_valid,
     input  wire              out_ready,
     output setup_pkg::oriented_t out_triangle,
-    output logic [2:0]       out_lit
+    output logic             out_lit
 );
     logic [3:0] number;
 

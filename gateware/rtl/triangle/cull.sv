@@ -22,7 +22,7 @@ module cull #(
     // Places of the FIFO at the end, a power of two.
     parameter int unsigned PLACES = 128,
     localparam int unsigned LIGHT_BITS = SMOOTH ? 41 : 1,
-    localparam int unsigned LIT_BITS   = SMOOTH ? 40 : 1
+    localparam int unsigned LIT_BITS   = SMOOTH ? 1 + 3 * 41 : 1
 ) (
     input  wire                    clk,
     input  wire                    rst,
@@ -41,8 +41,8 @@ module cull #(
     output logic                   out_valid,
     input  wire                    out_ready,
     output setup_pkg::oriented_t              out_triangle,
-    // Light L of the vertices, for the visible side of the triangle.
-    output logic [2:0][LIT_BITS-1:0] out_lit
+    // {swap, light of the vertices numbered as in the mesh}; with `swap` vertices 1 and 2 have changed places.
+    output logic [LIT_BITS-1:0]    out_lit
 );
     // The inputs of a triangle, and differences of the coordinates of its vertices: x10 is x1 − x0, y01 is y0 − y1, and so on.
     typedef struct packed {
@@ -258,20 +258,14 @@ module cull #(
         oriented.x0          = last.v0.x;
     end
 
-    // Light of the vertices in the order after the swap; 0 for a vertex whose light belongs to the other side of the triangle.
-    logic [3*LIT_BITS-1:0] lit;
+    // Light is selected by `swap` where it is used, in setup_light.
+    logic [LIT_BITS-1:0] lit;
 
     if (SMOOTH) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
         logic [3*LIGHT_BITS-1:0] first_light, last_light;
 
-        for (genvar i = 0; i < 3; i++) begin : vertices
-            localparam int unsigned OTHER = i == 0 ? 0 : 3 - i;
-            triangle_pkg::light_t vertex;
-
-            assign vertex = swap ? last_light[LIGHT_BITS * OTHER +: LIGHT_BITS] : last_light[LIGHT_BITS * i +: LIGHT_BITS];
-            assign lit[LIT_BITS * i +: LIT_BITS] = vertex.back != front ? {vertex.red, vertex.green, vertex.blue} : '0;
-        end
+        assign lit = {swap, last_light};
 
         always_ff @(posedge clk) begin
             if (in_ready)      first_light <= in_light;
@@ -290,7 +284,7 @@ module cull #(
     assign pop       = out_valid && out_ready || skip;
 
     // `room` tells of an item before the next triangle can move in, so at most the two triangles in the stages follow it.
-    pipeline_fifo #(.WIDTH($bits(oriented) + 3 * LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
+    pipeline_fifo #(.WIDTH($bits(oriented) + LIT_BITS), .DEPTH(PLACES), .FLIGHT(2), .BLOCK(1'b1)) queue (
         .clk, .rst, .idle(queue_idle), .room, .in_valid(kept), .in_data({lit, oriented}),
         .out_valid(queued), .out_ready(pop), .out_data({out_lit, out_triangle})
     );

@@ -35,7 +35,7 @@ module setup #(
     parameter bit [3:0] LAST = 4'd10,
     parameter bit SMOOTH = 1'b0,
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1,
-    localparam int unsigned LIT_BITS    = SMOOTH ? 40 : 1,
+    localparam int unsigned LIT_BITS    = SMOOTH ? 1 + 3 * 41 : 1,
     localparam int unsigned PLANES_BITS = SMOOTH ? 289 : 1
 ) (
     input  wire              clk,
@@ -87,7 +87,7 @@ module setup #(
     assign beat_comes = ending && light_ends && !waits;
 
     setup_pkg::oriented_t     first;
-    logic [2:0][LIT_BITS-1:0] first_lit;
+    logic [LIT_BITS-1:0]      first_lit;
     logic                     first_valid, cull_busy;
 
     cull #(.SMOOTH(SMOOTH)) cull_stage (
@@ -243,9 +243,7 @@ module setup #(
     // used.
     if (SMOOTH) begin : light
         // The following signals are vectors, because Yosys does not support arrays here.
-        logic [3*LIT_BITS-1:0] lit_1;
-        logic [3*24-1:0]       p0;
-        logic [3*25-1:0]       p10, p20;
+        logic [LIT_BITS-1:0]   lit_1;
         logic [3*96-1:0]       planes, planes_4;
         logic [3:0]            light_count;
         logic [1:0]            round;
@@ -272,23 +270,16 @@ module setup #(
             end
         end
 
-        wide_register #(.WIDTH(3 * LIT_BITS)) lit_stage (.clk, .next(beat_comes), .in(first_lit), .out(lit_1));
-
-        setup_light products (
-            .clk, .enable, .beat, .count, .next_w0(first.w0), .w10(~t.not_w10), .w20(~t.not_w20), .lit(lit_1), .p0, .p10, .p20
-        );
+        wide_register #(.WIDTH(LIT_BITS)) lit_stage (.clk, .next(beat_comes), .in(first_lit), .out(lit_1));
 
         // The channel whose normal this round computes.
         logic [24:0] w10, w20;
         logic [23:0] value;
 
-        always_comb begin
-            unique case (round)
-                2'd0:    {value, w20, w10} = {p0[0 +: 24], p20[0 +: 25], p10[0 +: 25]};
-                2'd1:    {value, w20, w10} = {p0[24 +: 24], p20[25 +: 25], p10[25 +: 25]};
-                default: {value, w20, w10} = {p0[48 +: 24], p20[50 +: 25], p10[50 +: 25]};
-            endcase
-        end
+        setup_light products (
+            .clk, .count(light_count), .round, .next(round_comes), .w0(origin_1.w0), .w10(~t.not_w10), .w20(~t.not_w20),
+            .front(t.front), .swap(lit_1[LIT_BITS-1]), .lights(lit_1[LIT_BITS-2:0]), .value, .p10(w10), .p20(w20)
+        );
 
         // The gradients of a triangle are computed from round 1 on, and its starts from round 2 on, for three rounds each.
         (* keep *) logic [23:0] value_3, value_4;
