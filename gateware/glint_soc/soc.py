@@ -47,6 +47,8 @@ class GlintSoC(SoCCore):
     """
 
     csr_map = CSR_MAP
+    default_blocks = frozenset(OPTIONAL_BLOCKS)
+    """The optional accelerators of a build that names none."""
 
     def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ,
                  mode=CEA_1280X720):

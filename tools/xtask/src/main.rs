@@ -42,7 +42,7 @@ enum Task {
         /// Frequency of the system clock, a multiple of 0.25 [default: 81.25; 40 for the ulx3s]
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
-        /// Optional blocks of the build [default: all]
+        /// Optional blocks of the build [default: all; all but the raymarcher for the ulx3s]
         #[arg(long, value_enum, value_delimiter = ',', num_args = 1..)]
         blocks: Vec<gateware::Block>,
         /// Also build a second library of the virtual board, which writes waveforms
