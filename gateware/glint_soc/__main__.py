@@ -10,19 +10,19 @@ from litex.soc.integration import export
 from litex.soc.integration.builder import Builder
 
 from . import description, packages, register_map
-from .raymarch import BUILDS
+from .raymarch import build
 from .register_map import OPTIONAL_BLOCKS
 
 
-def make_soc(board, build_id, blocks=None, **options):
-    """Returns the SoC of `board`, not yet finalized, with `blocks` or else those that the board has by default."""
+def make_soc(board, build_id, blocks, **options):
+    """Returns the SoC of `board`, not yet finalized."""
     if board == "virtual":
         from .virtual import VirtualSoC as BoardSoC
     elif board == "urbana":
         from .urbana import UrbanaSoC as BoardSoC
     else:
         from .ulx3s import Ulx3sSoC as BoardSoC
-    return BoardSoC(build_id, BoardSoC.default_blocks if blocks is None else blocks, **options)
+    return BoardSoC(build_id, blocks, **options)
 
 
 def main():
@@ -30,11 +30,12 @@ def main():
     parser = argparse.ArgumentParser(prog="python -m glint_soc", description=__doc__)
     parser.add_argument("--board", choices=["virtual", "urbana", "ulx3s"], required=True)
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")
-    parser.add_argument("--blocks", nargs="*", choices=sorted(OPTIONAL_BLOCKS),
-                        help="optional blocks of this build (default: all; for the ulx3s: all but raymarch)")
+    parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
+                        help="optional blocks of this build (default: all)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
-    parser.add_argument("--fields", choices=list(BUILDS),
-                        help="build of the raymarcher (default: all; for a board with an FPGA: faces)")
+    parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
+                                         "an FPGA: faces)")
+    parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
     parser.add_argument("--clock", type=float, metavar="MHZ",
                         help="frequency of the system clock, a multiple of 0.25 (default: the board's)")
     arguments = parser.parse_args()
@@ -45,14 +46,17 @@ def main():
     # LiteX asks git for LiteX's own version. Without this limit it would get the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
-    full = make_soc("virtual", 0)
+    full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
     full.finalize()
     build_id = register_map.build_id(full)
     for path in packages.stale(full):
         parser.error(f"{path} differs from the descriptions: `{packages.WRITER}` writes it")
 
-    options = {"smooth": arguments.smooth,
-               "fields": BUILDS[arguments.fields or ("all" if arguments.board == "virtual" else "faces")]}
+    try:
+        fields = build(arguments.fields or ("all" if arguments.board == "virtual" else "faces"), arguments.lanes)
+    except ValueError as error:
+        parser.error(error)
+    options = {"smooth": arguments.smooth, "fields": fields}
     if arguments.clock:
         options["sys_clk_freq"] = arguments.clock * 1e6
     soc = make_soc(arguments.board, build_id, arguments.blocks, **options)

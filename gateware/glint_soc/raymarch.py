@@ -1,6 +1,6 @@
 """The raymarcher: draws distance fields into the bands of the triangle engine. rtl/raymarch implements it."""
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import reduce
 from operator import or_
 
@@ -51,6 +51,33 @@ BUILDS = {
     "sponge": Fields(lanes=4, levels=4, flat=("menger",), round=False, blend=False),
 }
 """Builds of the raymarcher by name: all features; two builds with fewer features; the sponge alone, with twice as many lanes."""
+
+_FEATURES = {"spheres": "round", "fillets": "blend", "stereo": "stereo", "prepass": "prepass"}
+
+
+def build(text, lanes=None):
+    """Returns the build options that `text` names, with the number of `lanes` if it is given.
+
+    `text` is the name of one of `BUILDS`, or a list of features with commas between them: `menger:LEVELS`, the names of other flat
+    fields, `spheres`, `fillets`, `stereo`, `prepass`.
+    """
+    if text in BUILDS:
+        fields = BUILDS[text]
+    else:
+        levels, flat, features = 0, [], dict.fromkeys(_FEATURES.values(), False)
+        for name in text.split(","):
+            sponge, _, depth = name.partition(":")
+            if sponge == NAMES[0] and depth in ("1", "2", "3", "4", "5", "6"):
+                flat, levels = [sponge, *flat], int(depth)
+            elif name in NAMES[1:]:
+                flat.append(name)
+            elif name in _FEATURES:
+                features[_FEATURES[name]] = True
+            else:
+                raise ValueError(f"fields {name!r}: expected one of {', '.join(BUILDS)}, or some of {NAMES[0]}:1 to {NAMES[0]}:6, "
+                                 f"{', '.join((*NAMES[1:], *_FEATURES))}")
+        fields = Fields(levels=levels, flat=tuple(flat), **features)
+    return replace(fields, lanes=lanes) if lanes else fields
 
 
 class Raymarcher(LiteXModule):
