@@ -14,15 +14,15 @@ from .raymarch import build
 from .register_map import OPTIONAL_BLOCKS
 
 
-def make_soc(board, build_id, blocks, **options):
-    """Returns the SoC of `board`, not yet finalized."""
+def make_soc(board, build_id, blocks=None, **options):
+    """Returns the SoC of `board`, not yet finalized, with `blocks` or else those that the board has by default."""
     if board == "virtual":
         from .virtual import VirtualSoC as BoardSoC
     elif board == "urbana":
         from .urbana import UrbanaSoC as BoardSoC
     else:
         from .ulx3s import Ulx3sSoC as BoardSoC
-    return BoardSoC(build_id, blocks, **options)
+    return BoardSoC(build_id, BoardSoC.default_blocks if blocks is None else blocks, **options)
 
 
 def main():
@@ -30,8 +30,8 @@ def main():
     parser = argparse.ArgumentParser(prog="python -m glint_soc", description=__doc__)
     parser.add_argument("--board", choices=["virtual", "urbana", "ulx3s"], required=True)
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")
-    parser.add_argument("--blocks", nargs="*", default=sorted(OPTIONAL_BLOCKS), choices=sorted(OPTIONAL_BLOCKS),
-                        help="optional blocks of this build (default: all)")
+    parser.add_argument("--blocks", nargs="*", choices=sorted(OPTIONAL_BLOCKS),
+                        help="optional blocks of this build (default: all; for the ulx3s: all but raymarch)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
                                          "an FPGA: faces)")
@@ -46,7 +46,7 @@ def main():
     # LiteX asks git for LiteX's own version. Without this limit it would get the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
-    full = make_soc("virtual", 0, OPTIONAL_BLOCKS)
+    full = make_soc("virtual", 0)
     full.finalize()
     build_id = register_map.build_id(full)
     for path in packages.stale(full):
