@@ -9,7 +9,8 @@ use core::time::Duration;
 use critical_section::Mutex;
 use glint_core::colour::Rgb565;
 use glint_core::hand::{
-    Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
+    Blob, Calibrated, CalibrationError, Control, Doubt, LONGEST_GAP, Pose, Presence, Window,
+    calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};
 use glint_hal::gesture::{GestureEngine, SetUpError};
@@ -80,6 +81,8 @@ pub struct Gesture {
     watch: Option<Watch>,
     windows: [Window; 2],
     control: Control,
+    /// Low word of the time in clock cycles at which the last frame ended, unless that was longer ago than the longest gap.
+    ended: Option<u32>,
     /// The place to which the camera was moved last.
     steered: Option<Pose>,
     /// Low word of the time at which the last frame that moved the camera ended, until its picture is drawn.
@@ -100,6 +103,7 @@ impl Gesture {
             watch: None,
             windows: SKIN,
             control: Control::default(),
+            ended: None,
             steered: None,
             waiting: None,
             is_marked: false,
@@ -147,6 +151,11 @@ impl Gesture {
         }
         let counters = self.engine.counters();
         let [whole, dropped] = *frames;
+        let elapsed = |ended| cpu::cycles_low().wrapping_sub(ended);
+        let frequency = self.clock.frequency();
+        self.ended = self
+            .ended
+            .filter(|ended| frequency.short_microseconds(elapsed(*ended)) <= LONGEST_GAP);
         let are_whole = counters.frames != whole && counters.frames_dropped == dropped;
         let found = match self.sensor {
             Some(Ok(_)) if are_whole => None,
@@ -186,11 +195,16 @@ impl Gesture {
         let start = cpu::cycles_low();
         // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
         if let Some((_, statistics)) = self.engine.statistics() {
-            let age = start.wrapping_sub(ended);
-            let ended_at = cpu::cycles() - u64::from(age);
-            let time = self.clock.frequency().microseconds(ended_at);
+            // Cycles are counted modulo 2^32 here. After a pause that long, there is no last frame.
+            let gap = match self.ended.replace(ended) {
+                None => u32::MAX,
+                Some(before) => {
+                    let cycles = ended.wrapping_sub(before);
+                    self.clock.frequency().short_microseconds(cycles)
+                }
+            };
             let before = self.control.pose();
-            let _ = self.control.on_frame(time, &statistics);
+            let _ = self.control.on_frame(gap, &statistics);
             self.engine.set_gate(&self.control.setting());
             if self.control.pose() != before {
                 self.waiting = Some(ended);

@@ -140,7 +140,7 @@ impl Statistics {
     ///
     /// # Errors
     /// The frame is faulty, has too few or too many pixels of the hand's colour, or the statistics contradict themselves.
-    #[inline(never)]
+    #[inline]
     pub fn blob(&self) -> Result<Blob, Doubt> {
         if !self.is_whole {
             return Err(Doubt::Faulty);
@@ -187,6 +187,9 @@ const fn least_area(area: u32) -> u32 {
 /// quotient of 2^20 or more saturates.
 #[inline(never)]
 fn quotient(number: u32, divisor: u32) -> u32 {
+    if number < 1 << 20 {
+        return (number << 12) / divisor;
+    }
     let whole = number / divisor;
     if whole >= 1 << 20 {
         return u32::MAX;

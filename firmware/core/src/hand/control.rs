@@ -16,9 +16,9 @@ pub const RUN_MOVING: u8 = 4;
 /// The same in the smaller region around a hand at rest: the tips of fingers that are 5 pixels wide are to count.
 pub const RUN_RESTING: u8 = 3;
 /// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame.
-pub const PATIENCE: u64 = 250_000;
+pub const PATIENCE: u32 = 250_000;
 /// Longest time between two frames after which tracking goes on, in µs. It is that of [`PATIENCE`].
-pub const LONGEST_GAP: u64 = PATIENCE;
+pub const LONGEST_GAP: u32 = PATIENCE;
 /// Number of successive frames that must show a hand before it moves the camera.
 const FRAMES: u8 = 3;
 
@@ -139,8 +139,8 @@ enum State {
     Appearing(Blob, u8),
     /// The hand of the last frame.
     Tracked(Last),
-    /// Number of pixels in the last frame with the hand, 0 if it is not known, and the time of the first one without it in µs.
-    Held(u32, u64),
+    /// Number of pixels in the last frame with the hand, 0 if it is not known, and the time since the first one without it in µs.
+    Held(u32, u32),
 }
 
 /// One of azimuth, polar angle and distance.
@@ -164,18 +164,24 @@ impl Channel {
         }
     }
 
-    /// Filters the target, and lets the offsets fade with the gain `back`. One function for all channels, because the instruction
-    /// cache is small.
+    /// Filters the target with the gain `speed` of the low pass for the speed, and lets the offsets fade with the gain `back`. One
+    /// function for all channels, because the instruction cache is small.
     #[inline(never)]
-    fn steer(&mut self, target: Q4_28, tuning: &Tuning, zone: Q4_28, step: Step, back: u32) {
-        let filtered = self.filter.next(target, tuning, step);
+    fn steer(
+        &mut self,
+        target: Q4_28,
+        (tuning, zone): &(Tuning, Q4_28),
+        step: Step,
+        [speed, back]: [u32; 2],
+    ) {
+        let filtered = self.filter.next_with(target, tuning, step, speed);
         let [first, second] = self.offsets.map(Q4_28::to_bits);
         let first = towards(first, 0, back);
         let second = towards(second, first, back);
         self.offsets = [first, second].map(Q4_28::from_bits);
         self.output = self
             .zone
-            .next(filtered, zone)
+            .next(filtered, *zone)
             .saturating_add(Q4_28::from_bits(second));
     }
 }
@@ -185,8 +191,6 @@ impl Channel {
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     state: State,
-    /// Time of the last frame in µs.
-    time: Option<u64>,
     setting: Setting,
     /// What the last frame showed.
     seen: Result<Blob, Doubt>,
@@ -200,7 +204,6 @@ impl Default for Control {
         let start = [Q4_28::ZERO, Q4_28::lit("0.25"), Q4_28::lit("3.5")];
         Self {
             state: State::Absent,
-            time: None,
             setting: Setting::SEARCHING,
             seen: Err(Doubt::Missing),
             channels: start.map(Channel::at),
@@ -243,17 +246,17 @@ impl Control {
         self.seen
     }
 
-    /// Takes the statistics of a new camera frame and its time in µs, and returns the hand that it shows.
+    /// Takes the statistics of a new camera frame, and returns the hand that it shows. `gap` is the time since the frame before in µs;
+    /// the first frame may state any.
     ///
     /// A hand appears when three frames in a row show one with enough confidence, of nearly the same area and place. The camera then
-    /// moves to it within some tenths of a second, the shorter way around; the same holds when it comes back to its region. A frame
-    /// that is not later than the last one is ignored.
+    /// moves to it within some tenths of a second, the shorter way around; the same holds when it comes back to its region.
     ///
     /// # Errors
     /// The frame does not show the hand; the camera stays.
     #[inline]
-    pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
-        self.take(time, statistics);
+    pub fn on_frame(&mut self, gap: u32, statistics: &Statistics) -> Result<Blob, Doubt> {
+        self.take(gap, statistics);
         // A caller that drops this result has no copy of it.
         self.seen
     }
@@ -261,21 +264,14 @@ impl Control {
     /// Does the work of [`on_frame`](Self::on_frame). Every frame with a hand runs all of this code, which the instruction cache has to
     /// load, so what runs rarely is in other functions.
     #[inline(never)]
-    fn take(&mut self, time: u64, statistics: &Statistics) {
+    fn take(&mut self, gap: u32, statistics: &Statistics) {
         self.seen = statistics.blob();
-        let gap = self
-            .time
-            .map_or(LONGEST_GAP, |before| time.saturating_sub(before));
-        if gap == 0 {
-            return;
-        }
-        self.time = Some(time);
         let size = statistics.size;
         let (State::Tracked(last), Ok(blob)) = (self.state, self.seen) else {
-            return self.seek(time, gap, size);
+            return self.seek(gap, size);
         };
         if gap > LONGEST_GAP || !is_like(last.count, &blob) {
-            return self.seek(time, gap, size);
+            return self.seek(gap, size);
         }
         self.state = State::Tracked(Last {
             count: blob.count,
@@ -291,26 +287,24 @@ impl Control {
         } else {
             Setting::moving(&blob.bounds, size)
         };
-        // The gap is at most `LONGEST_GAP`.
-        self.steer(target(&blob, size), Step::new(gap as u32));
+        self.steer(target(&blob, size), Step::new(gap));
     }
 
-    /// Takes a frame that does not simply go on with a tracked hand, `gap` µs after the last one.
+    /// Takes a frame that does not simply go on with a tracked hand, `gap` µs after the frame before.
     #[cold]
     #[inline(never)]
-    fn seek(&mut self, time: u64, gap: u64, size: [u16; 2]) {
-        let waited = match self.state {
-            State::Held(_, since) => time.saturating_sub(since),
-            _ => gap,
-        };
+    fn seek(&mut self, gap: u32, size: [u16; 2]) {
+        let mut waited = gap;
+        if let State::Held(_, since) = &mut self.state {
+            *since = since.saturating_add(gap);
+            waited = *since;
+        }
         if waited > PATIENCE && self.state != State::Absent {
             // The statistics of this frame may be those of the hand's region alone, so the search begins with the next one.
             self.search();
         }
         match self.state {
-            State::Tracked(Last { count, .. }) | State::Held(count, _) => {
-                self.hold(count, time, size);
-            }
+            State::Tracked(Last { count, .. }) | State::Held(count, _) => self.hold(count, size),
             _ => self.seen = self.appear(size),
         }
     }
@@ -342,14 +336,14 @@ impl Control {
 
     /// Waits for the hand in its region, from the first frame without it on. The region becomes larger, because a hand that began to
     /// move fast has left that of a hand at rest.
-    fn hold(&mut self, count: u32, time: u64, size: [u16; 2]) {
+    fn hold(&mut self, count: u32, size: [u16; 2]) {
         match self.seen {
             Ok(blob) if is_like(count, &blob) => return self.enter(&blob, size),
             Ok(_) => self.seen = Err(Doubt::Jump),
             Err(_) => {}
         }
         if !matches!(self.state, State::Held(..)) {
-            self.state = State::Held(count, time);
+            self.state = State::Held(count, 0);
             self.setting = Setting::moving(&self.setting.region, size);
         }
     }
@@ -377,12 +371,13 @@ impl Control {
 
     /// Moves the camera towards the place of the hand.
     fn steer(&mut self, target: [Q4_28; 3], step: Step) {
-        let back = low_pass_gain(RETURN, step);
-        let channels = self.channels.iter_mut().zip(&CHANNELS).zip(target);
-        for ((channel, (tuning, zone)), target) in channels {
-            channel.steer(target, tuning, *zone, step, back);
-        }
+        let [theta, phi, r] = target;
         let [azimuth, polar, distance] = &mut self.channels;
+        let [angle, span, back] = [ANGLE.speed_cutoff, DISTANCE.speed_cutoff, RETURN]
+            .map(|cutoff| low_pass_gain(cutoff, step));
+        azimuth.steer(theta, &CHANNELS[0], step, [angle, back]);
+        polar.steer(phi, &CHANNELS[1], step, [angle, back]);
+        distance.steer(r, &CHANNELS[2], step, [span, back]);
         azimuth.output = within_a_turn(azimuth.output);
         polar.output = polar.output.clamp(POLARS[0], POLARS[1]);
         distance.output = distance.output.clamp(DISTANCES[0], DISTANCES[1]);

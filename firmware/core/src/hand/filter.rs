@@ -73,12 +73,23 @@ impl OneEuro {
 
     /// Takes the next input, and returns the output. A speed of 128 units a second saturates.
     pub fn next(&mut self, input: Q4_28, tuning: &Tuning, step: Step) -> Q4_28 {
+        let gain = low_pass_gain(tuning.speed_cutoff, step);
+        self.next_with(input, tuning, step, gain)
+    }
+
+    /// Does the same with `gain`, that of the low pass for the speed.
+    pub(super) fn next_with(
+        &mut self,
+        input: Q4_28,
+        tuning: &Tuning,
+        step: Step,
+        gain: u32,
+    ) -> Q4_28 {
         let moved = input.saturating_sub(self.input).to_bits();
         self.input = input;
         // 28 and 12 fraction bits in the product, 24 in the speed.
         let speed = (i64::from(moved) * i64::from(step.rate)) >> 16;
         let speed = speed.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
-        let gain = low_pass_gain(tuning.speed_cutoff, step);
         self.speed = towards(self.speed, speed, gain);
         let opened =
             (u64::from(self.speed.unsigned_abs()) * u64::from(tuning.slope.to_bits())) >> 24;

@@ -106,8 +106,8 @@ fn run(console: &mut Console<SimulatedBoard>, milliseconds: u64) {
 /// Largest error of the hand's centre in pixels, and of the camera's angles in degrees and its distance while the hand moves the
 /// camera at up to four turns a second: the lag of the filters, after one camera frame.
 const MOST: [f64; 3] = [0.3, 8.0, 0.2];
-/// Largest mean number of cycles of the soft core for a camera frame. The aim is 4,000.
-const CYCLES: u32 = 6_000;
+/// Largest mean number of cycles of the soft core for a camera frame.
+const CYCLES: u32 = 4_000;
 
 /// The animation of the frames on the monitor.
 const PICTURE: &str = "../../docs/pictures/holoforge.png";

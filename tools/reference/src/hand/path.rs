@@ -78,13 +78,13 @@ pub fn record(path: Path, noise: &Noise, rate: f64, seconds: f64) -> Vec<Sample>
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let start = Drawn::new(Shape::Hand, [0.0; 2], AREA);
     let mut control = Control::default();
-    let mut frame = |number: u32, time: f64| {
+    let gap = (1e6 / rate).round() as u32;
+    let mut frame = |time: f64| {
         let place = path.at(time);
         let statistics =
             Frame::draw(&[start.moved(place)], noise, &mut random).statistics(control.setting());
-        let time = (f64::from(number) * 1e6 / rate).round() as u64;
         let blob = control
-            .on_frame(time, &statistics)
+            .on_frame(gap, &statistics)
             .expect("the hand is in the frame");
         let [theta, phi, _] = target(&blob, SIZE);
         let pose = control.pose();
@@ -96,11 +96,11 @@ pub fn record(path: Path, noise: &Noise, rate: f64, seconds: f64) -> Vec<Sample>
         }
     };
     let lead = (2.0 * rate) as u32;
-    for number in 0..lead {
-        frame(number, 0.0);
+    for _ in 0..lead {
+        frame(0.0);
     }
     let samples = (0..(seconds * rate) as u32)
-        .map(|number| frame(lead + number, f64::from(number) / rate))
+        .map(|number| frame(f64::from(number) / rate))
         .collect();
     assert_eq!(control.presence(), Presence::Tracked);
     samples
