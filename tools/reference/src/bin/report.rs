@@ -310,7 +310,7 @@ fn measure_gesture(bench: &Bench) -> Result<()> {
     let filters = gesture::filters(&recordings, &cycles);
     output.print(&filters, pages::gesture::table)?;
     write_csv(&filters, &file("gesture-filters.csv"))?;
-    let centres = gesture::centres(100, false);
+    let centres = gesture::centres(50, false);
     let targets = gesture::targets(&centres, &recordings, &cycles)?;
     write_csv(&targets, &file("gesture.csv"))?;
     write_csv(&centres, &file("gesture-centre.csv"))?;
