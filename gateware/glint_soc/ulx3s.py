@@ -70,7 +70,7 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
-    # nextpnr has found no route for the raymarcher beside the other blocks (see docs/boards.md).
+    # With the raymarcher nextpnr takes twice the time, and ends late (see docs/boards.md).
     default_blocks = GlintSoC.default_blocks - {"raymarch"}
 
     def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
