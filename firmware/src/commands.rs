@@ -37,16 +37,29 @@ pub fn execute<'l>(
     machine: &mut Machine,
     line: &'l str,
 ) -> Result<Option<Reply>, CommandError<'l>> {
-    match Command::parse(line).map_err(CommandError::Parse)? {
-        Some(command) => {
-            let reply = command.execute(machine);
-            // The options of the scene are those of all objects.
-            let Machine { models, scene, .. } = machine;
-            models
-                .objects_mut()
-                .set_options(|mesh| scene.options().subject(mesh));
-            reply.map(Some)
+    let mut reply = execute_one(machine, line)?;
+    if let Some(Reply::Lines(lines)) = reply {
+        // No line of a scene shows another scene, so there are no lines of lines.
+        for line in lines.lines() {
+            reply = execute_one(machine, line)?;
         }
-        None => Ok(None),
     }
+    Ok(reply)
+}
+
+#[inline(never)]
+fn execute_one<'l>(
+    machine: &mut Machine,
+    line: &'l str,
+) -> Result<Option<Reply>, CommandError<'l>> {
+    let Some(command) = Command::parse(line).map_err(CommandError::Parse)? else {
+        return Ok(None);
+    };
+    let reply = command.execute(machine);
+    // The options of the scene are those of all objects.
+    let Machine { models, scene, .. } = machine;
+    models
+        .objects_mut()
+        .set_options(|mesh| scene.options().subject(mesh));
+    reply.map(Some)
 }

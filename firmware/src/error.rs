@@ -15,11 +15,11 @@ use glint_hal::gesture::SetUpError;
 use glint_model::RenderError;
 
 use crate::gateware::Fallback;
-use crate::models::{FIELDS, HOLOFORGE, MAX_MESHES, NameError, RemoveError, SIMPLEGPU};
-use crate::objects::{OBJECTS, ObjectError};
+use crate::models::{MAX_MESHES, NameError, RemoveError};
+use crate::objects::ObjectError;
+use crate::scenes::{BuiltIn, DEFAULT, SCENES};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::shapes::Shapes;
-use crate::wireframe::WIREFRAME;
 
 /// Reason why a command failed. `Display` is the text after `error: `.
 #[derive(Debug)]
@@ -32,8 +32,15 @@ pub enum CommandError<'l> {
     View(ViewError),
     /// `info` has no entry of this name.
     Key(&'l str),
-    /// The name is not a model or a named field.
+    /// The name is not a mesh or a scene.
     Scene(&'l str),
+    /// The gateware lacks blocks that a scene needs.
+    Blocks {
+        /// The scene.
+        built_in: &'static BuiltIn,
+        /// The block enable bits of the gateware.
+        blocks: u32,
+    },
     /// The board has no memory or no screen for this picture size.
     Size(Size),
     /// The name is not a mesh, so it cannot be an object.
@@ -131,12 +138,17 @@ impl Display for CommandError<'_> {
             Self::Key(key) => write!(f, "info `{key}`: expected an entry, `info` lists them"),
             Self::Scene(name) => {
                 write!(f, "scene `{name}`: expected")?;
-                let fields = FIELDS.iter().map(|(name, _)| *name);
-                let mut names = Shapes::names()
-                    .chain(fields)
-                    .chain([OBJECTS, SIMPLEGPU, HOLOFORGE, WIREFRAME]);
+                let scenes = SCENES.iter().map(|scene| scene.name);
+                let mut names = Shapes::names().chain(scenes).chain([DEFAULT]);
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
+            }
+            Self::Blocks { built_in, blocks } => {
+                let name = built_in.name;
+                write!(f, "scene {name}: this gateware lacks")?;
+                let mut lacks = built_in.lacks(*blocks);
+                lacks.try_for_each(|block| write!(f, " {block}"))?;
+                write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
             }
             Self::Size(size) => write!(
                 f,
@@ -201,7 +213,7 @@ impl Display for CommandError<'_> {
             Self::Mesh(error) => write!(f, "load: not a mesh, previous meshes kept: {error}"),
             Self::Program(error) => write!(f, "program: previous scene kept: {error}"),
             Self::NoWireframe => f.write_str(
-                "press: no wireframe shown, expected `scene wireframe` or `program` first",
+                "press: no wireframe shown, expected `program` first",
             ),
             Self::Reach => {
                 f.write_str("press: the wireframe is 16 from its start, expected another key")

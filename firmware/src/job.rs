@@ -20,6 +20,8 @@ pub enum Reply {
     Done,
     /// The command is done when this job has ended.
     After(Job),
+    /// The command is done when these lines have been executed as commands.
+    Lines(&'static str),
 }
 
 /// Work that continues after a command has returned.

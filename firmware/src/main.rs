@@ -46,6 +46,7 @@ mod panic;
 mod renderer;
 mod replay;
 mod scene;
+mod scenes;
 mod selftest;
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 mod sensor;

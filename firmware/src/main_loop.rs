@@ -137,7 +137,7 @@ impl MainLoop {
         match input {
             Input::Line(line) => match commands::execute(&mut self.machine, &line) {
                 Ok(None) => self.machine.terminal.prompt(),
-                Ok(Some(Reply::Done)) => self.finish(Ok(())),
+                Ok(Some(Reply::Done | Reply::Lines(_))) => self.finish(Ok(())),
                 Ok(Some(Reply::After(job))) => self.job = Some(job),
                 Err(error) => self.finish(Err(error)),
             },

@@ -1,46 +1,22 @@
-//! Meshes, wireframe programs and named fields: the built-in ones and the uploaded ones, and the staging memory for the next upload.
+//! Meshes and wireframe programs: the built-in ones and the uploaded ones, and the staging memory for the next upload.
 
 use core::slice;
 
-use glint_core::field::{Cubes, Field, Menger, Primitive};
-use glint_core::fixed::Q32_32;
 use glint_core::mesh::{MAX_NAME, Mesh, MeshError};
 use glint_core::object::Place;
 use glint_core::regions::Region;
-use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
 use heapless::{String, Vec};
 
 use crate::arena::Arena;
-use crate::objects::{OBJECTS, ObjectError, Objects};
+use crate::objects::{ObjectError, Objects};
+use crate::scenes::{self, DEFAULT};
 use crate::shapes::{CUBE, Shapes};
-use crate::wireframe::WIREFRAME;
 
 /// Name of a mesh that is uploaded without a name.
 pub const MODEL: &str = "model";
 /// Largest number of uploaded meshes.
 pub const MAX_MESHES: usize = 16;
-
-/// Name of the scene of SimpleGPU.
-pub const SIMPLEGPU: &str = "simplegpu";
-
-/// Name of the scene that a hand turns.
-pub const HOLOFORGE: &str = "holoforge";
-
-/// Fields that the command `scene` shows, with their names.
-pub const FIELDS: [(&str, Field); 2] = [
-    (
-        "sponge-field",
-        Field::Primitive(Primitive::Menger(Menger { depth: 4 })),
-    ),
-    (
-        "cubes-field",
-        Field::Primitive(Primitive::Cubes(Cubes {
-            period: Q32_32::lit("2"),
-            half: Q32_32::lit("0.5"),
-        })),
-    ),
-];
 
 /// The name of a mesh.
 pub type Name = String<MAX_NAME>;
@@ -154,13 +130,6 @@ impl Models {
         Some(is_other)
     }
 
-    /// Shows a built-in mesh.
-    pub fn show_shape(&mut self, shape: Shape) {
-        if let Some(mesh) = self.shapes.shape(shape) {
-            self.shown = named(shape.name(), mesh);
-        }
-    }
-
     /// The objects.
     pub const fn objects(&self) -> &Objects {
         &self.objects
@@ -175,20 +144,6 @@ impl Models {
     pub fn add_object(&mut self, name: &str, place: &Place) -> Option<Result<(), ObjectError>> {
         let mesh = self.find(name)?;
         Some(self.objects.add(&named(name, mesh).name, mesh, place))
-    }
-
-    /// Adds an object with a built-in mesh.
-    ///
-    /// # Errors
-    /// The list is full.
-    pub fn add_shape(&mut self, shape: Shape, place: &Place) -> Result<(), ObjectError> {
-        match self.shapes.shape(shape) {
-            Some(mesh) => {
-                let named = named(shape.name(), mesh);
-                self.objects.add(&named.name, mesh, place)
-            }
-            None => Ok(()),
-        }
     }
 
     fn find(&mut self, name: &str) -> Option<Mesh<'static>> {
@@ -209,8 +164,7 @@ impl Models {
     /// # Errors
     /// The reason why not.
     pub fn check_name(&self, name: &str) -> Result<(), NameError> {
-        let mut fields = FIELDS.iter().map(|(name, _)| *name);
-        if [OBJECTS, SIMPLEGPU, WIREFRAME].contains(&name) || fields.any(|field| field == name) {
+        if name == DEFAULT || scenes::named(name).is_some() {
             return Err(NameError::BuiltIn);
         }
         let is_new = self.meshes.iter().all(|(named, _)| named.name != name);

@@ -12,7 +12,7 @@ use heapless::{String, Vec};
 
 use crate::arena::Arena;
 
-/// Name of the scene on the console.
+/// Text for objects in place of the name of a mesh.
 pub const OBJECTS: &str = "objects";
 
 /// Number of normals that are turned between two calls of `progress` in [`Objects::turn_normals`].
@@ -23,6 +23,8 @@ const NORMALS_A_CALL: u32 = 8;
 pub enum ObjectError {
     /// The list is full.
     Full,
+    /// The list is empty.
+    None,
     /// No object has this number.
     Number {
         /// The number.
@@ -46,6 +48,7 @@ impl Display for ObjectError {
                 f,
                 "object: expected at most {MAX_OBJECTS} objects, `object remove` removes one"
             ),
+            Self::None => f.write_str("object: no objects, expected `object add MESH` first"),
             Self::Number { number, count: 0 } => write!(
                 f,
                 "object {number}: no objects, expected `object add MESH` first"

@@ -9,7 +9,7 @@ use glint_core::picture::{Backend, Edges, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
 use glint_hal::triangle::Counters;
-use glint_model::scenes::{MeshOptions, Settings};
+use glint_model::MeshOptions;
 use glint_model::{Clip, FieldSubject, Frame, FrameStats, RenderError, Subject, WireframeSubject};
 
 use crate::gateware::{Fallback, Lack};
@@ -258,15 +258,25 @@ impl Scene {
         self.edges = edges;
     }
 
-    /// Sets camera, light and options of a built-in scene.
-    pub fn set_all(&mut self, settings: &Settings) {
-        self.set_view(settings.view);
-        self.changed |= self.options != settings.options;
-        self.options = settings.options;
-        let mut appearance = self.appearance.clone();
-        appearance.lights = [settings.lighting.light].into_iter().collect();
-        appearance.ambient = Some(settings.lighting.ambient);
-        self.set_appearance(appearance);
+    /// Sets everything except the backend as at start.
+    ///
+    /// # Errors
+    /// [`ViewError`] for the camera at start.
+    pub fn reset(&mut self) -> Result<(), ViewError> {
+        self.view = Sphere::START.view()?;
+        self.sphere = Sphere::START;
+        self.wireframe = None;
+        self.objects = false;
+        self.field = None;
+        self.with_mesh = false;
+        self.stereo = None;
+        self.appearance = Appearance::default();
+        self.prepass = false;
+        self.edges = None;
+        self.size = Size::default();
+        self.options = MeshOptions::default();
+        self.changed = true;
+        Ok(())
     }
 
     /// The camera.

@@ -3,7 +3,7 @@
 use glint_core::wireframe::{Debouncer, Key, Requests};
 use glint_hal::timer::Clock;
 
-/// Name of the scene on the console.
+/// Text for a wireframe program in place of the name of a mesh.
 pub const WIREFRAME: &str = "wireframe";
 
 /// Switch 0: the arrows rotate instead of pan.

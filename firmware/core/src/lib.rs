@@ -11,6 +11,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod appearance;
+pub mod block;
 pub mod calibration;
 pub mod camera;
 pub mod choice;

@@ -20,8 +20,8 @@ mod frame_buffer;
 pub mod gesture;
 pub mod line;
 pub mod mesh_in_field;
+mod options;
 pub mod raymarch;
-pub mod scenes;
 pub mod triangle;
 pub mod wireframe;
 
@@ -32,6 +32,7 @@ pub use frame::{
 };
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
+pub use options::MeshOptions;
 pub use triangle::{
     Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,
     clip_exceptions, render, trace, trace_frame,

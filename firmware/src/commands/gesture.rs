@@ -49,7 +49,7 @@ impl<'l> GestureCommands<'l> for Machine {
 ///
 /// # Errors
 /// There is no image sensor, or it does not accept its set-up.
-pub fn start<'l>(gesture: &mut Gesture, size: FrameSize) -> Result<(), CommandError<'l>> {
+fn start<'l>(gesture: &mut Gesture, size: FrameSize) -> Result<(), CommandError<'l>> {
     let started = gesture.start(size);
     started.map_err(CommandError::ImageSensor).map(|_| ())
 }

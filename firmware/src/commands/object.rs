@@ -5,6 +5,7 @@ use glint_core::console::{ObjectAction, ObjectCommands};
 use crate::error::CommandError;
 use crate::job::{Outcome, Reply};
 use crate::machine::Machine;
+use crate::objects::ObjectError;
 
 impl<'l> ObjectCommands<'l> for Machine {
     fn object(&mut self, action: Option<ObjectAction<'l>>) -> Outcome<'l> {
@@ -21,6 +22,10 @@ impl<'l> ObjectCommands<'l> for Machine {
                 }
                 return Ok(Reply::Done);
             }
+            ObjectAction::Show if models.objects().all().is_empty() => {
+                return Err(CommandError::Object(ObjectError::None));
+            }
+            ObjectAction::Show => scene.show_objects(),
             ObjectAction::Add { mesh: name, place } => {
                 let added = models.add_object(name, &place);
                 let added = added.ok_or(CommandError::ObjectMesh(name))?;

@@ -3,29 +3,28 @@
 use glint_core::choice::switch_name;
 use glint_core::console::SceneCommands;
 use glint_core::field::Field;
-use glint_core::image_sensor::FrameSize;
-use glint_core::picture::Size;
 use glint_core::stereo::Stereo;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
-use glint_model::scenes::{self, Settings};
 
-use super::{gesture, upload};
+use super::upload;
 use crate::error::CommandError;
 use crate::format::OrOff;
 use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::{FIELDS, HOLOFORGE, MAX_MESHES, MODEL, SIMPLEGPU};
-use crate::objects::OBJECTS;
-use crate::wireframe::WIREFRAME;
+use crate::models::{MAX_MESHES, MODEL};
+use crate::scenes::{self, BuiltIn, DEFAULT, SCENES};
+use crate::shapes::CUBE;
 
 impl<'l> SceneCommands<'l> for Machine {
     fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
         match name {
-            Some(name) => show(self, name)?,
-            None => list(self),
+            Some(name) => show(self, name),
+            None => {
+                list(self);
+                Ok(Reply::Done)
+            }
         }
-        Ok(Reply::Done)
     }
 
     fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> Outcome<'l> {
@@ -80,7 +79,11 @@ impl<'l> SceneCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn program(&mut self, upload: Manifest) -> Outcome<'l> {
+    fn program(&mut self, upload: Option<Manifest>) -> Outcome<'l> {
+        let Some(upload) = upload else {
+            self.scene.show_wireframe();
+            return Ok(Reply::Done);
+        };
         upload::receive(self, "program", upload)?;
         let length = upload.length as usize;
         let accepted = self.models.accept_program(length);
@@ -142,78 +145,60 @@ fn list(machine: &mut Machine) {
         scene,
         ..
     } = machine;
-    let (wireframe, objects) = (scene.shows_wireframe(), scene.shows_objects());
-    let instead = wireframe || objects;
-    let field = scene.field();
+    let shows_mesh = !scene.shows_wireframe()
+        && !scene.shows_objects()
+        && (scene.field().is_none() || scene.with_mesh());
     let mut print = |name: &str| {
-        let shown = !instead && (field.is_none() || scene.with_mesh()) && name == models.shown();
-        let state = if shown { "shown" } else { "there" };
+        let state = if shows_mesh && name == models.shown() {
+            "shown"
+        } else {
+            "there"
+        };
         terminal.print(format_args!("scene {name} {state}\n"));
     };
     models.built_in().for_each(&mut print);
     models.uploads().for_each(|(name, _)| print(name));
-    for (name, named) in FIELDS {
-        let shown = !instead && field == Some(&named);
-        let state = if shown { "shown" } else { "there" };
-        terminal.print(format_args!("scene {name} {state}\n"));
+    for BuiltIn { name, .. } in &SCENES {
+        terminal.print(format_args!("scene {name} there\n"));
     }
-    let state = if objects { "shown" } else { "there" };
-    terminal.print(format_args!(
-        "scene {OBJECTS} {state}\nscene {SIMPLEGPU} there\nscene {HOLOFORGE} there\n"
-    ));
-    let state = if wireframe { "shown" } else { "there" };
-    terminal.print(format_args!("scene {WIREFRAME} {state}\n"));
+    terminal.print(format_args!("scene {DEFAULT} there\n"));
 }
 
-fn show<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
-    let Machine { models, scene, .. } = machine;
-    if name == WIREFRAME {
-        scene.show_wireframe();
-        return Ok(());
+/// Shows a mesh; the scene at start; or a built-in scene, whose lines follow on the scene at start.
+fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
+    let Machine {
+        models,
+        scene,
+        imu,
+        gesture,
+        identity,
+        ..
+    } = machine;
+    let built_in = scenes::named(name);
+    if let Some(built_in) = built_in
+        && built_in.lacks(identity.blocks).next().is_some()
+    {
+        let blocks = identity.blocks;
+        return Err(CommandError::Blocks { built_in, blocks });
     }
-    if name == OBJECTS {
-        if models.objects().all().is_empty() {
-            let settings = Settings::objects().map_err(CommandError::View)?;
-            for (shape, place) in scenes::objects() {
-                let added = models.add_shape(shape, &place);
-                added.map_err(CommandError::Object)?;
-            }
-            scene.set_all(&settings);
+    if built_in.is_some() || name == DEFAULT {
+        imu.set_follow(None);
+        if let Some(gesture) = gesture {
+            gesture.stop();
         }
-        scene.show_objects();
-        return Ok(());
-    }
-    if name == SIMPLEGPU {
-        let settings = Settings::simplegpu().map_err(CommandError::View)?;
-        models.show_shape(scenes::SIMPLEGPU);
-        scene.set_all(&settings);
-        scene.set_field(None);
-        scene.touch();
-        return Ok(());
-    }
-    if name == HOLOFORGE {
-        // The uploaded mesh, or the one that was shown last.
-        let is_other = models.show(MODEL).unwrap_or(false);
-        scene.set_field(None);
-        scene.set_size(Size::W320);
-        scene.set_cull(true);
-        if is_other {
-            scene.touch();
-        }
-        let gesture = machine.gesture.as_mut().ok_or(CommandError::NoGesture)?;
-        return match gesture.sensor() {
-            Some(Ok(_)) => Ok(()),
-            _ => gesture::start(gesture, FrameSize::Qvga),
-        };
-    }
-    if let Some((_, field)) = FIELDS.iter().find(|(field, _)| *field == name) {
-        scene.set_field(Some(*field));
-        return Ok(());
+        let removed = models.objects_mut().remove(None);
+        removed.map_err(CommandError::Object)?;
+        scene.reset().map_err(CommandError::View)?;
+        models.show(CUBE);
+        return Ok(match built_in {
+            Some(built_in) => Reply::Lines(built_in.lines),
+            None => Reply::Done,
+        });
     }
     let is_other = models.show(name).ok_or(CommandError::Scene(name))?;
     scene.set_field(None);
     if is_other {
         scene.touch();
     }
-    Ok(())
+    Ok(Reply::Done)
 }

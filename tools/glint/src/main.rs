@@ -5,6 +5,7 @@ mod cli;
 
 use clap::Parser;
 use glint::error::{FormatError, InputError};
+use glint_scene::SceneError;
 use std::process::ExitCode;
 
 /// Exit code for bad input; clap uses it for a bad command line too.
@@ -16,9 +17,9 @@ fn main() -> ExitCode {
     let Err(error) = cli::Arguments::parse().run() else {
         return ExitCode::SUCCESS;
     };
-    let bad_input = error
-        .chain()
-        .any(|cause| cause.is::<InputError>() || cause.is::<FormatError>());
+    let bad_input = error.chain().any(|cause| {
+        cause.is::<InputError>() || cause.is::<FormatError>() || cause.is::<SceneError>()
+    });
     // The error is printed on one line, even if the message of an operating system or board has several.
     eprintln!(
         "error: {}",

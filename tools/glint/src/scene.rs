@@ -1,123 +1,263 @@
-//! The built-in scenes, which the firmware has too.
+//! Frames of scene files, as the console commands of the scene make them on a board.
 
+use crate::convert::Options;
+use crate::error::InputError;
+use crate::model;
+use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
+use glint_core::console::{Command, ObjectAction};
+use glint_core::field::Field;
+use glint_core::fixed::{Q32_32, Turns};
+use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::Mesh;
-use glint_core::picture::Size;
+use glint_core::object::Place;
+use glint_core::picture::{Edges, Size};
 use glint_core::shape::{MAX_BYTES, Shape};
+use glint_core::stereo::Stereo;
 use glint_core::wireframe::{CUBE, Motion, Program};
-use glint_model::scenes::{self, Settings};
-use glint_model::{Frame, Object, Placement, Subject, WireframeSubject};
+use glint_model::{
+    Clip, FieldSubject, Frame, MeshOptions, Object, Placement, Subject, WireframeSubject,
+};
+use glint_scene::Scene;
 
-/// A built-in scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scene {
-    /// The 3D accelerator: five objects with Gouraud shading and a coloured light.
-    Objects,
-    /// SimpleGPU: six polygons, a field of view of 150°, clipping to the view volume and winding by the screen.
-    SimpleGpu,
-    /// The wireframe simulator: a cube.
-    Wireframe,
+/// Reason why a scene has no frame.
+pub type Error = Box<dyn std::error::Error + Send + Sync>;
+
+/// What a frame of a scene has in place of what the scene states.
+#[derive(Clone, Copy, Default)]
+pub struct Changes {
+    /// Camera.
+    pub view: Option<View>,
+    /// Shading of meshes.
+    pub shading: Option<Shading>,
+    /// Size of the picture.
+    pub size: Option<Size>,
 }
 
-/// Reason why a scene has no frame. A test makes all frames.
-pub type SceneError = Box<dyn std::error::Error + Send + Sync>;
+/// Whether boards have the mesh with this name built in.
+pub fn is_shape(name: &str) -> bool {
+    Shape::NAMES.contains(&name)
+}
 
-impl Scene {
-    /// All scenes.
-    pub const ALL: [Self; 3] = [Self::Objects, Self::SimpleGpu, Self::Wireframe];
-
-    /// The name on the board's console and on the command line.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Objects => "objects",
-            Self::SimpleGpu => "simplegpu",
-            Self::Wireframe => "wireframe",
+/// The mesh of a scene by its name: that of a shape which boards have built in, or of a file or generator.
+///
+/// # Errors
+/// As [`model::load`].
+pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
+    match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
+        Some(shape) => {
+            let mut bytes = vec![0; MAX_BYTES];
+            let length = shape.write(&mut bytes).unwrap_or(0);
+            bytes.truncate(length);
+            Ok(bytes)
         }
-    }
-
-    /// Calls `draw` with the frame of the scene, seen by its camera or from `view`, with the shading of the scene or with `shading`.
-    ///
-    /// # Errors
-    /// None for the built-in scenes.
-    pub fn draw<T>(
-        self,
-        view: Option<View>,
-        shading: Option<Shading>,
-        size: Size,
-        draw: impl FnOnce(&Frame) -> T,
-    ) -> Result<T, SceneError> {
-        let mut settings = match self {
-            Self::Objects | Self::Wireframe => Settings::objects()?,
-            Self::SimpleGpu => Settings::simplegpu()?,
-        };
-        let options = &mut settings.options;
-        options.shading = shading.unwrap_or(options.shading);
-        let frame = |subject| Frame {
-            lighting: settings.lighting,
-            ..Frame::new(subject, view.unwrap_or(settings.view), size)
-        };
-        Ok(match self {
-            Self::Objects => {
-                let objects: Vec<_> = scenes::objects().collect();
-                let meshes: Vec<_> = objects.iter().map(|(shape, _)| bytes(*shape)).collect();
-                let objects = objects.iter().zip(&meshes).map(|((_, place), mesh)| {
-                    Ok(Object {
-                        subject: settings.options.subject(Mesh::new_checked(mesh)?),
-                        placement: Placement::new(place.matrix),
-                        colour: place.colour,
-                    })
-                });
-                let objects = objects.collect::<Result<Vec<_>, SceneError>>()?;
-                draw(&frame(Subject::Objects(&objects)))
-            }
-            Self::SimpleGpu => {
-                let mesh = bytes(scenes::SIMPLEGPU);
-                let subject = settings.options.subject(Mesh::new_checked(&mesh)?);
-                draw(&frame(Subject::Mesh(subject)))
-            }
-            Self::Wireframe => {
-                let program = Program::new_checked(CUBE.as_flattened())?;
-                let pose = Motion::default().pose();
-                draw(&frame(Subject::Wireframe(WireframeSubject {
-                    program,
-                    pose,
-                })))
-            }
-        })
+        None => Ok(model::load(name, Options::default())?.mesh),
     }
 }
 
-/// The mesh of a shape; empty if it were longer than every shape.
-fn bytes(shape: Shape) -> Vec<u8> {
-    let mut bytes = vec![0; MAX_BYTES];
-    let length = shape.write(&mut bytes).unwrap_or(0);
-    bytes.truncate(length);
-    bytes
+/// The state that the commands of a scene set, from the state at start on.
+struct State<'s> {
+    model: Option<&'s str>,
+    objects: Vec<(&'s str, Place)>,
+    program: bool,
+    field: Option<Field>,
+    stereo: Option<Stereo>,
+    appearance: Appearance,
+    prepass: bool,
+    edges: Option<Edges>,
+    view: View,
+    size: Size,
+    options: MeshOptions,
+}
+
+impl<'s> State<'s> {
+    fn of(scene: &'s Scene) -> Result<Self, Error> {
+        let degrees = |degrees| Turns::from_degrees(Q32_32::const_from_int(degrees));
+        let mut state = Self {
+            model: None,
+            objects: Vec::new(),
+            program: false,
+            field: None,
+            stereo: None,
+            appearance: Appearance::default(),
+            prepass: false,
+            edges: None,
+            // Every scene states its camera; this one has the default field of view and near plane.
+            view: View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?,
+            size: Size::default(),
+            options: MeshOptions::default(),
+        };
+        for command in scene.commands() {
+            state.apply(command)?;
+        }
+        Ok(state)
+    }
+
+    fn apply(&mut self, command: Command<'s>) -> Result<(), Error> {
+        let appearance = &mut self.appearance;
+        let lens = self.view;
+        match command {
+            Command::Scene { name } => self.model = name,
+            Command::Object {
+                action: Some(ObjectAction::Add { mesh, place }),
+            } => self.objects.push((mesh, place)),
+            Command::Program { .. } => self.program = true,
+            Command::Field { field } => self.field = field.flatten(),
+            Command::Stereo { eyes } => self.stereo = eyes.flatten(),
+            Command::Prepass { on } => self.prepass = on,
+            Command::Edges { edges } => self.edges = edges.flatten(),
+            Command::Size { size } => self.size = size,
+            Command::Camera { r, theta, phi } => {
+                self.view = View::spherical(r, theta, phi)?.with_lens_of(&lens);
+            }
+            Command::LookAt { view } => self.view = view.with_lens_of(&lens),
+            Command::View { view } => self.view = view.unwrap_or(lens),
+            Command::FieldOfView { angle } => self.view = lens.with_field_of_view(angle)?,
+            Command::Orthographic { width } => self.view = lens.with_width(width)?,
+            Command::Cull { on } => self.options.cull = on,
+            Command::Clip { far } => {
+                self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
+            }
+            Command::Winding { rule } => self.options.winding = rule,
+            Command::Shading { shading } => {
+                self.options.shading = shading.unwrap_or(self.options.shading);
+            }
+            Command::Material { material } => appearance.material = material.unwrap_or_default(),
+            Command::Light { light } => match light.flatten() {
+                Some(light) => {
+                    let added = appearance.lights.push(light);
+                    added.map_err(|_| format!("light: expected at most {MAX_LIGHTS} lights"))?;
+                }
+                None => appearance.lights.clear(),
+            },
+            Command::Ambient { colour } => appearance.ambient = colour.flatten(),
+            Command::Background { background } => {
+                appearance.background = background.unwrap_or_default();
+            }
+            Command::Fog { density } => {
+                appearance.fog = density.flatten().unwrap_or_default();
+            }
+            Command::Occlusion { on } => appearance.occlusion = on.unwrap_or_default(),
+            // The frame follows from its subject, and the model has no backends.
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// Names of the meshes of a scene, each once.
+pub fn meshes(scene: &Scene) -> Vec<&str> {
+    let mut names = Vec::new();
+    for command in scene.commands() {
+        let name = match command {
+            Command::Scene { name } => name,
+            Command::Object {
+                action: Some(ObjectAction::Add { mesh, .. }),
+            } => Some(mesh),
+            _ => None,
+        };
+        names.extend(name.filter(|name| !names.contains(name)));
+    }
+    names
+}
+
+/// Calls `draw` with the frame of a scene, with `changes`.
+///
+/// # Errors
+/// A mesh cannot be read, or the camera is out of range.
+pub fn draw<T>(
+    scene: &Scene,
+    changes: &Changes,
+    draw: impl FnOnce(&Frame) -> T,
+) -> Result<T, Error> {
+    let mut state = State::of(scene)?;
+    state.options.shading = changes.shading.unwrap_or(state.options.shading);
+    let options = state.options;
+    let names = meshes(scene);
+    let meshes = names.iter().map(|name| mesh(name));
+    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
+    let mesh = |name: &str| {
+        let known = names.iter().position(|known| *known == name);
+        let bytes = known.and_then(|known| meshes.get(known));
+        let bytes = bytes.map_or(&[][..], Vec::as_slice);
+        Ok::<_, Error>(options.subject(Mesh::new_checked(bytes)?))
+    };
+    let objects = state.objects.iter().map(|(name, place)| {
+        Ok(Object {
+            subject: mesh(name)?,
+            placement: Placement::new(place.matrix),
+            colour: place.colour,
+        })
+    });
+    let objects = objects.collect::<Result<Vec<_>, Error>>()?;
+    let field = state.field.as_ref().map(|field| FieldSubject {
+        field,
+        appearance: &state.appearance,
+        stereo: state.stereo,
+        prepass: state.prepass,
+    });
+    let model = state.model.map(mesh).transpose()?;
+    let subject = match (model, field, state.edges) {
+        _ if state.program => Subject::Wireframe(WireframeSubject {
+            program: Program::new_checked(CUBE.as_flattened())?,
+            pose: Motion::default().pose(),
+        }),
+        (None, None, _) => Subject::Objects(&objects),
+        (Some(mesh), Some(field), _) => Subject::MeshInField(mesh, field),
+        (None, Some(field), _) => Subject::Field(field),
+        (Some(mesh), None, Some(edges)) => Subject::edges(mesh, edges),
+        (Some(mesh), None, None) => Subject::Mesh(mesh),
+    };
+    let (view, size) = (
+        changes.view.unwrap_or(state.view),
+        changes.size.unwrap_or(state.size),
+    );
+    Ok(draw(&Frame {
+        lighting: state.appearance.mesh_lighting(),
+        ..Frame::new(subject, view, size)
+    }))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::render;
+    use glint_scene::{NAMES, built_in};
 
     #[test]
     fn every_scene_has_its_content() {
-        let stats = |scene: Scene| {
-            let drawn = scene.draw(None, None, Size::W320, |frame| {
-                render::on_model(frame).unwrap()
-            });
-            drawn.unwrap().stats
+        let stats = |name: &str| {
+            let scene = built_in(name).unwrap();
+            let changes = Changes {
+                size: Some(Size::W320),
+                ..Changes::default()
+            };
+            draw(&scene, &changes, |frame| render::on_model(frame).unwrap())
+                .unwrap()
+                .stats
         };
-        let objects = stats(Scene::Objects);
+        let objects = stats("objects");
         let counts = objects.triangles();
         assert_eq!(counts.triangles_in, 5 * 1024);
         assert!(counts.triangles_drawn > 2000, "{counts:?}");
-        let simple = stats(Scene::SimpleGpu);
+        let simple = stats("simplegpu");
         let counts = simple.triangles();
         assert_eq!((counts.triangles_in, counts.triangles_culled), (6, 0));
         assert!(counts.triangles_clipped >= 3, "{counts:?}");
-        let wireframe = stats(Scene::Wireframe).wireframe.unwrap();
+        let wireframe = stats("wireframe").wireframe.unwrap();
         assert_eq!((wireframe.segments, wireframe.lines), (12, 12));
+        let torus = stats("mesh-in-field");
+        assert!(torus.triangles().triangles_drawn > 300);
+        for name in NAMES {
+            let stats = stats(name);
+            // The picture of a field shows more than its background.
+            assert!(
+                stats
+                    .rays
+                    .is_none_or(|rays| rays.hits * 9 > rays.rays && rays.undecided == 0),
+                "{name}"
+            );
+        }
     }
 }

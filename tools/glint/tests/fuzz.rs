@@ -40,5 +40,6 @@ tests! {
     imu: Imu,
     replay: Replay,
     wireframe_text: WireframeText,
-    wireframe_words: WireframeWords
+    wireframe_words: WireframeWords,
+    scene: Scene
 }

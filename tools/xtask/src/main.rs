@@ -6,11 +6,13 @@ mod bootstrap;
 mod demo;
 mod firmware;
 mod gateware;
+mod generated;
 mod modules;
 mod pac;
 mod paths;
 mod resources;
 mod run;
+mod scenes;
 mod test;
 
 use anyhow::Result;
@@ -52,6 +54,12 @@ enum Task {
     /// Generate the register access crate and the register map from the SoC's description
     Pac {
         /// Write nothing; fail if a generated file is stale
+        #[arg(long)]
+        check: bool,
+    },
+    /// Generate the firmware's built-in scenes from the files of the folder `scenes`
+    Scenes {
+        /// Write nothing; fail if the generated file is stale
         #[arg(long)]
         check: bool,
     },
@@ -145,6 +153,7 @@ fn main() -> Result<()> {
             Ok(())
         }
         Task::Pac { check } => pac::generate(check),
+        Task::Scenes { check } => scenes::generate(check),
         Task::Firmware { board, features } => {
             let features: Vec<_> = features.iter().map(String::as_str).collect();
             firmware::build(board, &features).map(|_| ())

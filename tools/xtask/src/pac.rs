@@ -14,9 +14,9 @@ mod soc;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 
-use crate::paths;
+use crate::{generated, paths};
 use soc::Soc;
 
 /// Generates `firmware/litex-pac/src/generated.rs`, `firmware/core/src/machine.rs` and `docs/registers.md` from the virtual board's SoC.
@@ -37,20 +37,7 @@ pub fn generate(check: bool) -> Result<()> {
         ("firmware/core/src/machine.rs", machine::print(&soc.machine)),
         ("docs/registers.md", markdown::print(&soc)),
     ];
-    for (path, text) in &outputs {
-        let absolute = paths::root().join(path);
-        if check {
-            let committed = read(&absolute)?;
-            if let Some(difference) = first_difference(&committed, text) {
-                bail!("{path} is stale: {difference}; run `cargo xtask pac` and commit the files");
-            }
-        } else {
-            fs::write(&absolute, text)
-                .with_context(|| format!("writing {}", absolute.display()))?;
-            println!("wrote {path}");
-        }
-    }
-    Ok(())
+    generated::write(&outputs, "cargo xtask pac", check)
 }
 
 fn read(path: &Path) -> Result<String> {
@@ -60,51 +47,4 @@ fn read(path: &Path) -> Result<String> {
             path.display()
         )
     })
-}
-
-/// Describes the first line in which the text `have` differs from `want`; `None` when they are equal.
-fn first_difference(have: &str, want: &str) -> Option<String> {
-    if have == want {
-        return None;
-    }
-    let (mut have, mut want) = (have.lines(), want.lines());
-    let mut line = 1;
-    loop {
-        match (have.next(), want.next()) {
-            (Some(a), Some(b)) if a == b => line += 1,
-            (None, None) => return Some("it differs in its line ends".to_owned()),
-            (a, b) => {
-                let shown = |side: Option<&str>| {
-                    side.map_or("the end".to_owned(), |text| format!("`{text}`"))
-                };
-                return Some(format!(
-                    "line {line} is {}, expected {}",
-                    shown(a),
-                    shown(b)
-                ));
-            }
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::first_difference;
-
-    #[test]
-    fn names_the_first_line_that_differs() {
-        assert_eq!(first_difference("a\nb\n", "a\nb\n"), None);
-        assert_eq!(
-            first_difference("a\nb\n", "a\nc\n").unwrap(),
-            "line 2 is `b`, expected `c`"
-        );
-        assert_eq!(
-            first_difference("a\n", "a\nc\n").unwrap(),
-            "line 2 is the end, expected `c`"
-        );
-        assert_eq!(
-            first_difference("a", "a\n").unwrap(),
-            "it differs in its line ends"
-        );
-    }
 }

@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board};
-use crate::{bootstrap, firmware, modules, pac, paths, resources, run};
+use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -39,6 +39,7 @@ pub fn test() -> Result<()> {
         firmware::build(Board::Virtual, &[])?;
         firmware::build(Board::Virtual, &["peers"])?;
         results.add(pac::generate(true).map(|()| 1));
+        results.add(scenes::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
         results.add(cargo(

@@ -39,11 +39,11 @@ commands! {
 
     /// Commands of the scene: mesh, field and wireframe.
     SceneCommands {
-        scene Scene(name: Option<Name>): "list the scenes, or show one";
+        scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on";
         load Load(upload: Upload, name: Option<MeshName>): "upload a mesh (binary) under a name (default model) and show it";
         models Models(): "list the meshes and the memory for uploads";
         unload Unload(name: MeshName): "remove an uploaded mesh";
-        program Program(upload: Upload): "upload a wireframe program (binary) and show it";
+        program Program(upload: Option<Upload>): "upload a wireframe program (binary) and show it; alone: show the last one";
         press Press(key: Key, rotate: Flag): "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
         field Field(field: Option<Or<Off, Field>>): "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>): "turn the mesh in a field on or off, or show the setting";
@@ -52,7 +52,7 @@ commands! {
 
     /// Commands of objects: several meshes in a frame, each with a place of its own.
     ObjectCommands {
-        object Object(action: Option<Object>): "list the objects, add one, change its place or colour, or remove it";
+        object Object(action: Option<Object>): "list or show the objects, add one, change its place or colour, or remove it";
     }
 
     /// Commands of a field's appearance, and of the light on meshes.

@@ -12,6 +12,8 @@ use crate::object::{MAX_OBJECTS, Operation, Place, PlaceError};
 pub enum ObjectAction<'a> {
     /// List the objects.
     List,
+    /// Show the objects.
+    Show,
     /// Add an object at the end of the list.
     Add {
         /// Name of the mesh.
@@ -34,6 +36,7 @@ pub enum ObjectAction<'a> {
 #[derive(Clone, Copy)]
 enum Action {
     List,
+    Show,
     Add,
     Move,
     Rotate,
@@ -45,6 +48,7 @@ enum Action {
 
 choices!(Action {
     List: "list",
+    Show: "show",
     Add: "add",
     Move: "move",
     Rotate: "rotate",
@@ -111,6 +115,7 @@ impl Argument for Object {
     fn read<'a>(reader: &mut Reader<'a>, _: &'static Parameter) -> Option<ObjectAction<'a>> {
         let change = match reader.read::<Action>(&ACTION)? {
             Action::List => return Some(ObjectAction::List),
+            Action::Show => return Some(ObjectAction::Show),
             Action::Add => {
                 let mesh = reader.read::<MeshName>(&MESH)?;
                 let place = Place::parse(reader.words());

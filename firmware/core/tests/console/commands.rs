@@ -326,12 +326,13 @@ fn every_command_is_understood() {
     assert_parses(
         "program 256 0123abcd",
         Command::Program {
-            upload: Manifest {
+            upload: Some(Manifest {
                 length: 256,
                 crc32: 0x0123_ABCD,
-            },
+            }),
         },
     );
+    assert_parses("program", Command::Program { upload: None });
     assert_parses(
         "press up",
         Command::Press {

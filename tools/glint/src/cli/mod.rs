@@ -8,6 +8,7 @@ mod flash;
 mod gesture;
 mod imu;
 mod render;
+mod scene;
 mod terminal;
 mod wireframe;
 
@@ -39,6 +40,8 @@ enum Command {
     #[command(subcommand)]
     Gesture(gesture::GestureCommand),
     #[command(subcommand)]
+    Scene(scene::SceneCommand),
+    #[command(subcommand)]
     Wireframe(wireframe::WireframeCommand),
 }
 
@@ -55,6 +58,7 @@ impl Arguments {
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
             Command::Gesture(command) => command.run(),
+            Command::Scene(command) => command.run(),
             Command::Wireframe(command) => command.run(),
         }
     }

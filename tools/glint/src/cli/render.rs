@@ -16,7 +16,7 @@ use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
     Renderer, Route, Stats, Subject,
 };
-use glint::scene::Scene;
+use glint::scene::{self, Changes};
 use glint::transfer::Progress;
 use glint::view;
 use glint_core::camera::View;
@@ -26,6 +26,7 @@ use glint_core::matrix::Matrix;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::picture::{Backend, Edges, Size};
 use glint_model::{Clip, MAX_EYE, Object, Placement, RenderError};
+use glint_scene::Scene;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -37,10 +38,10 @@ pub struct RenderArguments {
     /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
     #[arg(required_unless_present_any = ["field", "object", "scene"])]
     model: Option<String>,
-    /// A built-in scene: `objects` (the 3D accelerator: five objects with Gouraud shading), `simplegpu` (six polygons, clipped, with a
-    /// field of view of 150 degrees) or `wireframe` (the wireframe simulator's cube). It has a camera of its own.
-    #[arg(long, value_parser = named(Scene::ALL, Scene::name), conflicts_with_all = ["model", "field", "object"])]
-    scene: Option<Scene>,
+    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md). It states camera and size, which the
+    /// options of the camera and --size replace.
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = ["model", "field", "object"])]
+    scene: Option<String>,
     /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
     /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with = "field")]
@@ -87,9 +88,9 @@ pub struct RenderArguments {
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
-    /// Size of the picture: 320x180, 640x360 or 1280x720.
-    #[arg(long, value_name = "WxH", default_value = "320x180")]
-    size: String,
+    /// Size of the picture: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
     /// Picture file to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
@@ -160,13 +161,22 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let size = size(&self.size)?;
-        if let Some(scene) = self.scene {
-            let has_camera = self.camera.is_some() || self.look_at.is_some() || self.view.is_some();
-            let view = has_camera.then(|| self.camera()).transpose()?;
-            let drawn = scene.draw(view, None, size, |frame| self.write(frame));
-            return drawn.map_err(|error| anyhow::anyhow!(error))?;
+        let size = self.size.as_deref().map(size).transpose()?;
+        if let Some(name) = &self.scene {
+            let scene = glint_scene::read(name)?;
+            let has_camera = self.camera.is_some()
+                || self.look_at.is_some()
+                || self.look.is_some()
+                || self.view.is_some();
+            let changes = Changes {
+                view: has_camera.then(|| self.camera()).transpose()?,
+                shading: None,
+                size,
+            };
+            let drawn = scene::draw(&scene, &changes, |frame| self.write(frame, Some(&scene)));
+            return drawn.map_err(anyhow::Error::from_boxed)?;
         }
+        let size = size.unwrap_or_default();
         let view = self.camera()?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
@@ -216,15 +226,16 @@ impl RenderArguments {
                 anyhow::bail!("expected a model, a --field, an --object or a --scene, found none")
             }
         };
-        self.write(&Frame {
+        let frame = Frame {
             lighting: appearance.mesh_lighting(),
             ..Frame::new(subject, view, size)
-        })
+        };
+        self.write(&frame, None)
     }
 
-    /// Renders a frame, and writes pictures and statistics.
-    fn write(&self, frame: &Frame) -> anyhow::Result<()> {
-        let Rendered { image, stats } = self.render(frame)?;
+    /// Renders a frame, of a scene or not, and writes pictures and statistics.
+    fn write(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<()> {
+        let Rendered { image, stats } = self.render(frame, scene)?;
         write_whole(&self.out, |out| image.picture().write_png(out))?;
         if let Some(path) = &self.depth {
             let scale = frame.constants()?.depth_scale();
@@ -333,7 +344,7 @@ impl RenderArguments {
         Ok(())
     }
 
-    fn render(&self, frame: &Frame) -> anyhow::Result<Rendered> {
+    fn render(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
             self.board == VIRTUAL || self.capture == Capture::Frame,
             "--capture monitor: expected the virtual board, found --board {}",
@@ -348,14 +359,14 @@ impl RenderArguments {
             }
             ModelOrBoard::Board(BoardName::Virtual) => {
                 let mut board = self.transfer.line.virtual_board()?;
-                let mut rendered = self.render_on(&mut board, &BoardName::Virtual, frame)?;
+                let mut rendered = self.render_on(&mut board, &BoardName::Virtual, frame, scene)?;
                 if self.capture == Capture::Monitor {
                     rendered.image.colour = from_monitor(&mut board, frame.size)?;
                 }
                 Ok(rendered)
             }
             ModelOrBoard::Board(name) => {
-                self.render_on(&mut *self.transfer.line.board(name)?, name, frame)
+                self.render_on(&mut *self.transfer.line.board(name)?, name, frame, scene)
             }
         }
     }
@@ -365,10 +376,11 @@ impl RenderArguments {
         board: &mut dyn Board,
         name: &BoardName,
         frame: &Frame,
+        scene: Option<&Scene>,
     ) -> anyhow::Result<Rendered> {
         let mut renderer = BoardRenderer::new(Console::new(board))
             .with_backend(self.backend)
-            .with_scene(self.scene)
+            .with_scene(scene.cloned())
             .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
         let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;

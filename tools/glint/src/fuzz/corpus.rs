@@ -29,6 +29,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
             .iter()
             .filter_map(|text| assemble(text).ok())
             .collect(),
+        Target::Scene => texts(&glint_scene::TEXTS),
     };
     seeds
         .into_iter()

@@ -12,6 +12,7 @@ use glint_core::orientation::log as image;
 use glint_core::picture::Size;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
+use glint_scene::Scene;
 
 /// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -36,6 +37,8 @@ pub enum Target {
     WireframeText,
     /// Programs of the wireframe simulator, in the binary form.
     WireframeWords,
+    /// Scene files.
+    Scene,
 }
 
 /// Result of a target on an input.
@@ -49,7 +52,7 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -60,6 +63,7 @@ impl Target {
         Self::Replay,
         Self::WireframeText,
         Self::WireframeWords,
+        Self::Scene,
     ];
 
     /// Words with a meaning in the target's format, for the mutator to insert.
@@ -76,6 +80,20 @@ impl Target {
             Self::WireframeText => &[
                 "eye", "plane", "window", "segment", "end", "#", "\n", "-16", "15.9995", "16",
                 "0x0800",
+            ],
+            Self::Scene => &[
+                "= ",
+                "= true\n",
+                "[budget]\n",
+                "\"",
+                "[",
+                "]",
+                "field",
+                "menger:4",
+                "light",
+                "steer",
+                "scenes",
+                "\n",
             ],
             Self::Obj => &[
                 "v", "vn", "vt", "f", "usemtl", "mtllib", "newmtl", "Kd", "#", "\\\n", "1//1",
@@ -143,7 +161,12 @@ impl Target {
                     *last = Instruction::End.encode();
                 }
             }
-            Self::Console | Self::Obj | Self::Ply | Self::Imu | Self::WireframeText => {}
+            Self::Console
+            | Self::Obj
+            | Self::Ply
+            | Self::Imu
+            | Self::WireframeText
+            | Self::Scene => {}
         }
     }
 
@@ -175,6 +198,7 @@ impl Target {
             Self::Replay => run_image(input),
             Self::WireframeText => run_program(Form::Text, input),
             Self::WireframeWords => run_program(Form::Binary, input),
+            Self::Scene => run_scene(input),
         }
     }
 }
@@ -223,6 +247,20 @@ fn run_replay(entries: &[log::Entry]) {
             still: Some(u64::MAX),
             ..options
         });
+    }
+}
+
+/// Parses a scene file. Every line of an accepted one must be a command.
+fn run_scene(input: &[u8]) -> Verdict {
+    let scene = std::str::from_utf8(input).ok();
+    match scene.and_then(|text| Scene::parse("scene", "scene.toml", text).ok()) {
+        Some(scene) => {
+            let is_command = |line: &str| matches!(Command::parse(line), Ok(Some(_)));
+            assert!(scene.lines().all(is_command), "every line is a command");
+            assert!(!scene.needs().options().is_empty());
+            Verdict::Accepted
+        }
+        None => Verdict::Rejected,
     }
 }
 

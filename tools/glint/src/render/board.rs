@@ -8,13 +8,14 @@ use super::stats::{Stats, stats_of};
 use crate::board::Board;
 use crate::console::{self, Console};
 use crate::picture::Image;
-use crate::scene::Scene;
+use crate::scene;
 use crate::transfer::{self, Progress, Route};
 use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_model::{Frame, Object, Subject};
+use glint_scene::Scene;
 
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
@@ -24,7 +25,7 @@ pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
-    /// The built-in scene that is shown in place of the subjects of frames.
+    /// The scene that is shown in place of the subjects of frames.
     scene: Option<Scene>,
 }
 
@@ -47,7 +48,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { backend, ..self }
     }
 
-    /// Shows a built-in scene of the board in place of the subjects of frames, which are not uploaded; `None` uploads them.
+    /// Shows a scene in place of the subjects of frames, with their cameras and sizes; `None` shows the subjects.
     #[must_use]
     pub fn with_scene(self, scene: Option<Scene>) -> Self {
         Self { scene, ..self }
@@ -89,13 +90,12 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             self.console.command(&format!("backend {backend}"))?;
         }
         // The board draws a frame after every change, so the mesh or field, which takes the longest to draw, is set last.
-        self.console.command(&size_command(frame.size))?;
-        if let Some(scene) = self.scene {
-            // Without objects, the board makes those of the scene.
-            self.console.command("object remove all")?;
-            let scene = format!("scene {}", scene.name());
-            return self.render_after(&[&scene, &view_command(&frame.view)]);
+        if let Some(scene) = self.scene.take() {
+            let stats = self.show_scene(&scene, frame, route, progress);
+            self.scene = Some(scene);
+            return stats;
         }
+        self.console.command(&size_command(frame.size))?;
         self.console.command(&view_command(&frame.view))?;
         let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
         if has_meshes && frame.subject.field_part().is_none() {
@@ -123,6 +123,30 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         self.redraw()
+    }
+
+    /// Shows a scene with camera and size of `frame`, without what moves the camera. Meshes that boards have not built in are uploaded.
+    fn show_scene(
+        &mut self,
+        scene: &Scene,
+        frame: &Frame,
+        route: Route,
+        progress: &mut Progress,
+    ) -> Result<Stats, Error> {
+        for name in scene::meshes(scene) {
+            if !scene::is_shape(name) {
+                let mesh = scene::mesh(name)?;
+                self.upload(&mesh, Some(name), route, progress)?;
+            }
+        }
+        self.console.command("scene default")?;
+        for line in scene.settings() {
+            self.console.command(line)?;
+        }
+        let backend = self.backend.map(|backend| format!("backend {backend}"));
+        let (size, view) = (size_command(frame.size), view_command(&frame.view));
+        let last = backend.iter().chain([&size, &view]);
+        self.render_after(&last.map(String::as_str).collect::<Vec<_>>())
     }
 
     /// Shows a program of the wireframe simulator on the board in a picture of this size, plays a script of keys, one step a frame, and

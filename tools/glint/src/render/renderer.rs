@@ -3,6 +3,7 @@
 use super::stats::Stats;
 use crate::board::BoardError;
 use crate::console::ConsoleError;
+use crate::error::InputError;
 use crate::picture::Image;
 use crate::transfer::{Progress, TransferError};
 use glint_model::{Frame, RenderError};
@@ -51,6 +52,9 @@ pub enum Error {
     /// An error of the board's console.
     #[error(transparent)]
     Console(#[from] ConsoleError),
+    /// A mesh of a scene that cannot be read.
+    #[error(transparent)]
+    Input(#[from] InputError),
     /// An error of an upload or a download.
     #[error(transparent)]
     Transfer(#[from] TransferError),

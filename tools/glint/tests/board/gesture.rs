@@ -120,7 +120,9 @@ fn the_camera_follows_the_hand() {
     let mut console = console(&mut board);
     let bytes = mesh("icosphere:3");
     transfer::stage(&mut console, &bytes).unwrap();
-    transfer::upload(&mut console, &bytes, None, 1, &mut |_, _| {}).unwrap();
+    // In place of the built-in mesh of the scene.
+    let name = Some("torus");
+    transfer::upload(&mut console, &bytes, name, 1, &mut |_, _| {}).unwrap();
     let refused = console.command("scene holoforge").unwrap_err().to_string();
     assert!(refused.contains("no image sensor answers"), "{refused}");
 

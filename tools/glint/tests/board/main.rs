@@ -9,6 +9,7 @@ mod fields;
 mod gesture;
 mod meshes;
 mod objects;
+mod scenes;
 mod sensor;
 mod serial_boot;
 mod uploads;

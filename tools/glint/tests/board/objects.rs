@@ -5,9 +5,7 @@ use glint::board::{Board, SimulatedBoard};
 use glint::console::Console;
 use glint::object::Description;
 use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
-use glint::scene::Scene;
 use glint::{transfer, view};
-use glint_core::colour::Shading;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::{Object, Placement};
@@ -113,60 +111,7 @@ fn meshes_have_names_and_share_the_memory() {
     );
     // An object shows the mesh that takes the place of its own.
     transfer::upload(&mut console, &b, Some("c"), 5, quiet).unwrap();
-    console.command("scene objects").unwrap();
+    console.command("object show").unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     assert_eq!(list(&mut console).last(), Some(&free(b.len())));
-}
-
-/// The scene of the 3D accelerator in the firmware is that of the host, drawn by the gateware, whose geometry passes read copies of
-/// four meshes with turned normals. Its shading is flat here, because the soft core takes 131 million cycles to draw a smooth frame.
-#[test]
-fn the_scene_of_objects_is_the_models() {
-    let mut board = running_board();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
-    let commands = ["size 320 180", "scene objects", "shading flat"];
-    let stats = renderer.render_after(&commands).unwrap();
-    assert_eq!(stats.backend.as_deref(), Some("gateware"));
-    println!("{:?} cycles", stats.cycles);
-    assert!(stats.engine.get("cycles_geometry").unwrap() > 0);
-    let found = renderer.colour(Size::W320, Route::Memory, &mut |_, _| {});
-    let expected = Scene::Objects
-        .draw(None, Some(Shading::Flat), Size::W320, |frame| {
-            render::on_model(frame).unwrap()
-        })
-        .unwrap();
-    assert!(found.unwrap() == expected.image.colour);
-    assert_eq!(
-        stats.triangles().triangles_drawn,
-        expected.stats.triangles().triangles_drawn
-    );
-}
-
-/// The other built-in scenes of the firmware are those of the host, and are drawn as the model draws them.
-#[test]
-fn scenes_are_the_models() {
-    let mut board = running_board();
-    for scene in [Scene::SimpleGpu, Scene::Wireframe] {
-        let mut renderer = renderer(&mut board)
-            .with_route(Route::Memory)
-            .with_scene(Some(scene));
-        let parts = Parts {
-            colour: true,
-            depth: scene != Scene::Wireframe,
-        };
-        let [found, expected] = scene
-            .draw(None, None, Size::W320, |frame| {
-                let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
-                [rendered, render::on_model(frame).unwrap()]
-            })
-            .unwrap();
-        assert!(found.image.colour == expected.image.colour, "{scene:?}");
-        if parts.depth {
-            assert!(found.image.depth == expected.image.depth, "{scene:?}");
-            let counts = [&found, &expected].map(|rendered| rendered.stats.triangles());
-            let [found, expected] =
-                counts.map(|counts| (counts.triangles_in, counts.triangles_drawn));
-            assert_eq!(found, expected, "{scene:?}");
-        }
-    }
 }

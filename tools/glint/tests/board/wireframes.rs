@@ -1,6 +1,6 @@
 //! The wireframe simulator on the virtual board: buttons with bounce, switches, commands and uploads, with every frame checked.
 
-use crate::common::{address, console, renderer, running_board};
+use crate::common::{address, console, info, renderer, running_board};
 use glint::board::SimulatedBoard;
 use glint::console::{Console, ConsoleError};
 use glint::render::{Frame, Subject, WireframeSubject, on_model};
@@ -72,6 +72,7 @@ fn a_session_with_buttons() {
     let program = cube();
     let mut motion = Motion::default();
     console.command("scene wireframe").unwrap();
+    console.command("size 320 180").unwrap();
     let stats = console.command("render").unwrap();
     let start = picture(&program, &motion);
     assert!(shown(&mut console)[0] == start);
@@ -145,10 +146,7 @@ fn a_session_with_commands() {
     let console = renderer.console();
     let refused = |error: ConsoleError| error.to_string();
     let error = refused(console.command("press up").unwrap_err());
-    assert!(
-        error.contains("expected `scene wireframe` or `program` first"),
-        "{error}"
-    );
+    assert!(error.contains("expected `program` first"), "{error}");
 
     let upload = |console: &mut Console<SimulatedBoard>, bytes: &[u8]| {
         transfer::upload_for(console, "program", bytes, 3, &mut |_, _| {}, &mut |_| {})
@@ -157,12 +155,7 @@ fn a_session_with_commands() {
     let mut motion = Motion::default();
     console.command("render").unwrap();
     assert!(shown(console)[0] == picture(&program, &motion));
-    assert!(
-        console
-            .command("scene")
-            .unwrap()
-            .contains(&"scene wireframe shown".to_owned())
-    );
+    assert_eq!(info::<String>(console, "scene"), "wireframe");
     for (command, step) in [
         ("press left rotate", Key::Left.step(true)),
         ("press zoom-out", Key::ZoomOut.step(false)),
@@ -188,7 +181,7 @@ fn a_session_with_commands() {
     // Another scene ends the session, and the wireframe starts anew after it.
     console.command("scene cube").unwrap();
     assert!(console.command("press up").is_err());
-    console.command("scene wireframe").unwrap();
+    console.command("program").unwrap();
     console.command("render").unwrap();
     assert!(shown(console)[0] == picture(&program, &Motion::default()));
 }

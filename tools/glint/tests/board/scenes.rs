@@ -1,0 +1,87 @@
+//! Scenes: those in the firmware are the files of the folder `scenes`, and are drawn as the model draws them.
+
+use crate::common::{console, info, renderer, running_board};
+use glint::render::{self, Parts, Renderer, Route, size_command, view_command};
+use glint::scene::{self, Changes};
+use glint_core::colour::Shading;
+use glint_core::picture::Size;
+use glint_scene::{NAMES, Scene, built_in};
+
+/// Every scene in the firmware is the host's, drawn by the gateware, without what moves its camera. Its shading is flat here, because the
+/// soft core takes 131 million cycles to draw the smooth frame of `objects`.
+#[test]
+fn scenes_are_the_models() {
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let changes = Changes {
+        shading: Some(Shading::Flat),
+        size: Some(Size::W320),
+        ..Changes::default()
+    };
+    // The list `demo` has the lines of `holoforge`.
+    for name in NAMES.into_iter().filter(|name| *name != "demo") {
+        let scene = built_in(name).unwrap();
+        let (view, expected) = scene::draw(&scene, &changes, |frame| {
+            (frame.view, render::on_model(frame).unwrap())
+        })
+        .unwrap();
+        let show = format!("scene {name}");
+        let (size, view) = (size_command(Size::W320), view_command(&view));
+        let mut commands = vec![show.as_str(), "imu off", "shading flat", &size, &view];
+        if name == "holoforge" {
+            let error = renderer.console().command(commands.remove(0)).unwrap_err();
+            let error = error.to_string();
+            assert!(error.contains("no image sensor answers"), "{error}");
+        }
+        let stats = renderer.render_after(&commands).unwrap();
+        println!("{name}: {:?} cycles", stats.cycles);
+        assert_eq!(stats.backend.as_deref(), Some("gateware"), "{name}");
+        let found = renderer.colour(Size::W320, Route::Memory, &mut |_, _| {});
+        assert!(found.unwrap() == expected.image.colour, "{name}");
+    }
+    // The scene at start has nothing of the others.
+    let console = renderer.console();
+    console.command("scene default").unwrap();
+    assert_eq!(info::<String>(console, "scene"), "cube");
+    assert!(console.command("object list").unwrap().is_empty());
+    assert_eq!(info::<u32>(console, "size"), 320);
+}
+
+/// A scene file with a mesh that the board has not built in.
+#[test]
+fn a_scene_file_is_the_models() {
+    const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";
+    let scene = Scene::parse("a", "a.toml", FILE).unwrap();
+    let mut board = running_board();
+    let mut renderer = renderer(&mut board)
+        .with_route(Route::Memory)
+        .with_scene(Some(scene.clone()));
+    let parts = Parts {
+        colour: true,
+        depth: true,
+    };
+    let [found, expected] = scene::draw(&scene, &Changes::default(), |frame| {
+        let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
+        [rendered, render::on_model(frame).unwrap()]
+    })
+    .unwrap();
+    assert!(found.image.colour == expected.image.colour);
+    assert!(found.image.depth == expected.image.depth);
+}
+
+#[test]
+fn refused_scenes() {
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    for (command, expected) in [
+        ("scene gear", "or objects or poor-mans-vr"),
+        ("load 16 0 menger", "built-in scene, expected another name"),
+        (
+            "object show",
+            "no objects, expected `object add MESH` first",
+        ),
+    ] {
+        let error = console.command(command).unwrap_err().to_string();
+        assert!(error.contains(expected), "{command}: {error}");
+    }
+}

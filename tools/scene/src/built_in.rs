@@ -1,0 +1,25 @@
+//! The scenes of the folder `scenes`, which this program and the firmware have built in.
+
+/// Defines the built-in scenes by their names.
+macro_rules! built_in {
+    ($($name:literal),+ $(,)?) => {
+        /// Names of the built-in scenes: the files of the folder `scenes`, without their extension.
+        pub const NAMES: [&str; [$($name),+].len()] = [$($name),+];
+
+        /// The texts of the built-in scenes, in the order of their names.
+        pub const TEXTS: [&str; NAMES.len()] = [$(include_str!(concat!("../../../scenes/", $name, ".toml"))),+];
+    };
+}
+
+built_in!(
+    "cubes",
+    "demo",
+    "holoforge",
+    "menger",
+    "mesh-in-field",
+    "objects",
+    "poor-mans-vr",
+    "simplegpu",
+    "spheres",
+    "wireframe",
+);

@@ -1,0 +1,227 @@
+//! What scenes need of the gateware.
+
+use std::collections::BTreeSet;
+
+use glint_core::block::Block;
+use glint_core::colour::Shading;
+use glint_core::console::Command;
+use glint_core::field::{Field, Flat, Primitive, Solid};
+use glint_core::picture::Backend;
+use litex_pac::raymarch::Kind;
+
+use crate::scene::{Scene, Steer};
+
+/// Lanes of a raymarcher for which no scene states them.
+const LANES: u8 = 2;
+
+/// What a raymarcher must have: the options `--fields` and `--lanes` of `cargo xtask gateware`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fields {
+    /// Evaluations of the field a clock.
+    pub lanes: u8,
+    /// The largest depth of a sponge; 0 without sponges.
+    pub levels: u8,
+    /// Names of the flat fields other than the sponge.
+    pub flat: BTreeSet<&'static str>,
+    /// Spheres.
+    pub spheres: bool,
+    /// Fillets between spheres and flat fields.
+    pub fillets: bool,
+    /// Two eyes.
+    pub stereo: bool,
+    /// The prepass.
+    pub prepass: bool,
+}
+
+/// What scenes need of the gateware.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// The optional blocks.
+    pub blocks: BTreeSet<Block>,
+    /// Smooth shading in the triangle engine.
+    pub smooth: bool,
+    /// The raymarcher's features.
+    pub fields: Option<Fields>,
+}
+
+impl Scene {
+    /// What the scene needs of the gateware; a list of scenes needs what each of them needs.
+    pub fn needs(&self) -> Needs {
+        if !self.scenes().is_empty() {
+            let mut needs = Needs::of(self.scenes());
+            if let (Some(fields), Some(lanes)) = (&mut needs.fields, self.lanes) {
+                fields.lanes = lanes;
+            }
+            return needs;
+        }
+        let mut blocks = BTreeSet::from([Block::Scanout]);
+        if matches!(self.steer(), Steer::Command(command) if command.starts_with("gesture")) {
+            blocks.insert(Block::Gesture);
+        }
+        let commands: Vec<Command> = self.commands().collect();
+        let is_on_cpu = |command: &Command| {
+            matches!(
+                command,
+                Command::Backend {
+                    backend: Some(Backend::Cpu)
+                }
+            )
+        };
+        if commands.iter().any(is_on_cpu) {
+            return Needs {
+                blocks,
+                ..Needs::default()
+            };
+        }
+        let (mut smooth, mut stereo, mut prepass, mut shown) = (false, false, false, None);
+        for command in &commands {
+            match command {
+                Command::Scene { .. } | Command::Object { .. } => {
+                    blocks.insert(Block::Triangle);
+                }
+                Command::Program { .. }
+                | Command::Edges {
+                    edges: Some(Some(_)),
+                } => {
+                    blocks.extend([Block::Triangle, Block::Line]);
+                }
+                Command::Shading { shading } => smooth = *shading == Some(Shading::Smooth),
+                Command::Stereo { eyes } => stereo = matches!(eyes, Some(Some(_))),
+                Command::Prepass { on } => prepass = *on,
+                Command::Field { field } => shown = field.flatten(),
+                _ => {}
+            }
+        }
+        let fields = shown.map(|field| {
+            blocks.insert(Block::Raymarch);
+            Fields {
+                lanes: self.lanes.unwrap_or(LANES),
+                stereo,
+                prepass,
+                ..Fields::of(&field)
+            }
+        });
+        Needs {
+            blocks,
+            smooth,
+            fields,
+        }
+    }
+}
+
+impl Needs {
+    /// What all of these scenes need together. Scenes with different lanes have two.
+    pub fn of(scenes: &[Scene]) -> Self {
+        scenes
+            .iter()
+            .map(Scene::needs)
+            .reduce(Self::with)
+            .unwrap_or_default()
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            blocks: &self.blocks | &other.blocks,
+            smooth: self.smooth || other.smooth,
+            fields: match (self.fields, other.fields) {
+                (Some(one), Some(other)) => Some(one.with(&other)),
+                (one, other) => one.or(other),
+            },
+        }
+    }
+
+    /// The options of `cargo xtask gateware` for a gateware with exactly this.
+    pub fn options(&self) -> Vec<String> {
+        let mut options = vec!["--blocks".to_owned()];
+        options.extend(self.blocks.iter().map(|block| block.name().to_owned()));
+        if self.smooth {
+            options.push("--smooth".to_owned());
+        }
+        if let Some(fields) = &self.fields {
+            options.extend([
+                "--fields".to_owned(),
+                fields.names(),
+                "--lanes".to_owned(),
+                fields.lanes.to_string(),
+            ]);
+        }
+        options
+    }
+}
+
+impl Fields {
+    /// The features that a field needs, for one eye and without the prepass.
+    fn of(field: &Field) -> Self {
+        let none = Self {
+            lanes: LANES,
+            levels: 0,
+            flat: BTreeSet::new(),
+            spheres: false,
+            fillets: false,
+            stereo: false,
+            prepass: false,
+        };
+        match field {
+            Field::Primitive(primitive) => none.and(primitive),
+            Field::Union(union) => Self {
+                fillets: union.blend() != 0,
+                ..none.and(union.flat()).and(union.round())
+            },
+        }
+    }
+
+    fn and(mut self, primitive: &Primitive) -> Self {
+        match primitive.placed().solid {
+            Solid::Spheres(_) => self.spheres = true,
+            Solid::Flat(flat) => self.add(&flat),
+        }
+        self
+    }
+
+    fn add(&mut self, flat: &Flat) {
+        let constants = flat.constants();
+        match Kind::from_bits(constants.kind) {
+            Some(Kind::Menger) | None => {
+                let levels = 8 - constants.levels.leading_zeros() as u8;
+                self.levels = self.levels.max(levels);
+            }
+            Some(kind) => {
+                self.flat.insert(kind.name());
+            }
+        }
+    }
+
+    fn with(self, other: &Self) -> Self {
+        Self {
+            lanes: if self.lanes == other.lanes {
+                self.lanes
+            } else {
+                LANES
+            },
+            levels: self.levels.max(other.levels),
+            flat: &self.flat | &other.flat,
+            spheres: self.spheres || other.spheres,
+            fillets: self.fillets || other.fillets,
+            stereo: self.stereo || other.stereo,
+            prepass: self.prepass || other.prepass,
+        }
+    }
+
+    /// The value of `--fields`.
+    pub fn names(&self) -> String {
+        let mut names = Vec::new();
+        if self.levels > 0 {
+            names.push(format!("{}:{}", Kind::Menger.name(), self.levels));
+        }
+        names.extend(self.flat.iter().map(|name| (*name).to_owned()));
+        let features = [
+            ("spheres", self.spheres),
+            ("fillets", self.fillets),
+            ("stereo", self.stereo),
+            ("prepass", self.prepass),
+        ];
+        let built = features.into_iter().filter(|(_, is_built)| *is_built);
+        names.extend(built.map(|(name, _)| name.to_owned()));
+        names.join(",")
+    }
+}

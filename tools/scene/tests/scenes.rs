@@ -1,0 +1,318 @@
+//! The built-in scenes are valid, refused files have errors that name the place, and needs follow from the keys.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use glint_core::block::Block;
+use glint_scene::{NAMES, Needs, Scene, Steer, built_in, keys};
+
+fn parse(text: &str) -> Result<Scene, String> {
+    Scene::parse("a", "a.toml", text).map_err(|error| error.to_string())
+}
+
+/// The scene of a text with a title and a camera before it.
+fn with_camera(text: &str) -> Scene {
+    parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
+}
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+#[test]
+fn the_files_of_the_folder_are_built_in() {
+    let files = fs::read_dir(root().join("scenes")).unwrap();
+    let names = files.map(|file| {
+        let path = file.unwrap().path();
+        assert_eq!(path.extension().unwrap(), "toml", "{path:?}");
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let text = fs::read_to_string(&path).unwrap();
+        let scene = Scene::parse(&name, &path.display().to_string(), &text).unwrap();
+        assert!(scene.lines().count() > 0, "{name}");
+        assert!(built_in(&name).is_some(), "{name}");
+        name
+    });
+    let names: BTreeSet<String> = names.collect();
+    assert_eq!(names, NAMES.map(str::to_owned).into());
+}
+
+#[test]
+fn every_key_is_documented() {
+    let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    for key in keys() {
+        assert!(
+            page.contains(&format!("`{key}`")),
+            "docs/scenes.md has no key `{key}`"
+        );
+    }
+}
+
+#[test]
+fn the_scene_of_the_page_is_valid() {
+    let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    let (_, rest) = page.split_once("```toml\n").unwrap();
+    let (text, _) = rest.split_once("```").unwrap();
+    let scene = parse(text).unwrap();
+    let needs = scene.needs().options().join(" ");
+    assert_eq!(
+        needs,
+        "--blocks scanout raymarch --fields box,spheres --lanes 2"
+    );
+}
+
+#[test]
+fn keys_are_console_commands() {
+    let scene = with_camera(
+        "model = \"torus\"\nfield = \"box:1,1,1\"\nsize = \"640  360\"\nfog = 0.25\nocclusion = true\n\
+         light = [\"camera\", \"1,2,3\"]\nfov = 66\nsteer = \"orbit 60\"\n",
+    );
+    let lines: Vec<_> = scene.lines().collect();
+    let expected = [
+        "size 640 360",
+        "camera 3 30 60",
+        "fov 66",
+        "light camera",
+        "light 1,2,3",
+        "fog 0.25",
+        "occlusion on",
+        "scene torus",
+        "mesh on",
+        "field box:1,1,1",
+        "orbit 60",
+    ];
+    assert_eq!(lines, expected);
+    assert_eq!(scene.commands().count(), expected.len() - 1);
+    assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
+}
+
+#[test]
+fn refused_files() {
+    const MODEL: &str = "title = \"a\"\nmodel = \"cube\"\ncamera = \"3 30 60\"\n";
+    const FIELD: &str = "title = \"a\"\nfield = \"menger:4\"\ncamera = \"3 30 60\"\n";
+    const PROGRAM: &str = "title = \"a\"\nprogram = \"cube\"\n";
+    for (start, text, expected) in [
+        ("", "", "a.toml: no title: expected the key title"),
+        (
+            "",
+            "title = 3",
+            "line 1: title: `3`: expected a text in quotation marks",
+        ),
+        ("", "title = \"a", "line 1: invalid basic string"),
+        (
+            "",
+            "title = \"a\"",
+            "nothing to show: expected one of the keys model, object",
+        ),
+        (
+            "",
+            "title = \"a\"\nmodel = \"cube\"",
+            "no camera: expected one of the keys camera",
+        ),
+        (
+            MODEL,
+            "sise = \"640 360\"",
+            "line 4: `sise`: expected a key, one of title, steer",
+        ),
+        (MODEL, "model = \"cube\"", "line 4: duplicate key"),
+        (
+            MODEL,
+            "size = \"640 480\"",
+            "line 4: size = `640 480`: size: 640 x 480: expected 320 180, 640 360",
+        ),
+        (
+            MODEL,
+            "size = [\"640 360\"]",
+            "size: `[\"640 360\"]`: expected a text, a number, true or false",
+        ),
+        (MODEL, "size = \"\"", "expected a text, a number"),
+        (
+            MODEL,
+            "shading = \"gouraud\"",
+            "shading = `gouraud`: shading: flat|smooth is \"gouraud\" (column 9): expected flat or smooth",
+        ),
+        (MODEL, "cull = 2020-01-01", "cull: `2020-01-01`: expected"),
+        (
+            MODEL,
+            "cull = \"on ü\"",
+            "expected at most 640 visible ASCII",
+        ),
+        (
+            MODEL,
+            "fog = 0.1",
+            "line 4: fog: expected only beside field",
+        ),
+        (
+            MODEL,
+            "light = [\"camera\", \"1,2,3\"]",
+            "expected one light on meshes",
+        ),
+        (
+            MODEL,
+            "light = [[\"camera\"]]",
+            "light: `[\"camera\"]`: expected",
+        ),
+        (
+            MODEL,
+            "object = \"cube\"",
+            "line 2: model: expected only without object, found it in line 4",
+        ),
+        (
+            MODEL,
+            "lookat = \"1 1 1 0 0 0\"",
+            "camera: expected only without lookat",
+        ),
+        (
+            MODEL,
+            "lanes = 2",
+            "lanes: `2`: expected the key only beside field",
+        ),
+        (
+            MODEL,
+            "steer = \"buttons\"",
+            "expected buttons only beside program",
+        ),
+        (
+            MODEL,
+            "steer = \"imu off\"",
+            "steer: `\"imu off\"`: expected fixed, buttons, orbit FRAMES",
+        ),
+        (
+            MODEL,
+            "clock = -1",
+            "clock: `-1`: expected a number above 0",
+        ),
+        (MODEL, "clock = 1e999", "expected a number above 0"),
+        (
+            MODEL,
+            "[budget]\nluts = 3",
+            "line 5: budget: `luts`: expected one of lut, ff",
+        ),
+        (
+            MODEL,
+            "[budget]\nlut = \"3\"",
+            "budget.lut: `\"3\"`: expected a number above 0",
+        ),
+        (FIELD, "lanes = 3", "lanes: `3`: expected 1, 2 or 4"),
+        (FIELD, "fog = 16", "fog = `16`: fog: off|DENSITY is \"16\""),
+        (
+            FIELD,
+            "orthographic = 2",
+            "orthographic: expected only beside model or object",
+        ),
+        (
+            FIELD,
+            "edges = \"over\"",
+            "edges: expected only beside model",
+        ),
+        (
+            PROGRAM,
+            "camera = \"3 30 60\"",
+            "camera: expected only beside model or object or field",
+        ),
+        (
+            PROGRAM,
+            "steer = \"gesture on\"",
+            "expected fixed or buttons beside program",
+        ),
+        (
+            "",
+            "title = \"a\"\nprogram = \"gear\"",
+            "expected `cube`, the built-in program",
+        ),
+        (
+            "",
+            "title = \"a\"\nscenes = []",
+            "scenes: `[]`: expected at least one scene",
+        ),
+        (
+            "",
+            "title = \"a\"\nscenes = [\"demo\"]",
+            "scenes: `demo`: expected one of cubes",
+        ),
+        (
+            "",
+            "title = \"a\"\nscenes = [\"cubes\"]\nfog = 1",
+            "fog: `1`: expected no such key beside scenes",
+        ),
+    ] {
+        let error = parse(&format!("{start}{text}")).unwrap_err();
+        assert!(
+            error.starts_with("a.toml: ") && error.contains(expected),
+            "{text}: {error}"
+        );
+        assert!(!error.contains('\n'), "{error:?}");
+    }
+}
+
+#[test]
+fn needs_follow_from_the_keys() {
+    let options = |text: &str| with_camera(text).needs().options().join(" ");
+    for (text, expected) in [
+        ("model = \"cube\"", "--blocks scanout triangle"),
+        ("model = \"cube\"\nbackend = \"cpu\"", "--blocks scanout"),
+        (
+            "model = \"cube\"\nshading = \"smooth\"",
+            "--blocks scanout triangle --smooth",
+        ),
+        (
+            "model = \"cube\"\nedges = \"over\"",
+            "--blocks scanout triangle line",
+        ),
+        (
+            "model = \"cube\"\nsteer = \"gesture vga\"",
+            "--blocks scanout triangle gesture",
+        ),
+        (
+            "field = \"menger:3\"",
+            "--blocks scanout raymarch --fields menger:3 --lanes 2",
+        ),
+        (
+            "field = \"sphere:1\"\nlanes = 1",
+            "--blocks scanout raymarch --fields spheres --lanes 1",
+        ),
+        (
+            "field = \"planes:4\"\nprepass = true",
+            "--blocks scanout raymarch --fields box,prepass --lanes 2",
+        ),
+        (
+            "field = \"octahedron:1\"\nstereo = \"0.1,4\"",
+            "--blocks scanout raymarch --fields octahedron,stereo --lanes 2",
+        ),
+        (
+            "field = \"union:menger:3+sphere:1\"",
+            "--blocks scanout raymarch --fields menger:3,spheres --lanes 2",
+        ),
+        (
+            "field = \"smooth:0.3,box:1,1,0.2+sphere:1\"",
+            "--blocks scanout raymarch --fields box,spheres,fillets --lanes 2",
+        ),
+        (
+            "field = \"menger:2\"\nmodel = \"cube\"",
+            "--blocks scanout triangle raymarch --fields menger:2 --lanes 2",
+        ),
+    ] {
+        assert_eq!(options(text), expected, "{text}");
+    }
+}
+
+#[test]
+fn several_scenes_need_what_each_needs() {
+    let scenes = ["menger", "wireframe", "spheres"].map(|name| built_in(name).unwrap());
+    let needs = Needs::of(&scenes);
+    let blocks = [
+        Block::Scanout,
+        Block::Triangle,
+        Block::Raymarch,
+        Block::Line,
+    ];
+    assert_eq!(needs.blocks, blocks.into());
+    let fields = needs.fields.unwrap();
+    assert_eq!(
+        (fields.names().as_str(), fields.lanes),
+        ("menger:4,spheres,prepass", 2)
+    );
+    assert_eq!(built_in("menger").unwrap().needs().fields.unwrap().lanes, 4);
+    let demo = built_in("demo").unwrap().needs();
+    assert_eq!(demo.blocks.len(), Block::ALL.len());
+}
