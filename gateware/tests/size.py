@@ -11,9 +11,9 @@ from modules import MODULES
 from tools import BUILD, TESTS, ToolError, run_yosys
 
 SOC = "soc"
-"""Name of the whole SoC on the Urbana, as `cargo xtask gateware --board urbana` builds it: with the BIOS in its ROM."""
+"""Name of the whole SoC on the Urbana, as `cargo xtask gateware --board urbana` builds it: with the BIOS in its ROM. `soc-SCENE` is the
+build for a scene that `cargo xtask resources --scenes` makes beside it."""
 
-_SOC_FILES = BUILD.parent / "urbana" / "gateware"
 _FOLDER = BUILD.parent / "size"
 
 # For each resource, a regular expression for the names of its cells. Cells with any other name are counted per name.
@@ -50,10 +50,16 @@ def measure(name):
 
     The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
     """
-    if name == SOC:
-        return _measure("glint_urbana", urbana.synthesis_sources(_SOC_FILES), SOC, _MARKS, _SOC_FILES)
+    if is_soc(name):
+        files = BUILD.parent / f"urbana{name.removeprefix(SOC)}" / "gateware"
+        return _measure("glint_urbana", urbana.synthesis_sources(files), name, _MARKS, files)
     module, parameters = build(name)
     return _measure(module.top, module.sources, name, parameters=parameters)
+
+
+def is_soc(name):
+    """Whether this is the name of a SoC."""
+    return name == SOC or name.startswith(f"{SOC}-")
 
 
 def build(name):
@@ -79,7 +85,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
     design = netlist.Netlist.read(mapped)
     return {"yosys": stat["creator"].split(" (")[0], **resources, "path": longest_path(path.read_text()),
             **netlist.placement(design, _luts(resources), resources["carry4"]),
-            "instances": [_instance(path, kinds) for path, kinds in sorted(design.instances(is_flat_source=name == SOC).items())]}
+            "instances": [_instance(path, kinds) for path, kinds in sorted(design.instances(is_flat_source=is_soc(name)).items())]}
 
 
 def _instance(path, kinds):

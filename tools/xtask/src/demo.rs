@@ -32,8 +32,8 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     if name == "raymarch" {
-        let sponge = gateware::Fields::Sponge.name();
-        gateware::build_beside(sponge, &["--fields", sponge])?;
+        let sponge = "sponge";
+        gateware::build_beside(Board::Virtual, sponge, &["--fields", sponge])?;
         model("raymarcher")?;
     }
     if name == "gouraud" {

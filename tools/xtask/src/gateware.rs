@@ -11,8 +11,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::{Context, Result};
+use clap::builder::PossibleValuesParser;
+use glint_core::block::Block;
+use glint_scene::Needs;
 
-use crate::{paths, run};
+use crate::{paths, run, scenes};
 
 /// A board that the gateware is built for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -41,56 +44,67 @@ impl Board {
     }
 }
 
-/// The sets of distance fields that a raymarcher can be built with: `BUILDS` of `glint_soc/raymarch.py`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Fields {
-    /// Every field, with the prepass; two evaluations of the field per clock
-    All,
-    /// Sponge up to depth 4, box and spheres, without fillets and prepass; two evaluations of the field per clock
-    Round,
-    /// Sponge up to depth 4 and box, without prepass; two evaluations of the field per clock
-    Faces,
-    /// Sponge up to depth 4 only, with the prepass; four evaluations of the field per clock
-    Sponge,
+/// The options of a build on the command line of `cargo xtask gateware` and of the program `glint_soc`.
+#[derive(clap::Args)]
+pub struct Options {
+    /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all`
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "fields", "lanes", "blocks"])]
+    scene: Vec<String>,
+    /// Build the triangle engine with smooth shading
+    #[arg(long)]
+    smooth: bool,
+    /// Fields of the raymarcher: `all`, `round`, `faces` or `sponge` (docs/raymarch.md), or features with commas between them:
+    /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `fillets`, `stereo`, `prepass` [default: all; faces for a board with an FPGA]
+    #[arg(long)]
+    fields: Option<String>,
+    /// Evaluations of the field per clock: 1, 2 or 4 [default: those of the fields]
+    #[arg(long)]
+    lanes: Option<String>,
+    /// Frequency of the system clock, a multiple of 0.25 [default: 81.25; 40 for the ulx3s; that of the scenes]
+    #[arg(long, value_name = "MHZ")]
+    clock: Option<String>,
+    /// Optional blocks of the build: `scanout`, `triangle`, `raymarch` (without `triangle` the gateware draws fields alone), `line` (a
+    /// part of the triangle engine), `gesture` [default: all; all but `raymarch` for the ulx3s]
+    #[arg(long, value_parser = PossibleValuesParser::new(Block::NAMES), hide_possible_values = true, value_delimiter = ',', num_args = 1..)]
+    blocks: Vec<String>,
 }
 
-impl Fields {
-    /// Name of the set of fields on the command line of the program `glint_soc`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Round => "round",
-            Self::Faces => "faces",
-            Self::Sponge => "sponge",
+impl Options {
+    /// The options of `glint_soc`.
+    ///
+    /// # Errors
+    /// A scene cannot be read, or the scenes state different clocks.
+    pub fn arguments(&self) -> Result<Vec<String>> {
+        let mut arguments = Vec::new();
+        let mut clock = self.clock.clone();
+        if !self.scene.is_empty() {
+            let scenes = scenes::read(&self.scene)?;
+            arguments = Needs::of(&scenes).options();
+            clock = match clock {
+                None => scenes::clock(&scenes)?.map(|clock| clock.to_string()),
+                clock => clock,
+            };
         }
-    }
-}
-
-/// An optional block: `OPTIONAL_BLOCKS` of `glint_soc/register_map.py`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Block {
-    /// The scan-out
-    Scanout,
-    /// The triangle engine
-    Triangle,
-    /// The raymarcher; without the triangle engine the gateware draws fields alone
-    Raymarch,
-    /// The line engine, a part of the triangle engine
-    Line,
-    /// The gesture engine
-    Gesture,
-}
-
-impl Block {
-    /// Name on the command line of `glint_soc`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Scanout => "scanout",
-            Self::Triangle => "triangle",
-            Self::Raymarch => "raymarch",
-            Self::Line => "line",
-            Self::Gesture => "gesture",
+        if !self.blocks.is_empty() {
+            arguments.push("--blocks".to_owned());
+            arguments.extend(self.blocks.iter().cloned());
         }
+        if self.smooth {
+            arguments.push("--smooth".to_owned());
+        }
+        let values = [
+            ("--fields", &self.fields),
+            ("--lanes", &self.lanes),
+            ("--clock", &clock),
+        ];
+        for (name, value) in values {
+            arguments.extend(
+                value
+                    .iter()
+                    .flat_map(|value| [name.to_owned(), value.clone()]),
+            );
+        }
+        Ok(arguments)
     }
 }
 
@@ -116,17 +130,19 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     }
 }
 
-/// Builds the virtual board with command-line options of `glint_soc` in `target/gateware/virtual-NAME`, and leaves the standard build
-/// as it is. Returns the folder.
+/// Builds the virtual board, or generates the gateware of another board, with command-line options of `glint_soc` in
+/// `target/gateware/BOARD-NAME`, and leaves the standard build as it is. Returns the folder.
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_beside(name: &str, options: &[&str]) -> Result<PathBuf> {
-    let folder = Board::Virtual
+pub fn build_beside(board: Board, name: &str, options: &[&str]) -> Result<PathBuf> {
+    let folder = board
         .folder()
-        .with_file_name(format!("virtual-{name}"));
-    generate(Board::Virtual, &folder, options)?;
-    verilate(&folder, Waveforms::Without)?;
+        .with_file_name(format!("{}-{name}", board.name()));
+    generate(board, &folder, options)?;
+    if board == Board::Virtual {
+        verilate(&folder, Waveforms::Without)?;
+    }
     Ok(folder)
 }
 

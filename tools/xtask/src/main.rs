@@ -35,20 +35,10 @@ enum Task {
         /// Board to build for
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
-        /// Build the triangle engine with smooth shading
-        #[arg(long)]
-        smooth: bool,
-        /// Fields of the raymarcher [default: all; faces for a board with an FPGA]
-        #[arg(long, value_enum)]
-        fields: Option<gateware::Fields>,
-        /// Frequency of the system clock, a multiple of 0.25 [default: 81.25; 40 for the ulx3s]
-        #[arg(long, value_name = "MHZ")]
-        clock: Option<String>,
-        /// Optional blocks of the build [default: all; all but the raymarcher for the ulx3s]
-        #[arg(long, value_enum, value_delimiter = ',', num_args = 1..)]
-        blocks: Vec<gateware::Block>,
+        #[command(flatten)]
+        options: gateware::Options,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["smooth", "fields", "clock", "blocks"])]
+        #[arg(long, conflicts_with_all = ["scene", "smooth", "fields", "lanes", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate the register access crate and the register map from the SoC's description
@@ -100,10 +90,13 @@ enum Task {
         /// Depth of the tree
         #[arg(long, requires = "tree", default_value_t = 3)]
         depth: usize,
+        /// Measure the build of the Urbana for each built-in scene, beside the one for all scenes, and the cycles of their frames
+        #[arg(long, conflicts_with_all = ["blocks", "route", "tree", "json"])]
+        scenes: bool,
         /// Print JSON; progress goes to standard error
         #[arg(long)]
         json: bool,
-        /// Write docs/resources.md; with `--route`, both cells and clock rates
+        /// Write docs/resources.md; with `--route`, both cells and clock rates; with `--scenes`, docs/scene-builds.md
         #[arg(long, conflicts_with_all = ["blocks", "tree"])]
         write: bool,
     },
@@ -122,26 +115,11 @@ fn main() -> Result<()> {
         Task::Bootstrap => bootstrap::bootstrap(),
         Task::Gateware {
             board,
-            smooth,
-            fields,
-            clock,
-            blocks,
+            options,
             waveforms,
         } => {
-            let mut options = vec![];
-            if !blocks.is_empty() {
-                options.push("--blocks");
-                options.extend(blocks.iter().map(|block| block.name()));
-            }
-            if smooth {
-                options.push("--smooth");
-            }
-            if let Some(fields) = fields {
-                options.extend(["--fields", fields.name()]);
-            }
-            if let Some(clock) = &clock {
-                options.extend(["--clock", clock]);
-            }
+            let options = options.arguments()?;
+            let options: Vec<_> = options.iter().map(String::as_str).collect();
             if board == gateware::Board::Ulx3s {
                 // Its only tools are those of the set-up.
                 bootstrap::bootstrap()?;
@@ -167,12 +145,14 @@ fn main() -> Result<()> {
             route,
             tree,
             depth,
+            scenes,
             json,
             write,
         } => resources::resources(&resources::Options {
             blocks,
             route,
             tree: tree.then_some(depth),
+            scenes,
             json,
             write,
         }),

@@ -11,6 +11,7 @@ mod measure;
 mod number;
 mod page;
 mod route;
+mod scenes;
 mod size;
 mod table;
 
@@ -37,9 +38,11 @@ pub struct Options {
     pub route: bool,
     /// Print the sizes of the instances in the blocks, or in the SoC if none is named, down to this depth instead.
     pub tree: Option<usize>,
+    /// Measure the builds for the built-in scenes instead.
+    pub scenes: bool,
     /// Print only JSON to standard output.
     pub json: bool,
-    /// Write `docs/resources.md`.
+    /// Write `docs/resources.md`; with `scenes`, `docs/scene-builds.md`.
     pub write: bool,
 }
 
@@ -55,6 +58,9 @@ pub fn resources(options: &Options) -> Result<()> {
     let start = Instant::now();
     let budget = Budget::read()?;
     bootstrap::bootstrap()?;
+    if options.scenes {
+        return scenes::resources(options.write);
+    }
     if let Some(depth) = options.tree {
         return tree(options, depth);
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use glint_scene::{NAMES, Scene, built_in};
 
 use crate::generated;
@@ -19,6 +19,40 @@ pub fn generate(check: bool) -> Result<()> {
 /// The built-in scenes, in the order of their names.
 pub fn all() -> impl Iterator<Item = Scene> {
     NAMES.into_iter().filter_map(built_in)
+}
+
+/// The scenes with these names: built-in scenes, scene files, or `all` built-in scenes.
+///
+/// # Errors
+/// A scene cannot be read.
+pub fn read(names: &[String]) -> Result<Vec<Scene>> {
+    let mut scenes = Vec::new();
+    for name in names {
+        match name.as_str() {
+            "all" => scenes.extend(all()),
+            name => scenes.push(glint_scene::read(name)?),
+        }
+    }
+    Ok(scenes)
+}
+
+/// The frequency of the system clock in MHz that scenes state; `None` if none does.
+///
+/// # Errors
+/// Two scenes state different frequencies.
+pub fn clock(scenes: &[Scene]) -> Result<Option<f64>> {
+    let mut stated = None;
+    for scene in scenes {
+        match (stated, scene.clock()) {
+            (Some((name, one)), Some(other)) if one != other => bail!(
+                "scenes {name} and {}: clocks of {one} and {other} MHz, expected one clock",
+                scene.name()
+            ),
+            (None, Some(clock)) => stated = Some((scene.name(), clock)),
+            _ => {}
+        }
+    }
+    Ok(stated.map(|(_, clock)| clock))
 }
 
 fn table() -> String {

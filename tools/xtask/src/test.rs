@@ -78,7 +78,7 @@ pub fn test() -> Result<()> {
 /// A build or a test fails.
 pub fn test_at_clock(megahertz: &str) -> Result<()> {
     bootstrap::bootstrap()?;
-    let folder = gateware::build_beside(megahertz, &["--clock", megahertz])?;
+    let folder = gateware::build_beside(Board::Virtual, megahertz, &["--clock", megahertz])?;
     firmware::build(Board::Virtual, &[])?;
     let passed = cargo_tests(
         &["-p", "virtual-board", "-p", "glint", "--test", "board"],
