@@ -3,6 +3,7 @@
 //! The CPU backend, the gateware's driver and the host share these types. [`Frame`] is the description, [`FrameConstants`]
 //! are computed from the description once, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
 
+mod constants;
 mod edges;
 
 use glint_core::appearance::Appearance;
@@ -11,25 +12,21 @@ use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::field::Field;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
-use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::{Edges, Size};
 use glint_core::stereo::Stereo;
 
-use crate::depth::DepthScale;
 use crate::edges::EdgeStats;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
-use crate::mesh_in_field;
-use crate::raymarch::{
-    FieldOptions, FieldSetup, FieldStats, Palette, Ray, RayResult, render_field,
-};
-use crate::triangle::mesh_setup::Scale;
+use crate::raymarch::{FieldOptions, FieldStats, Ray, RayResult, render_field};
 use crate::triangle::setup::Setup;
 use crate::triangle::{
-    Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Part, Placement, Projected, Stats,
-    draw_parts, set_up_parts,
+    Clip, DrawnTriangle, MeshLight, Options, Part, Placement, Projected, Stats, draw_parts,
+    set_up_parts,
 };
 use crate::wireframe::{WireframeStats, WireframeSubject, render_wireframe};
+
+pub use constants::{FieldConstants, FrameConstants};
 
 /// Number of triangles that are drawn between two calls of `progress` in [`Frame::draw`].
 const TRIANGLES_A_CALL: u32 = 32;
@@ -70,14 +67,16 @@ pub enum Subject<'a> {
 }
 
 /// A mesh with a place in the world.
+// In this order for the reason given at the placement.
+#[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Object<'a> {
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
     /// The mesh and its options.
     pub subject: MeshSubject<'a>,
     /// The place: a model matrix.
     pub placement: Placement,
-    /// Colour in place of those of the mesh.
-    pub colour: Option<Rgb565>,
 }
 
 /// A mesh and its options.
@@ -177,19 +176,20 @@ impl<'a> Subject<'a> {
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         match self {
-            Self::Mesh(subject) | Self::MeshInField(subject, _) => {
-                (number == 0).then_some((subject, None))
-            }
-            Self::Edges(subject, edges) => {
-                let colour = (*edges == Edges::Hidden).then_some(Rgb565(0));
-                (number == 0).then_some((subject, colour))
-            }
             Self::Objects(objects) => {
                 let object = objects.get(number)?;
                 Some((&object.subject, object.colour))
             }
-            Self::Field(_) | Self::Wireframe(_) => None,
+            _ => self.coloured_part().filter(|_| number == 0),
         }
+    }
+
+    /// The mesh of a subject without objects, with the colour in place of its own ones.
+    // Not inlined, so that the function above, which the firmware calls for each object of a frame, is short and loads no table.
+    #[inline(never)]
+    fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
+        let is_hidden = matches!(self, Self::Edges(_, Edges::Hidden));
+        Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
     }
 
     /// The mesh with this number, and the options of its drawing in a light ([`FrameConstants::light`]), of which `clear` has no effect;
@@ -230,152 +230,6 @@ impl FieldSubject<'_> {
     }
 }
 
-/// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
-///
-/// The constants take about 4,000 bytes, mostly those of objects and tables of a field's palette. To save time, keep one `FrameConstants`
-/// and [update](Self::update) it for each frame instead of moving new ones.
-#[derive(Clone, Debug, Default)]
-pub struct FrameConstants {
-    mesh: Option<MeshSetup>,
-    /// Those of each object.
-    objects: [MeshSetup; MAX_OBJECTS],
-    scale: Scale,
-    light: Option<MeshLight>,
-    field: Option<FieldConstants>,
-}
-
-/// Frame constants of a field.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FieldConstants {
-    /// Constants of the rays and of the solid.
-    pub setup: FieldSetup,
-    /// Colours of surfaces, sky and fog.
-    pub palette: Palette,
-}
-
-impl FrameConstants {
-    /// Returns the constants of the mesh, or those that all objects share, if the frame has a mesh or objects.
-    pub const fn mesh(&self) -> Option<&MeshSetup> {
-        self.mesh.as_ref()
-    }
-
-    /// Returns the constants of the mesh with this number in a frame of `subject`; `None` after the last mesh.
-    pub fn numbered_mesh(&self, subject: &Subject, number: usize) -> Option<&MeshSetup> {
-        match subject.objects() {
-            Some(objects) => self.objects.get(..objects.len())?.get(number),
-            None => self.mesh().filter(|_| number == 0),
-        }
-    }
-
-    /// Returns the light on the meshes; `None` for white light at the camera, without ambient light.
-    pub const fn light(&self) -> Option<&MeshLight> {
-        self.light.as_ref()
-    }
-
-    /// Returns the constants of the field, if the frame has a field.
-    pub const fn field(&self) -> Option<&FieldConstants> {
-        self.field.as_ref()
-    }
-
-    /// The scale between depth codes and distances in world units; `None` before the first frame.
-    pub fn depth_scale(&self) -> Option<DepthScale> {
-        match (self.mesh(), self.field()) {
-            (Some(mesh), _) => Some(mesh.depth),
-            (None, Some(field)) => Some(field.setup.world_depth),
-            (None, None) => None,
-        }
-    }
-
-    /// Replaces the constants by those of `frame`.
-    ///
-    /// # Errors
-    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants.
-    pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
-        let result = self.compute(frame);
-        if result.is_err() {
-            (self.mesh, self.field) = (None, None);
-        }
-        result
-    }
-
-    fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
-        (self.light, self.field) = (None, None);
-        let (view, size) = (&frame.view, frame.size.pixels().into());
-        match &frame.subject {
-            Subject::Mesh(subject) | Subject::Edges(subject, _) => {
-                let mesh = self.mesh.get_or_insert_default();
-                mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
-                mesh.set_clip(subject.clip)?;
-            }
-            Subject::Field(subject) => {
-                self.mesh = None;
-                let options = subject.options(view);
-                let setup = FieldSetup::new(subject.field, view, size, &options)?;
-                self.set_field(setup, &options);
-            }
-            Subject::MeshInField(mesh, subject) => {
-                let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
-                let options = subject.options(view);
-                let (mesh, field) =
-                    mesh_in_field::constants(view, size, radius, subject.field, &options)?;
-                self.mesh = Some(mesh.with_clip(clip)?);
-                self.set_field(field, &options);
-            }
-            Subject::Objects(objects) => {
-                let camera = self.mesh.get_or_insert_default();
-                camera.update(view, size, 0, &mut self.scale)?;
-                camera.set_depths(depths(objects, camera));
-            }
-            Subject::Wireframe(_) => self.mesh = None,
-        }
-        let lighting = frame.mesh_lighting();
-        if let Some(mesh) = &mut self.mesh
-            && lighting != MeshLighting::CAMERA
-        {
-            let light = MeshLight::new(&lighting, view);
-            mesh.light = light.row;
-            self.light = Some(light);
-        }
-        match &frame.subject {
-            Subject::Objects(objects) => self.set_objects(objects, view),
-            _ => Ok(()),
-        }
-    }
-
-    /// Computes the constants of each object, for a camera and a light that have theirs.
-    #[inline(never)]
-    fn set_objects(&mut self, objects: &[Object], view: &View) -> Result<(), RenderError> {
-        if objects.len() > MAX_OBJECTS {
-            return Err(RenderError::Objects(objects.len()));
-        }
-        let Some(camera) = &self.mesh else {
-            return Ok(());
-        };
-        for (object, setup) in objects.iter().zip(&mut self.objects) {
-            let MeshSubject { mesh, clip, .. } = &object.subject;
-            setup.volume = camera.volume_of(*clip)?;
-            let placement = &object.placement;
-            placement.update(setup, view, camera, mesh.radius())?;
-        }
-        Ok(())
-    }
-
-    fn set_field(&mut self, setup: FieldSetup, options: &FieldOptions) {
-        let palette = options.palette_for(&setup);
-        self.field = Some(FieldConstants { setup, palette });
-    }
-}
-
-/// The smallest and the largest depth of objects, with 37 fraction bits; `None` without objects.
-#[inline(never)]
-fn depths(objects: &[Object], camera: &MeshSetup) -> Option<[i64; 2]> {
-    let depths = objects.iter().map(|object| {
-        let radius = object.subject.mesh.radius();
-        object.placement.depths(camera, radius)
-    });
-    depths.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
-}
-
 /// Counts of the work of drawing a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrameStats {
@@ -409,13 +263,14 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Computes the constants of this frame.
+    /// Computes the constants of this frame, and checks all of its objects.
     ///
     /// # Errors
-    /// As [`FrameConstants::update`].
+    /// As [`FrameConstants::update`] and [`FrameConstants::check_meshes`].
     pub fn constants(&self) -> Result<FrameConstants, RenderError> {
         let mut constants = FrameConstants::default();
         constants.update(self)?;
+        constants.check_meshes(self)?;
         Ok(constants)
     }
 
@@ -431,7 +286,7 @@ impl<'a> Frame<'a> {
         let (subject, options) = self.subject.numbered_mesh(number, constants.light())?;
         Some(Part {
             mesh: subject.mesh,
-            frame: *constants.numbered_mesh(&self.subject, number)?,
+            frame: constants.numbered_mesh(self, number).ok()??,
             options,
         })
     }

@@ -12,7 +12,9 @@ use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, Triang
 use glint_model::edges::EdgeList;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
-use glint_model::{Clip, DrawnTriangle, Frame, FrameConstants, Subject, clip_exceptions};
+use glint_model::{
+    Clip, DrawnTriangle, Frame, FrameConstants, MeshSetup, Subject, clip_exceptions,
+};
 use litex_pac::cpu;
 
 use super::buffers::Buffers;
@@ -53,6 +55,8 @@ pub struct GeometryPasses {
     /// Triangles of the meshes whose passes have ended, and number of these that were clipped and then drawn.
     triangles: u32,
     drawn_clipped: u32,
+    /// Frame constants of the object whose pass was prepared last.
+    own: MeshSetup,
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
     /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
@@ -61,12 +65,13 @@ pub struct GeometryPasses {
 
 impl GeometryPasses {
     /// Passes of an engine whose best shading is `shading`.
-    pub const fn new(shading: Shading) -> Self {
+    pub fn new(shading: Shading) -> Self {
         Self {
             shading,
             number: 0,
             triangles: 0,
             drawn_clipped: 0,
+            own: MeshSetup::default(),
             prepared: None,
             lack: None,
         }
@@ -75,6 +80,11 @@ impl GeometryPasses {
     /// The reason why the CPU makes the descriptors of the frame, if it does.
     pub const fn lack(&self) -> Option<Lack> {
         self.lack
+    }
+
+    /// Whether no further pass is prepared.
+    pub const fn is_last(&self) -> bool {
+        self.prepared.is_none()
     }
 
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
@@ -92,7 +102,7 @@ impl GeometryPasses {
         let Some((subject, colour)) = job.frame.subject.coloured_mesh(number) else {
             return Ok(());
         };
-        let setup = job.constants.numbered_mesh(&job.frame.subject, number);
+        let setup = job.constants.mesh_setup(job.frame, number, &mut self.own)?;
         let pass = Geometry {
             mesh: &subject.mesh,
             size: job.frame.size,
@@ -156,14 +166,15 @@ impl GeometryPasses {
     ///
     /// Not inlined, as few meshes have any.
     #[inline(never)]
-    fn clip(&mut self, job: &mut Job, number: usize, counts: &Counts) -> Result<(), EngineError> {
+    fn clip(&mut self, job: &mut Job, number: usize, counts: &Counts) -> Result<(), Fallback> {
         let buffers = &mut *job.buffers;
         let subject = job
             .frame
             .subject
             .numbered_mesh(number, job.constants.light());
-        let setup = job.constants.numbered_mesh(&job.frame.subject, number);
-        let ((subject, options), setup) = subject.zip(setup).ok_or(Error::Size)?;
+        let setup = job.constants.numbered_mesh(job.frame, number)?;
+        let both = subject.zip(setup.as_ref());
+        let ((subject, options), setup) = both.ok_or(EngineError::from(Error::Size))?;
         cpu::flush_data_cache();
         let joins = joins_clipped(job.frame);
         if joins {
@@ -195,7 +206,9 @@ impl GeometryPasses {
         let mut put = |setup: &_, colour| writer.put(setup, colour);
         self.drawn_clipped +=
             clip_exceptions(&subject.mesh, setup, &options, &mut numbers, &mut put);
-        let count = writer.finish().map_err(|_| Error::Full)?;
+        let count = writer
+            .finish()
+            .map_err(|_| EngineError::from(Error::Full))?;
         if joins {
             buffers.sets[0] = Some(buffers.set(count));
         } else {
@@ -219,8 +232,12 @@ impl GeometryPasses {
     }
 
     /// Makes the descriptors and lists of all meshes by the CPU.
+    ///
+    /// Not inlined, as few frames need it.
+    #[inline(never)]
     fn set_up(&self, job: &mut Job, cpu: &mut Cpu) -> Result<(), Fallback> {
         let (constants, frame) = (job.constants, job.frame);
+        constants.check_meshes(frame)?;
         let width = frame.size.width();
         let buffers = &mut *job.buffers;
         let list_shift = buffers.list_shift(frame.size).into();

@@ -81,7 +81,7 @@ pub struct GatewareRenderer {
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
     pub(super) constants: [FrameConstants; 2],
-    geometry: GeometryPasses,
+    pub(super) geometry: GeometryPasses,
     watchdog: Watchdog,
     /// Clock cycles of all waits of benchmarks.
     pub(super) waited: u64,

@@ -50,12 +50,16 @@ impl GatewareRenderer {
         self.prepare_geometry(frame, 0)?;
         let (mut now, mut next) = (0, 1);
         for number in 0..=count {
-            let mut runs = self.start_geometry(frame, now, cpu);
-            // Computes the constants for the next frame while a geometry pass runs.
+            let runs = self.start_geometry(frame, now, cpu);
+            let mut runs = self.check(runs, output)?;
+            while runs && !self.geometry.is_last() {
+                runs = self.await_geometry(frame, now, output)?;
+            }
+            // Computes the constants for the next frame while the last geometry pass runs, because their code displaces that for each mesh
+            // from the instruction cache.
             self.update_constants(frame, next)?;
-            while self.check(runs, output)? {
-                self.wait(TriangleEngine::geometry, output)?;
-                runs = self.continue_geometry(frame, now);
+            while runs {
+                runs = self.await_geometry(frame, now, output)?;
             }
             // A raster pass may still read the buffers at `next`. This call only writes registers: the geometry pass, which
             // overwrites these buffers, starts after the end of the raster pass.
@@ -77,6 +81,20 @@ impl GatewareRenderer {
             (now, next) = (next, now);
         }
         Ok(self.rendered(frame, now))
+    }
+
+    /// Waits for the end of a geometry pass, and continues. Returns whether another pass runs.
+    // Not inlined, as `repeat_meshes`.
+    #[inline(never)]
+    fn await_geometry(
+        &mut self,
+        frame: &Frame,
+        place: usize,
+        output: &mut Output,
+    ) -> Result<bool, Fallback> {
+        self.wait(TriangleEngine::geometry, output)?;
+        let runs = self.continue_geometry(frame, place);
+        self.check(runs, output)
     }
 
     /// Draws a frame without a mesh repeatedly. The constants of the next frame are computed during the raster pass. The
@@ -115,12 +133,13 @@ impl GatewareRenderer {
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,
     ) -> Result<(), Fallback> {
-        let start = cpu::cycles();
+        // A wait is shorter than 2^32 cycles, because it ends without progress.
+        let start = cpu::cycles_low();
         loop {
             for _ in 0..POLLS {
                 match result(&self.engine) {
                     Some(Ok(())) => {
-                        self.waited += cpu::cycles() - start;
+                        self.waited += u64::from(cpu::cycles_low().wrapping_sub(start));
                         return Ok(());
                     }
                     Some(Err(error)) => return Err(self.give_up(output, error.into())),

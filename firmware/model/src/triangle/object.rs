@@ -12,20 +12,20 @@ use crate::triangle::volume::Volume;
 const LEAST_SHIFT: u32 = 7;
 
 /// A model matrix, and what follows from it for every camera.
+// In this order, so that what the soft core reads in each frame is in few lines of its data cache.
+#[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placement {
     matrix: Matrix,
-    /// The matrix for normals; `None` if normals stay as they are.
-    normals: Option<Normals>,
-    /// Whether the mesh has normals in the axes of the world, so that neither they nor the light is turned.
-    in_world: bool,
-    /// The columns of the 3×3 matrix, 24 fraction bits.
-    columns: [[i32; 3]; 3],
     /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are turned.
     rotation: [[i32; 3]; 3],
     /// A length that no vector of length 1 exceeds after the matrix, 24 fraction bits: the scale, if there is one, otherwise the
     /// root of the sum of the squares of all entries.
     stretch: u32,
+    /// Whether the normals are turned to the world or the mesh has such normals, so that the light is not turned.
+    in_world: bool,
+    /// The matrix for normals; `None` if normals stay as they are.
+    normals: Option<Normals>,
 }
 
 impl Placement {
@@ -54,11 +54,10 @@ impl Placement {
         let root = squared.unsigned_abs().isqrt();
         Self {
             matrix,
-            normals: kept,
-            in_world: false,
-            columns: transposed(entries),
             rotation,
             stretch: root as u32 + u32::from(root * root < squared.unsigned_abs()),
+            in_world: kept.is_some(),
+            normals: kept,
         }
     }
 
@@ -79,14 +78,13 @@ impl Placement {
     pub const fn of_turned_mesh(&self) -> Self {
         Self {
             normals: None,
-            in_world: self.has_normals_in_world(),
             ..*self
         }
     }
 
     /// Whether light falls on the mesh in the axes of the world: its normals are turned, or have these axes.
     pub const fn has_normals_in_world(&self) -> bool {
-        self.in_world || self.normals.is_some()
+        self.in_world
     }
 
     /// Returns the largest distance of a vertex from the origin of a mesh with the given `radius` (14 fraction bits), in world
@@ -100,25 +98,10 @@ impl Placement {
     #[inline(always)]
     pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
         let place = self.matrix.place().map(Q8_24::to_bits);
-        let z = camera.depth_of_world() + ((dot(&camera.n, &place) + (1 << 9)) >> 10);
+        let z = camera.depth_of_world() + nearest_10(dot(&camera.n, &place));
         let reach = self.reach(radius);
         let reach = (reach >> 1) + (reach >> 14) + 2;
         [z - reach, z + reach]
-    }
-
-    /// The origin of the mesh in camera coordinates, in the formats of the translation.
-    fn origin(&self, camera: &MeshSetup) -> [i64; 3] {
-        let place = self.matrix.place().map(Q8_24::to_bits);
-        let along = |row: &[i32; 3], translation: i64| {
-            // A row is shorter than 2^24.5 and a place at most √3·2^29, so the product is below 2^55.
-            translation + ((dot(row, &place) + (1 << 9)) >> 10)
-        };
-        let [x, y, z] = camera.translation;
-        [
-            along(&camera.u, x),
-            along(&camera.v, y),
-            along(&camera.n, z),
-        ]
     }
 
     /// Computes the frame constants of a mesh at this place from those of the camera, whose depth scale serves all objects of a
@@ -142,12 +125,12 @@ impl Placement {
         Ok(setup)
     }
 
-    /// Computes the frame constants as [`setup`](Self::setup) does, in place: to copy them takes the soft core long. `setup` has the volume,
-    /// in the units of the camera.
+    /// Computes the frame constants as [`setup`](Self::setup) does, in place: to copy them takes the soft core long. `setup` has the
+    /// constants of the camera, or those of another object with the same camera, and the volume in the units of the camera.
     ///
     /// # Errors
     /// As [`setup`](Self::setup); `setup` must then not be used.
-    #[inline(never)]
+    #[inline(always)]
     pub fn update(
         &self,
         setup: &mut MeshSetup,
@@ -155,39 +138,59 @@ impl Placement {
         camera: &MeshSetup,
         radius: u32,
     ) -> Result<(), RenderError> {
-        // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after the first rounding.
-        let rows = multiply(&mut setup.u, &camera.u, &self.columns)
-            | multiply(&mut setup.v, &camera.v, &self.columns)
-            | multiply(&mut setup.n, &camera.n, &self.columns);
-        // The light has the axes of the mesh, or, if its normals are turned, those of the world.
-        if self.has_normals_in_world() {
-            setup.light = camera.light;
-        } else {
-            multiply(&mut setup.light, &camera.light, &self.rotation);
+        // The columns and the place stay in registers during the products with all rows.
+        let [[ax, bx, cx], [ay, by, cy], [az, bz, cz]] = self.matrix.linear();
+        let [x, y, z] = self.matrix.place();
+        let (a, b, c, place) = (
+            [ax.to_bits(), ay.to_bits(), az.to_bits()],
+            [bx.to_bits(), by.to_bits(), bz.to_bits()],
+            [cx.to_bits(), cy.to_bits(), cz.to_bits()],
+            [x.to_bits(), y.to_bits(), z.to_bits()],
+        );
+        let rows = [
+            (&camera.u, &mut setup.u),
+            (&camera.v, &mut setup.v),
+            (&camera.n, &mut setup.n),
+        ];
+        let translations = camera.translation.iter().zip(&mut setup.translation);
+        let mut room = 0;
+        for ((row, result), (of_camera, translation)) in rows.into_iter().zip(translations) {
+            // |row·A| ≤ 2^24·16·√3, so every entry fits 30 bits after this rounding.
+            let (x, y, z) = (
+                nearest_24(dot(row, &a)),
+                nearest_24(dot(row, &b)),
+                nearest_24(dot(row, &c)),
+            );
+            *result = [x, y, z];
+            room |= rounded_room(x) | rounded_room(y) | rounded_room(z);
+            // A row is shorter than 2^24.5 and a place at most √3·2^29, so the product is below 2^55.
+            *translation = of_camera + nearest_10(dot(row, &place));
         }
-        let [x, y, z] = self.origin(camera);
+        let [x, y, z] = setup.translation;
+        // The light has the axes of the mesh, or, if its normals are turned, those of the world.
+        setup.light = if self.has_normals_in_world() {
+            camera.light
+        } else {
+            let (row, [a, b, c]) = (&camera.light, &self.rotation);
+            [
+                nearest_24(dot(row, a)),
+                nearest_24(dot(row, b)),
+                nearest_24(dot(row, c)),
+            ]
+        };
+        setup.scale_shift = camera.scale_shift;
+        setup.near = camera.near;
+        setup.depth.exponent = camera.depth.exponent;
+        setup.is_placed = true;
+        setup.mirrors = self.matrix.mirrors();
         let reach = self.reach(radius);
         // A part of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
-        setup.translation = [x, y, z];
-        setup.width = camera.width;
-        setup.height = camera.height;
-        setup.scale_shift = camera.scale_shift;
-        setup.projection = camera.projection;
-        setup.near = camera.near;
-        setup.near_plane = camera.near_plane;
-        setup.depth = camera.depth;
-        setup.is_placed = true;
-        setup.mirrors = self.matrix.mirrors();
         // Most objects fit the formats of the vertex stage as they are.
         let widest = x.abs().max(y.abs()) + reach;
         let deepest = z.abs() + (reach >> 1);
         let is_perspective = camera.projection == Projection::Perspective;
-        if rows + MOST_ROUNDING < 1 << 24
-            && widest >> 42 == 0
-            && deepest >> 41 == 0
-            && is_perspective
-        {
+        if room < 1 << 24 && widest >> 42 == 0 && deepest >> 41 == 0 && is_perspective {
             return Ok(());
         }
         fit(setup, view, camera, [widest, deepest])
@@ -253,30 +256,25 @@ fn fit(
 }
 
 /// The exact scalar product; below 2^62 for the numbers of rows, matrices and places.
-///
-/// Not inlined, because code that is executed once takes longer to load into the instruction cache than to run.
-#[inline(never)]
-fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
+#[inline(always)]
+const fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
     wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
 }
 
-/// Multiplies a row by a matrix, given by its columns with 24 fraction bits, and rounds to nearest. Returns the [`magnitude`] of the
-/// result, so that its caller need not load the result again.
-///
-/// Not inlined, as [`dot`]; the scalar products are, because the row then stays in registers.
-#[inline(never)]
-fn multiply(result: &mut [i32; 3], row: &[i32; 3], columns: &[[i32; 3]; 3]) -> u32 {
-    let &[x, y, z] = row;
-    let [a, b, c] = columns;
-    let product = [a, b, c].map(|&[i, j, k]| {
-        let sum = wide(x, i) + wide(y, j) + wide(z, k);
-        ((sum + (1 << 23)) >> 24) as i32
-    });
-    *result = product;
-    magnitude(&product)
+/// Removes 10 fraction bits, rounded to nearest.
+#[inline(always)]
+const fn nearest_10(x: i64) -> i64 {
+    (x + (1 << 9)) >> 10
+}
+
+/// Removes 24 fraction bits, rounded to nearest, of a number below 2^55.
+#[inline(always)]
+const fn nearest_24(x: i64) -> i32 {
+    ((x + (1 << 23)) >> 24) as i32
 }
 
 /// The exact product.
+#[inline(always)]
 const fn wide(a: i32, b: i32) -> i64 {
     a as i64 * b as i64
 }
@@ -296,9 +294,10 @@ const fn halvings(x: u32) -> u32 {
     count
 }
 
-/// A number at least as large as the magnitude of each entry of a row, and less than twice as large as the largest one.
-fn magnitude(&[x, y, z]: &[i32; 3]) -> u32 {
-    x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs()
+/// At least the magnitude and [`MOST_ROUNDING`].
+#[inline(always)]
+const fn rounded_room(x: i32) -> u32 {
+    (x ^ (x >> 31)) as u32 + 1 + MOST_ROUNDING
 }
 
 /// The largest magnitude of a row; below 2^30.

@@ -1,0 +1,188 @@
+//! The constants of a frame.
+
+use glint_core::light::MeshLighting;
+use glint_core::object::MAX_OBJECTS;
+
+use super::{Frame, Object, Subject};
+use crate::depth::DepthScale;
+use crate::error::RenderError;
+use crate::mesh_in_field;
+use crate::raymarch::{FieldOptions, FieldSetup, Palette};
+use crate::triangle::mesh_setup::Scale;
+use crate::triangle::{MeshLight, MeshSetup};
+
+/// Numbers of a frame that do not depend on the pixel or triangle, computed once before drawing.
+///
+/// The constants take about 1,700 bytes, mostly tables of a field's palette. To save time, keep one `FrameConstants` and
+/// [update](Self::update) it for each frame instead of moving new ones.
+#[derive(Clone, Debug, Default)]
+pub struct FrameConstants {
+    /// Those of the mesh, or those that all objects share.
+    mesh: Option<MeshSetup>,
+    scale: Scale,
+    light: Option<MeshLight>,
+    field: Option<FieldConstants>,
+}
+
+/// Frame constants of a field.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FieldConstants {
+    /// Constants of the rays and of the solid.
+    pub setup: FieldSetup,
+    /// Colours of surfaces, sky and fog.
+    pub palette: Palette,
+}
+
+impl FrameConstants {
+    /// Returns the constants of the mesh, or those that all objects share, if the frame has a mesh or objects.
+    pub const fn mesh(&self) -> Option<&MeshSetup> {
+        self.mesh.as_ref()
+    }
+
+    /// Returns the constants of the mesh with this number in `frame`, whose constants these are; `None` after the last mesh.
+    ///
+    /// Those of an object are computed in `own`, which the caller keeps for all objects of a frame, in their order: to copy what objects
+    /// share, and to store the constants of all, takes the soft core long.
+    ///
+    /// # Errors
+    /// A [`RenderError`] for an object that cannot be drawn.
+    #[inline(always)]
+    pub fn mesh_setup<'s>(
+        &'s self,
+        frame: &Frame,
+        number: usize,
+        own: &'s mut MeshSetup,
+    ) -> Result<Option<&'s MeshSetup>, RenderError> {
+        let (Some(objects), Some(camera)) = (frame.subject.objects(), &self.mesh) else {
+            return Ok(self.mesh().filter(|_| number == 0));
+        };
+        let Some(Object {
+            subject, placement, ..
+        }) = objects.get(number)
+        else {
+            return Ok(None);
+        };
+        if number == 0 {
+            *own = *camera;
+        }
+        own.volume = camera.volume_of(subject.clip)?;
+        placement.update(own, &frame.view, camera, subject.mesh.radius())?;
+        Ok(Some(own))
+    }
+
+    /// Returns a copy of the constants of the mesh with this number in `frame`, whose constants these are; `None` after the last mesh.
+    ///
+    /// # Errors
+    /// As [`mesh_setup`](Self::mesh_setup).
+    #[inline(never)]
+    pub fn numbered_mesh(
+        &self,
+        frame: &Frame,
+        number: usize,
+    ) -> Result<Option<MeshSetup>, RenderError> {
+        let mut own = self.mesh.unwrap_or_default();
+        Ok(self.mesh_setup(frame, number, &mut own)?.copied())
+    }
+
+    /// Checks that each mesh of `frame`, whose constants these are, can be drawn.
+    ///
+    /// # Errors
+    /// As [`mesh_setup`](Self::mesh_setup).
+    pub fn check_meshes(&self, frame: &Frame) -> Result<(), RenderError> {
+        let mut number = 0;
+        while self.numbered_mesh(frame, number)?.is_some() {
+            number += 1;
+        }
+        Ok(())
+    }
+
+    /// Returns the light on the meshes; `None` for white light at the camera, without ambient light.
+    pub const fn light(&self) -> Option<&MeshLight> {
+        self.light.as_ref()
+    }
+
+    /// Returns the constants of the field, if the frame has a field.
+    pub const fn field(&self) -> Option<&FieldConstants> {
+        self.field.as_ref()
+    }
+
+    /// The scale between depth codes and distances in world units; `None` before the first frame.
+    pub fn depth_scale(&self) -> Option<DepthScale> {
+        match (self.mesh(), self.field()) {
+            (Some(mesh), _) => Some(mesh.depth),
+            (None, Some(field)) => Some(field.setup.world_depth),
+            (None, None) => None,
+        }
+    }
+
+    /// Replaces the constants by those of `frame`. Its objects are checked when their constants are computed.
+    ///
+    /// # Errors
+    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants.
+    pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
+        let result = self.compute(frame);
+        if result.is_err() {
+            (self.mesh, self.field) = (None, None);
+        }
+        result
+    }
+
+    fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
+        (self.light, self.field) = (None, None);
+        let (view, size) = (&frame.view, frame.size.pixels().into());
+        match &frame.subject {
+            Subject::Mesh(subject) | Subject::Edges(subject, _) => {
+                let mesh = self.mesh.get_or_insert_default();
+                mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
+                mesh.set_clip(subject.clip)?;
+            }
+            Subject::Field(subject) => {
+                self.mesh = None;
+                let options = subject.options(view);
+                let setup = FieldSetup::new(subject.field, view, size, &options)?;
+                self.set_field(setup, &options);
+            }
+            Subject::MeshInField(mesh, subject) => {
+                let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
+                let options = subject.options(view);
+                let (mesh, field) =
+                    mesh_in_field::constants(view, size, radius, subject.field, &options)?;
+                self.mesh = Some(mesh.with_clip(clip)?);
+                self.set_field(field, &options);
+            }
+            Subject::Objects(objects) if objects.len() > MAX_OBJECTS => {
+                return Err(RenderError::Objects(objects.len()));
+            }
+            Subject::Objects(objects) => {
+                let camera = self.mesh.get_or_insert_default();
+                camera.update(view, size, 0, &mut self.scale)?;
+                camera.set_depths(depths(objects, camera));
+            }
+            Subject::Wireframe(_) => self.mesh = None,
+        }
+        let lighting = frame.mesh_lighting();
+        if let Some(mesh) = &mut self.mesh
+            && lighting != MeshLighting::CAMERA
+        {
+            let light = MeshLight::new(&lighting, view);
+            mesh.light = light.row;
+            self.light = Some(light);
+        }
+        Ok(())
+    }
+
+    fn set_field(&mut self, setup: FieldSetup, options: &FieldOptions) {
+        let palette = options.palette_for(&setup);
+        self.field = Some(FieldConstants { setup, palette });
+    }
+}
+
+/// The smallest and the largest depth of objects, with 37 fraction bits; `None` without objects.
+#[inline(never)]
+fn depths(objects: &[Object], camera: &MeshSetup) -> Option<[i64; 2]> {
+    let depths = objects.iter().map(|object| {
+        let radius = object.subject.mesh.radius();
+        object.placement.depths(camera, radius)
+    });
+    depths.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])
+}
