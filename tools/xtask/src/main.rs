@@ -104,7 +104,7 @@ enum Task {
     Report {
         /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`; or `pages`: rebuild all pages from their tables
         page: String,
-        /// Arguments for the report program
+        /// Options of the page; `cargo xtask report PAGE -- --help` lists them
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
