@@ -53,6 +53,8 @@ pub enum CommandError<'l> {
     StereoOfMesh,
     /// A mesh in a field was requested while stereo is on.
     MeshInStereo,
+    /// Edges were requested while no mesh is shown alone.
+    EdgesOfOthers,
     /// The list of lights is full.
     Lights,
     /// `bench field` needs a shown field.
@@ -168,6 +170,9 @@ impl Display for CommandError<'_> {
             Self::MeshInStereo => {
                 f.write_str("mesh: not available in stereo, expected `stereo off` first")
             }
+            Self::EdgesOfOthers => f.write_str(
+                "edges: not available for objects, fields and wireframes, expected `scene NAME` of a mesh first",
+            ),
             Self::Lights => write!(
                 f,
                 "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"

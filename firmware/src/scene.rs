@@ -157,10 +157,11 @@ impl Scene {
         self.wireframe.is_some()
     }
 
-    /// Shows the wireframe as its program has it.
+    /// Shows the wireframe as its program has it. Edges of a mesh are off from now on.
     pub fn show_wireframe(&mut self) {
         self.wireframe = Some(Motion::default());
         self.objects = false;
+        self.edges = None;
         self.changed = true;
     }
 
@@ -169,10 +170,11 @@ impl Scene {
         self.objects
     }
 
-    /// Shows the objects.
+    /// Shows the objects. Edges of a mesh are off from now on.
     pub const fn show_objects(&mut self) {
         self.wireframe = None;
         self.objects = true;
+        self.edges = None;
         self.changed = true;
     }
 
@@ -196,10 +198,14 @@ impl Scene {
         self.field.is_some() && self.wireframe.is_none() && !self.objects
     }
 
-    /// Shows a field, or the mesh alone for `None`, in place of wireframe or objects if they are shown.
+    /// Shows a field, or the mesh alone for `None`, in place of wireframe or objects if they are shown. A field sets the edges of a mesh
+    /// off.
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.wireframe.take().is_some() || self.objects || self.field != field;
         self.objects = false;
+        if field.is_some() {
+            self.edges = None;
+        }
         self.field = field;
     }
 
@@ -247,15 +253,24 @@ impl Scene {
         self.prepass = prepass;
     }
 
-    /// The edges of a mesh that is shown alone; `None` for its faces alone.
+    /// Whether a mesh is shown alone: no field, objects or wireframe.
+    const fn shows_mesh_alone(&self) -> bool {
+        self.field.is_none() && self.wireframe.is_none() && !self.objects
+    }
+
+    /// The edges of the mesh that is shown alone; `None` for its faces alone, and as soon as anything else is shown.
     pub const fn edges(&self) -> Option<Edges> {
         self.edges
     }
 
-    /// Sets the edges of a mesh that is shown alone.
-    pub fn set_edges(&mut self, edges: Option<Edges>) {
-        self.changed |= self.edges != edges;
-        self.edges = edges;
+    /// Sets the edges of the mesh that is shown alone. Returns whether that was possible.
+    pub fn set_edges(&mut self, edges: Option<Edges>) -> bool {
+        let is_possible = edges.is_none() || self.shows_mesh_alone();
+        if is_possible {
+            self.changed |= self.edges != edges;
+            self.edges = edges;
+        }
+        is_possible
     }
 
     /// Sets everything except the backend as at start.

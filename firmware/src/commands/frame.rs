@@ -65,7 +65,8 @@ impl<'l> FrameCommands<'l> for Machine {
 
     fn edges(&mut self, edges: Option<Option<Edges>>) -> Outcome<'l> {
         match edges {
-            Some(edges) => self.scene.set_edges(edges),
+            Some(edges) if self.scene.set_edges(edges) => {}
+            Some(_) => return Err(CommandError::EdgesOfOthers),
             None => {
                 let edges = OrOff(self.scene.edges());
                 self.terminal.print_entry("edges", &edges);

@@ -1,7 +1,8 @@
 //! A renderer that draws frames on a board, by console commands.
 
 use super::commands::{
-    field_commands, lighting_commands, mesh_commands, object_command, size_command, view_command,
+    edges_command, field_commands, lighting_commands, mesh_commands, object_command, size_command,
+    view_command,
 };
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
@@ -104,14 +105,13 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             }
         }
         if let Some(mesh) = frame.subject.mesh_part() {
-            let edges = match frame.subject {
-                Subject::Edges(_, edges) => Some(edges),
-                _ => None,
-            };
-            for command in mesh_commands(mesh, edges) {
+            for command in mesh_commands(mesh) {
                 self.console.command(&command)?;
             }
             self.upload(mesh.mesh.bytes(), None, route, progress)?;
+            if let Subject::Edges(_, edges) = frame.subject {
+                self.console.command(&edges_command(edges))?;
+            }
         }
         if let Some(objects) = frame.subject.objects() {
             self.show_objects(objects, route, progress)?;
@@ -197,9 +197,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         progress: &mut Progress,
     ) -> Result<(), Error> {
         self.console.command("object remove all")?;
-        let options = objects
-            .first()
-            .map(|object| mesh_commands(&object.subject, None));
+        let options = objects.first().map(|object| mesh_commands(&object.subject));
         for command in options.iter().flatten() {
             self.console.command(command)?;
         }

@@ -13,8 +13,8 @@ pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
 }
 
-/// The console commands that set the options of a mesh, and show its faces alone or its edges.
-pub fn mesh_commands(subject: &MeshSubject, edges: Option<Edges>) -> [String; 5] {
+/// The console commands that set the options of a mesh, and show its faces alone.
+pub fn mesh_commands(subject: &MeshSubject) -> [String; 5] {
     [
         format!("cull {}", switch_name(subject.cull)),
         format!("shading {}", subject.shading),
@@ -23,8 +23,13 @@ pub fn mesh_commands(subject: &MeshSubject, edges: Option<Edges>) -> [String; 5]
             Clip::View { far } => format!("clip {far}"),
         },
         format!("winding {}", subject.winding),
-        format!("edges {}", edges.map_or("off", Edges::name)),
+        "edges off".to_owned(),
     ]
+}
+
+/// The console command that shows the edges of the mesh that is shown alone.
+pub fn edges_command(edges: Edges) -> String {
+    format!("edges {edges}")
 }
 
 /// The console command that adds an object with the mesh `name`. Its decimals are exact.

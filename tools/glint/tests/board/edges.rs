@@ -1,6 +1,6 @@
 //! The edges of meshes on the virtual board: segments by the soft core, lines by the line engine, drawn as the model draws them.
 
-use crate::common::{mesh, renderer, running_board};
+use crate::common::{console, mesh, renderer, running_board};
 use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
 use glint::view;
 use glint_core::colour::Winding;
@@ -77,5 +77,24 @@ fn edges_are_the_models() {
         assert_eq!(counts[0], counts[1], "case {number}");
         let is_clipped = number == 3 || number == 4;
         assert_eq!(counts[1].1 > 0, is_clipped, "case {number}");
+    }
+}
+
+/// A mesh that is shown alone has edges. All else refuses them, and sets them off.
+#[test]
+fn a_mesh_alone_has_edges() {
+    let mut board = running_board();
+    let mut console = console(&mut board);
+    for other in ["scene sponge-field", "scene wireframe", "object add cube"] {
+        for command in ["scene cube", "edges over"] {
+            console.command(command).unwrap();
+        }
+        assert_eq!(console.command("edges").unwrap(), ["edges over"]);
+        console.command(other).unwrap();
+        assert_eq!(console.command("edges").unwrap(), ["edges off"], "{other}");
+        let refused = console.command("edges hidden").unwrap_err().to_string();
+        let expected = "not available for objects, fields and wireframes, expected `scene NAME`";
+        assert!(refused.contains(expected), "{other}: {refused}");
+        console.command("edges off").unwrap();
     }
 }

@@ -78,7 +78,7 @@ fn the_soc_draws_objects() {
                 let name = format!("{} objects at {size}, frame {place}", number + 1);
                 let frame = Frame::new(Subject::Objects(&objects), view.rounded(), size);
                 let Rendered { image, stats } = on_model(&frame).unwrap();
-                let mut lines = render::mesh_commands(&objects[0].subject, None).to_vec();
+                let mut lines = render::mesh_commands(&objects[0].subject).to_vec();
                 lines.extend([
                     render::size_command(size),
                     render::view_command(&frame.view),
