@@ -120,9 +120,7 @@ fn the_camera_follows_the_hand() {
     let mut console = console(&mut board);
     let bytes = mesh("icosphere:3");
     transfer::stage(&mut console, &bytes).unwrap();
-    // In place of the built-in mesh of the scene.
-    let name = Some("torus");
-    transfer::upload(&mut console, &bytes, name, 1, &mut |_, _| {}).unwrap();
+    transfer::upload(&mut console, &bytes, None, 1, &mut |_, _| {}).unwrap();
     let refused = console.command("scene holoforge").unwrap_err().to_string();
     assert!(refused.contains("no image sensor answers"), "{refused}");
 
@@ -134,6 +132,8 @@ fn the_camera_follows_the_hand() {
         .inner()
         .plug_image_sensor(image_sensor(scene));
     console.command("scene holoforge").unwrap();
+    // The uploaded mesh in place of the scene's.
+    console.command("scene model").unwrap();
     run(&mut console, 30);
     let now = console.board().inner().cycles();
     *begin.lock().unwrap() = now as f64 / (1_000.0 * MS as f64);
