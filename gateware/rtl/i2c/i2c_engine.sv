@@ -66,13 +66,13 @@ module i2c_engine #(
     // High for one clock at the end of a transaction or of a batch, or at an error.
     output logic        ended,
     // The wires: `scl` and `sda` are their states after a spike filter, `*_in` are the input pins, and `*_out` the drivers (0
-    // pulls low, 1 releases). The wires are released from power-up on, so that the first clock is no edge.
+    // pulls low, 1 releases).
     output logic        scl,
     output logic        sda,
     input  wire         scl_in,
-    output logic        scl_out = 1'b1,
+    output logic        scl_out,
     input  wire         sda_in,
-    output logic        sda_out = 1'b1
+    output logic        sda_out
 );
     localparam logic [1:0] START = i2c_registers_pkg::OPERATION_START, WRITE = i2c_registers_pkg::OPERATION_WRITE,
                            READ = i2c_registers_pkg::OPERATION_READ, STOP = i2c_registers_pkg::OPERATION_STOP;
@@ -142,6 +142,12 @@ module i2c_engine #(
             FREE:    taken = expired;
             default: taken = 1'b0;
         endcase
+    end
+
+    // A device sees no edge before the reset.
+    initial begin
+        scl_out = 1'b1;
+        sda_out = 1'b1;
     end
 
     always_ff @(posedge clk) begin
