@@ -85,7 +85,7 @@ fn edges_are_the_models() {
 fn a_mesh_alone_has_edges() {
     let mut board = running_board();
     let mut console = console(&mut board);
-    for other in ["scene sponge-field", "scene wireframe", "object add cube"] {
+    for other in ["scene menger", "scene wireframe", "object add cube"] {
         for command in ["scene cube", "edges over"] {
             console.command(command).unwrap();
         }
