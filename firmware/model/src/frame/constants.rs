@@ -3,7 +3,7 @@
 use glint_core::light::MeshLighting;
 use glint_core::object::MAX_OBJECTS;
 
-use super::{Frame, Object, Subject};
+use super::description::{Frame, Object, Subject};
 use crate::depth::DepthScale;
 use crate::error::RenderError;
 use crate::mesh_in_field;

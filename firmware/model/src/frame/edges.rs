@@ -1,6 +1,8 @@
 //! Drawing of a mesh's edges by the model.
 
-use super::{Frame, FrameConstants, FrameStats, Subject};
+use super::FrameStats;
+use super::constants::FrameConstants;
+use super::description::{Frame, Subject};
 use crate::edges::EdgeList;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;

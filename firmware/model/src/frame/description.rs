@@ -1,0 +1,232 @@
+//! The description of a picture: subject, camera, size and light.
+
+use glint_core::appearance::Appearance;
+use glint_core::camera::View;
+use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::field::Field;
+use glint_core::light::MeshLighting;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Edges, Size};
+use glint_core::stereo::Stereo;
+
+use crate::raymarch::FieldOptions;
+use crate::triangle::{Clip, MeshLight, Options, Placement};
+use crate::wireframe::WireframeSubject;
+
+/// The description of one picture.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame<'a> {
+    /// Mesh, edges of a mesh, field, mesh and field, several meshes, or a wireframe.
+    pub subject: Subject<'a>,
+    /// Camera. A wireframe has its own eye and view plane.
+    pub view: View,
+    /// Size of the picture.
+    pub size: Size,
+    /// Colour of pixels without a triangle. A field covers every pixel.
+    pub clear: Rgb565,
+    /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
+    pub lighting: MeshLighting,
+}
+
+/// The subject of a frame.
+#[derive(Clone, Copy, Debug)]
+pub enum Subject<'a> {
+    /// A mesh.
+    Mesh(MeshSubject<'a>),
+    /// The edges of a mesh, of which [`Frame::draw`] draws the faces alone and [`Frame::draw_edges`] the edges. [`Subject::edges`]
+    /// makes it.
+    Edges(MeshSubject<'a>, Edges),
+    /// A distance field.
+    Field(FieldSubject<'a>),
+    /// A mesh in a distance field.
+    MeshInField(MeshSubject<'a>, FieldSubject<'a>),
+    /// Several meshes, each with a place of its own. Of equal depths the later object wins.
+    Objects(&'a [Object<'a>]),
+    /// A program of the wireframe simulator.
+    Wireframe(WireframeSubject<'a>),
+}
+
+/// A mesh with a place in the world.
+// In this order for the reason given at the placement.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Object<'a> {
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
+    /// The mesh and its options.
+    pub subject: MeshSubject<'a>,
+    /// The place: a model matrix.
+    pub placement: Placement,
+}
+
+/// A mesh and its options.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshSubject<'a> {
+    /// The mesh.
+    pub mesh: Mesh<'a>,
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// Source of the colours: triangles (flat) or vertices (smooth).
+    pub shading: Shading,
+    /// Clipping of triangles.
+    pub clip: Clip,
+    /// The rule that tells which side of a triangle is seen.
+    pub winding: Winding,
+}
+
+/// A distance field and its options.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldSubject<'a> {
+    /// The field.
+    pub field: &'a Field,
+    /// Material, lights, background, fog and occlusion.
+    pub appearance: &'a Appearance,
+    /// Two eyes for a stereo picture, or `None` for one eye. A mesh in a field has one eye.
+    pub stereo: Option<Stereo>,
+    /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats.md, "Cones").
+    pub prepass: bool,
+}
+
+impl<'a> MeshSubject<'a> {
+    fn options(&self) -> Options<'a> {
+        Options {
+            cull: self.cull,
+            shading: self.shading,
+            winding: self.winding,
+            ..Options::default()
+        }
+    }
+
+    /// Whether back faces are left out: with [`Winding::Screen`] all triangles are seen.
+    pub fn culls(&self) -> bool {
+        self.cull && self.winding == Winding::Mesh
+    }
+
+    /// A mesh with flat shading, culled back faces, clipping to the guard band and its own winding.
+    pub const fn new(mesh: Mesh<'a>) -> Self {
+        Self {
+            mesh,
+            cull: true,
+            shading: Shading::Flat,
+            clip: Clip::Guard,
+            winding: Winding::Mesh,
+        }
+    }
+}
+
+impl<'a> Subject<'a> {
+    /// A mesh with the default options of [`MeshSubject::new`].
+    pub const fn mesh(mesh: Mesh<'a>) -> Self {
+        Self::Mesh(MeshSubject::new(mesh))
+    }
+
+    /// The edges of a mesh. Faces that only hide edges are black, so they are shaded flat.
+    pub const fn edges(mesh: MeshSubject<'a>, edges: Edges) -> Self {
+        let shading = match edges {
+            Edges::Hidden => Shading::Flat,
+            Edges::Over => mesh.shading,
+        };
+        Self::Edges(MeshSubject { shading, ..mesh }, edges)
+    }
+
+    /// The mesh, if the subject has one.
+    pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
+        match self {
+            Self::Mesh(mesh) | Self::Edges(mesh, _) | Self::MeshInField(mesh, _) => Some(mesh),
+            Self::Field(_) | Self::Objects(_) | Self::Wireframe(_) => None,
+        }
+    }
+
+    /// The objects, if the subject has several meshes.
+    pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
+        match self {
+            Self::Objects(objects) => Some(objects),
+            _ => None,
+        }
+    }
+
+    /// All meshes, in their order.
+    pub fn meshes(&self) -> impl Iterator<Item = &MeshSubject<'a>> {
+        let objects = self.objects().unwrap_or_default();
+        let objects = objects.iter().map(|object| &object.subject);
+        self.mesh_part().into_iter().chain(objects)
+    }
+
+    /// The mesh with this number, with the colour in place of its own ones; `None` after the last mesh.
+    #[inline(always)]
+    pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
+        match self {
+            Self::Objects(objects) => {
+                let object = objects.get(number)?;
+                Some((&object.subject, object.colour))
+            }
+            _ => self.coloured_part().filter(|_| number == 0),
+        }
+    }
+
+    /// The mesh of a subject without objects, with the colour in place of its own ones.
+    // Not inlined, so that the function above, which the firmware calls for each object of a frame, is short and loads no table.
+    #[inline(never)]
+    fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
+        let is_hidden = matches!(self, Self::Edges(_, Edges::Hidden));
+        Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
+    }
+
+    /// The mesh with this number, and the options of its drawing in a light ([`FrameConstants::light`](super::FrameConstants::light)), of which `clear` has no effect;
+    /// `None` after the last mesh.
+    pub fn numbered_mesh<'s>(
+        &'s self,
+        number: usize,
+        light: Option<&'s MeshLight>,
+    ) -> Option<(&'s MeshSubject<'a>, Options<'s>)> {
+        let (subject, colour) = self.coloured_mesh(number)?;
+        let object = self.objects().and_then(|objects| objects.get(number));
+        let placement = object.map(|object| &object.placement);
+        let options = Options {
+            colour,
+            light,
+            normals: placement.and_then(Placement::normals),
+            lit_in_world: placement.is_some_and(Placement::has_normals_in_world),
+            ..subject.options()
+        };
+        Some((subject, options))
+    }
+
+    /// The field, if the subject has one.
+    pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
+        match self {
+            Self::Field(field) | Self::MeshInField(_, field) => Some(field),
+            Self::Mesh(_) | Self::Edges(..) | Self::Objects(_) | Self::Wireframe(_) => None,
+        }
+    }
+}
+
+impl FieldSubject<'_> {
+    pub(super) fn options(&self, view: &View) -> FieldOptions {
+        FieldOptions {
+            prepass: self.prepass,
+            ..FieldOptions::new(self.field, self.appearance, self.stereo, view)
+        }
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// A frame with a black background, and white light at the camera for its meshes.
+    pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
+        Self {
+            subject,
+            view,
+            size,
+            clear: Rgb565(0),
+            lighting: MeshLighting::CAMERA,
+        }
+    }
+
+    /// The lighting of the meshes: that of the frame, or of the field's appearance for a mesh in a field.
+    pub fn mesh_lighting(&self) -> MeshLighting {
+        match &self.subject {
+            Subject::MeshInField(_, field) => field.appearance.mesh_lighting(),
+            _ => self.lighting,
+        }
+    }
+}
