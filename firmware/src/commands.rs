@@ -18,6 +18,7 @@ mod upload;
 pub use frame::send_frame;
 
 use glint_core::console::{Command, Executor};
+use glint_core::feature::{Feature, OBJECT};
 
 use crate::error::CommandError;
 use crate::job::{Outcome, Reply};
@@ -25,6 +26,10 @@ use crate::machine::Machine;
 
 impl<'l> Executor<'l> for Machine {
     type Output = Outcome<'l>;
+
+    fn left_out(&mut self, feature: Feature) -> Outcome<'l> {
+        Err(CommandError::LeftOut(feature))
+    }
 }
 
 /// Executes a line of the console as a command. Returns the command's reply; `None` for a blank line.
@@ -56,10 +61,12 @@ fn execute_one<'l>(
         return Ok(None);
     };
     let reply = command.execute(machine);
-    // The options of the scene are those of all objects.
-    let Machine { models, scene, .. } = machine;
-    models
-        .objects_mut()
-        .set_options(|mesh| scene.options().subject(mesh));
+    if OBJECT.is_built {
+        // The options of the scene are those of all objects.
+        let Machine { models, scene, .. } = machine;
+        models
+            .objects_mut()
+            .set_options(|mesh| scene.options().subject(mesh));
+    }
     reply.map(Some)
 }

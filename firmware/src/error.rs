@@ -4,6 +4,7 @@ use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
+use glint_core::feature::{Feature, GESTURE, IMU, OBJECT, REPLAY, UPLOAD};
 use glint_core::hand::CalibrationError as HandColourError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
@@ -12,11 +13,11 @@ use glint_core::picture::Size;
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
 use glint_hal::gesture::SetUpError;
-use glint_model::RenderError;
 
 use crate::gateware::Fallback;
 use crate::models::{MAX_MESHES, NameError, RemoveError};
 use crate::objects::ObjectError;
+use crate::scene::DrawError;
 use crate::scenes::{BuiltIn, DEFAULT, SCENES};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::shapes::Shapes;
@@ -26,6 +27,8 @@ use crate::shapes::Shapes;
 pub enum CommandError<'l> {
     /// The line is not a command.
     Parse(ParseError<'l>),
+    /// This build leaves out what the command needs.
+    LeftOut(Feature),
     /// The line is longer than [`LINE_MAX`].
     Overlong,
     /// The camera is out of range.
@@ -40,6 +43,11 @@ pub enum CommandError<'l> {
         built_in: &'static BuiltIn,
         /// The block enable bits of the gateware.
         blocks: u32,
+    },
+    /// This build lacks parts of the firmware that a scene needs.
+    Features {
+        /// The scene.
+        built_in: &'static BuiltIn,
     },
     /// The board has no memory or no screen for this picture size.
     Size(Size),
@@ -97,7 +105,7 @@ pub enum CommandError<'l> {
     /// A key would move the wireframe out of range.
     Reach,
     /// The frame could not be drawn.
-    Render(RenderError),
+    Render(DrawError),
     /// No frame has been drawn yet.
     NoFrame,
     /// `bench` has no kernel of this name.
@@ -135,6 +143,7 @@ impl Display for CommandError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Parse(error) => error.fmt(f),
+            Self::LeftOut(feature) => feature.fmt(f),
             Self::Overlong => write!(f, "line: expected at most {LINE_MAX} bytes"),
             Self::View(error) => error.fmt(f),
             Self::Key(key) => write!(f, "info `{key}`: expected an entry, `info` lists them"),
@@ -152,6 +161,13 @@ impl Display for CommandError<'_> {
                 lacks.try_for_each(|block| write!(f, " {block}"))?;
                 write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
             }
+            Self::Features { built_in } => {
+                let name = built_in.name;
+                write!(f, "scene {name}: this firmware lacks")?;
+                let mut lacks = built_in.lacks_features();
+                lacks.try_for_each(|feature| write!(f, " {}", feature.name))?;
+                write!(f, ", expected that of `cargo xtask firmware --scene {name}`")
+            }
             Self::Size(size) => write!(
                 f,
                 "size: {size} not available on this board, expected a smaller size"
@@ -162,7 +178,7 @@ impl Display for CommandError<'_> {
                     "object add `{name}`: expected a mesh, `models` lists them"
                 )
             }
-            Self::Object(error) => error.fmt(f),
+            Self::Object(error) if OBJECT.is_built => error.fmt(f),
             Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
             Self::StereoOfMesh => f.write_str(
                 "stereo: not available for a mesh in a field, expected `mesh off` first",
@@ -215,8 +231,8 @@ impl Display for CommandError<'_> {
                 }
             }
             Self::Transfer(error) => error.fmt(f),
-            Self::Mesh(error) => write!(f, "load: not a mesh, previous meshes kept: {error}"),
-            Self::Program(error) => write!(f, "program: previous scene kept: {error}"),
+            Self::Mesh(error) if UPLOAD.is_built => write!(f, "load: not a mesh, previous meshes kept: {error}"),
+            Self::Program(error) if UPLOAD.is_built => write!(f, "program: previous scene kept: {error}"),
             Self::NoWireframe => f.write_str(
                 "press: no wireframe shown, expected `program` first",
             ),
@@ -232,24 +248,26 @@ impl Display for CommandError<'_> {
                     .try_for_each(|kernel| write!(f, " {kernel}"))
             }
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
-            Self::Calibration(error) => write!(f, "imu calibrate: {error}"),
-            Self::Sensor(error) => write!(f, "imu: {error}"),
+            Self::Calibration(error) if IMU.is_built => write!(f, "imu calibrate: {error}"),
+            Self::Sensor(error) if IMU.is_built => write!(f, "imu: {error}"),
             Self::NoGesture => f.write_str("gesture: no gesture engine in this SoC"),
             Self::GestureOff => {
                 f.write_str("gesture: the image sensor is off, expected `gesture on` first")
             }
-            Self::ImageSensor(error) => write!(f, "gesture: {error}"),
+            Self::ImageSensor(error) if GESTURE.is_built => write!(f, "gesture: {error}"),
             Self::NoSensorFrame => f.write_str(
                 "gesture: no whole frame came within 500 ms, `gesture` shows what the image sensor sends",
             ),
-            Self::HandColour(error) => write!(f, "gesture calibrate: {error}"),
-            Self::Log(error) => write!(f, "replay: {error}"),
+            Self::HandColour(error) if GESTURE.is_built => write!(f, "gesture calibrate: {error}"),
+            Self::Log(error) if REPLAY.is_built => write!(f, "replay: {error}"),
             Self::NoReplay => {
                 f.write_str("replay: no attitudes, expected an upload of a log first")
             }
             Self::Mismatch => f.write_str(
                 "devices: build ids of firmware and gateware differ, expected a matching gateware",
             ),
+            // An error of a part that this build leaves out.
+            _ => Ok(()),
         }
     }
 }

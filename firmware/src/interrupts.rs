@@ -1,5 +1,6 @@
 //! The interrupt handler, and sleeping until the next interrupt.
 
+use glint_core::feature::{GESTURE, IMU};
 use glint_hal::{gesture as engine, i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
 
@@ -28,7 +29,7 @@ pub fn start(present: Present) {
     // SAFETY: `handle` is ready, and no critical section is open.
     unsafe {
         interrupt::enable(Interrupt::Uart);
-        if present.devices {
+        if present.devices && IMU.is_built {
             interrupt::enable(Interrupt::I2c);
             interrupt::enable(Interrupt::Timer0);
         }
@@ -65,20 +66,23 @@ fn handle() {
         Interrupt::Scanout => scanout::acknowledge_vblank(),
         Interrupt::Triangle => triangle::acknowledge(),
         Interrupt::Raymarch => raymarch::acknowledge(),
-        Interrupt::Gesture => {
+        Interrupt::Gesture if GESTURE.is_built => {
             engine::acknowledge();
             gesture::on_interrupt(start);
         }
-        Interrupt::I2c => {
+        Interrupt::I2c if IMU.is_built => {
             i2c::acknowledge();
             sensor::advance(start);
         }
-        Interrupt::Timer0 => {
+        Interrupt::Timer0 if IMU.is_built => {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // The interrupt of the buttons is never enabled; if it comes nevertheless, its line is disabled.
-        Interrupt::Buttons => interrupt::disable(interrupt.bit()),
+        // The interrupt of the buttons, and those of parts that this build leaves out, are never enabled. If one comes nevertheless, its
+        // line is disabled.
+        Interrupt::Buttons | Interrupt::Gesture | Interrupt::I2c | Interrupt::Timer0 => {
+            interrupt::disable(interrupt.bit())
+        }
     });
     interrupt::disable(unexpected);
 }

@@ -10,6 +10,7 @@ use core::time::Duration;
 
 use embedded_hal::digital::StatefulOutputPin;
 use glint_core::calibration::SAMPLES;
+use glint_core::feature::{GESTURE, IMU, REPLAY, WIREFRAME};
 use glint_core::hand::Pose;
 use glint_core::mpu6050::Stream;
 use glint_hal::timer::{Clock, Deadline};
@@ -148,7 +149,9 @@ impl MainLoop {
 
     /// Computes the camera's place from a frame of the image sensor.
     fn follow_hand(&mut self) {
-        if let Some(gesture) = &mut self.machine.gesture {
+        if GESTURE.is_built
+            && let Some(gesture) = &mut self.machine.gesture
+        {
             gesture.poll();
         }
     }
@@ -165,7 +168,9 @@ impl MainLoop {
         if renderer.is_busy() || renderer.display.back().is_none() {
             return;
         }
-        if let Some(gesture) = gesture {
+        if GESTURE.is_built
+            && let Some(gesture) = gesture
+        {
             if let Some(Pose { r, theta, phi }) = gesture.move_to() {
                 // The control keeps the distance in its range.
                 let _ = scene.set_sphere(Sphere { r, theta, phi });
@@ -176,7 +181,9 @@ impl MainLoop {
             scene.set_mark(gesture.mark());
         }
         let (eye, radius) = (scene.view().eye(), scene.sphere().r);
-        if let Some(Ok(view)) = imu.view(eye, radius) {
+        if IMU.is_built
+            && let Some(Ok(view)) = imu.view(eye, radius)
+        {
             scene.move_view(view);
         }
     }
@@ -189,7 +196,8 @@ impl MainLoop {
             renderer,
             ..
         } = &mut self.machine;
-        keypad.has_request()
+        WIREFRAME.is_built
+            && keypad.has_request()
             && !scene.changed()
             && !renderer.is_busy()
             && renderer.display.back().is_some()
@@ -244,7 +252,9 @@ impl MainLoop {
         }
         if let Some(drawn) = renderer.draw(models, scene, progress) {
             scene.set_drawn(drawn);
-            if let Some(gesture) = gesture {
+            if GESTURE.is_built
+                && let Some(gesture) = gesture
+            {
                 gesture.on_drawn();
             }
         }
@@ -255,14 +265,16 @@ impl MainLoop {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };
         let result = match job {
-            Job::Sensor(job) => imu::poll(machine, job),
-            Job::Replay => replay::poll(machine),
-            Job::Gesture(job) => gesture_commands::poll(machine, job),
+            Job::Sensor(job) if IMU.is_built => imu::poll(machine, job),
+            Job::Replay if REPLAY.is_built => replay::poll(machine),
+            Job::Gesture(job) if GESTURE.is_built => gesture_commands::poll(machine, job),
             _ if machine.scene.changed() => Poll::Pending,
             Job::Draw => Poll::Ready(Ok(())),
             Job::Render => Poll::Ready(statistics::print(machine, false)),
             Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
             Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
+            // No command of this build leaves another job.
+            _ => Poll::Ready(Ok(())),
         };
         if let Poll::Ready(result) = result {
             self.finish(result);
@@ -332,15 +344,18 @@ fn poll_buttons(
     let Some(devices) = devices else {
         return;
     };
+    if !(IMU.is_built || WIREFRAME.is_built) {
+        return;
+    }
     let pressed = keypad.sample(devices.buttons.read(), clock);
     if scene.shows_wireframe() {
         keypad.press(pressed, devices.switches.read());
         return;
     }
-    if pressed & CALIBRATE != 0 {
+    if IMU.is_built && pressed & CALIBRATE != 0 {
         imu.calibrate(SAMPLES);
     }
-    if pressed & RECENTRE != 0 {
+    if IMU.is_built && pressed & RECENTRE != 0 {
         imu.recentre();
     }
 }

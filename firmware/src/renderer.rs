@@ -1,5 +1,6 @@
 //! Drawing of the scene's frames, by the gateware or by the CPU, into two frame buffers and one buffer of depth codes.
 
+use glint_core::feature::{CPU, EDGES};
 use glint_core::picture::{Backend, Size};
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
@@ -9,7 +10,7 @@ use litex_pac::cpu;
 use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output};
 use crate::memory::Scratch;
 use crate::models::Models;
-use crate::scene::{Drawn, RenderedBy, Scene};
+use crate::scene::{DrawError, Drawn, RenderedBy, Scene};
 
 /// The renderers of gateware and CPU, and their memory.
 pub struct Renderer {
@@ -34,7 +35,7 @@ impl Renderer {
         models: &Models,
         scene: &Scene,
         mut progress: impl FnMut(),
-    ) -> Option<Result<Drawn, RenderError>> {
+    ) -> Option<Result<Drawn, DrawError>> {
         let frame = scene.frame(models);
         let drawn = match self.draw_by_gateware(&frame, scene, &mut progress)? {
             Ok(gateware::Rendered {
@@ -49,7 +50,10 @@ impl Renderer {
                 by: RenderedBy::Gateware(counters, lack),
                 has_depth: scene.wants_depth(),
             }),
-            Err(fallback) => self.draw_by_cpu(&frame, fallback, progress)?,
+            Err(fallback) if CPU.is_built => self
+                .draw_by_cpu(&frame, fallback, progress)?
+                .map_err(DrawError::Render),
+            Err(fallback) => Err(DrawError::NoCpu(fallback)),
         };
         if drawn.is_ok() {
             self.draw_mark(scene);
@@ -196,11 +200,15 @@ fn draw(
     progress: &mut dyn FnMut(),
 ) -> Result<FrameStats, RenderError> {
     let constants = frame.constants()?;
-    if let Subject::Edges(subject, _) = &frame.subject {
+    if EDGES.is_built
+        && let Subject::Edges(subject, _) = &frame.subject
+    {
         // First, because this refuses a mesh with too many edges.
         edges.make(&subject.mesh, progress)?;
     }
     let mut stats = frame.draw(&constants, buffer, scratch, progress)?;
-    frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
+    if EDGES.is_built {
+        frame.draw_edges(&constants, edges, buffer, scratch, progress, &mut stats)?;
+    }
     Ok(stats)
 }

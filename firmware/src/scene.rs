@@ -1,8 +1,11 @@
 //! The scene: model or field, camera, size and appearance, and whether they have changed since the last frame.
 
+use core::fmt;
+
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
+use glint_core::feature::{CPU, FIELD, OBJECT, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::{Backend, Edges, Size};
@@ -63,6 +66,25 @@ pub enum RenderedBy {
     Gateware(Counters, Option<Lack>),
 }
 
+/// Reason why a frame is not drawn.
+#[derive(Clone, Copy, Debug)]
+pub enum DrawError {
+    /// The CPU cannot draw it.
+    Render(RenderError),
+    /// The gateware cannot draw it, for this reason or as the backend is the CPU, and this build leaves out drawing by the CPU.
+    NoCpu(Option<Fallback>),
+}
+
+impl fmt::Display for DrawError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Render(error) => error.fmt(f),
+            Self::NoCpu(None) => CPU.fmt(f),
+            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
+        }
+    }
+}
+
 /// The state that the console sets.
 pub struct Scene {
     /// The motion of the wireframe, while it is shown.
@@ -83,7 +105,7 @@ pub struct Scene {
     changed: bool,
     wants_depth: bool,
     mark: Option<Mark>,
-    drawn: Option<Result<Drawn, RenderError>>,
+    drawn: Option<Result<Drawn, DrawError>>,
 }
 
 impl Scene {
@@ -154,7 +176,7 @@ impl Scene {
 
     /// Whether the wireframe is shown.
     pub const fn shows_wireframe(&self) -> bool {
-        self.wireframe.is_some()
+        WIREFRAME.is_built && self.wireframe.is_some()
     }
 
     /// Shows the wireframe as its program has it. Edges of a mesh are off from now on.
@@ -167,7 +189,7 @@ impl Scene {
 
     /// Whether the objects are shown.
     pub const fn shows_objects(&self) -> bool {
-        self.objects
+        OBJECT.is_built && self.objects
     }
 
     /// Shows the objects. Edges of a mesh are off from now on.
@@ -190,7 +212,11 @@ impl Scene {
 
     /// The distance field, alone or with the mesh in it.
     pub const fn field(&self) -> Option<&Field> {
-        self.field.as_ref()
+        if FIELD.is_built {
+            self.field.as_ref()
+        } else {
+            None
+        }
     }
 
     /// Whether the field is shown, alone or with the mesh in it.
@@ -416,12 +442,12 @@ impl Scene {
     }
 
     /// Statistics of the last frame, if there is one, or the error of its drawing.
-    pub const fn drawn(&self) -> Option<Result<Drawn, RenderError>> {
+    pub const fn drawn(&self) -> Option<Result<Drawn, DrawError>> {
         self.drawn
     }
 
     /// Stores the statistics of the frame of the present scene, or the error of its drawing.
-    pub const fn set_drawn(&mut self, drawn: Result<Drawn, RenderError>) {
+    pub const fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>) {
         self.drawn = Some(drawn);
         self.changed = false;
     }

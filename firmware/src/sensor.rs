@@ -9,6 +9,7 @@ use core::pin::Pin;
 use core::task::{Context, Waker};
 
 use critical_section::Mutex;
+use glint_core::feature::IMU;
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
 use glint_hal::i2c;
 use heapless::Deque;
@@ -75,6 +76,9 @@ impl Sink<i2c::BusError> for Inbox {
 /// # Safety
 /// The caller must never return.
 pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
+    if !IMU.is_built {
+        return;
+    }
     // SAFETY: the future is a local variable of a function that does not return, so the future is never dropped.
     let stream = unsafe {
         mem::transmute::<Pin<&mut dyn Future<Output = ()>>, Pin<&'static mut dyn Future<Output = ()>>>(
@@ -89,6 +93,9 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
 /// Polls the stream. Call this after an interrupt at the end of a transfer or pause. The cycles since `start` are added to
 /// the cycles of the stream.
 pub fn advance(start: u32) {
+    if !IMU.is_built {
+        return;
+    }
     critical_section::with(|token| {
         if let Some(stream) = &mut *STREAM.borrow_ref_mut(token) {
             let mut context = Context::from_waker(Waker::noop());
@@ -117,11 +124,14 @@ pub fn cycles() -> [u64; 2] {
 
 /// Whether the queue has an event.
 pub fn has_events() -> bool {
-    critical_section::with(|token| !EVENTS.borrow_ref(token).is_empty())
+    IMU.is_built && critical_section::with(|token| !EVENTS.borrow_ref(token).is_empty())
 }
 
 /// Gives all queued events to `imu`.
 pub fn deliver(imu: &mut Imu) {
+    if !IMU.is_built {
+        return;
+    }
     while let Some(event) = critical_section::with(|token| EVENTS.borrow_ref_mut(token).pop_front())
     {
         match event {

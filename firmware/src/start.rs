@@ -3,6 +3,7 @@
 use core::fmt::{self, Write as _};
 
 use glint_core::camera::ViewError;
+use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
@@ -67,8 +68,10 @@ impl fmt::Display for StartError {
                 found >> 20
             ),
             Self::Clock(stopped) => stopped.fmt(f),
-            Self::Cube(error) => write!(f, "the built-in cube: {error}"),
-            Self::Program(error) => write!(f, "the built-in {error}"),
+            Self::Cube(error) if MESH.is_built => write!(f, "the built-in cube: {error}"),
+            Self::Cube(_) => f.write_str("the built-in cube"),
+            Self::Program(error) if WIREFRAME.is_built => write!(f, "the built-in {error}"),
+            Self::Program(_) => f.write_str("the built-in wireframe program"),
             Self::Camera(error) => write!(f, "the first camera: {error}"),
         }
     }
@@ -135,8 +138,12 @@ pub fn machine() -> Result<Machine, StartError> {
         (
             Scanout::probe(peripherals.scanout).ok(),
             TriangleEngine::probe(peripherals.triangle).ok(),
-            Raymarcher::probe(peripherals.raymarch).ok(),
-            GestureEngine::probe(peripherals.gesture).ok(),
+            Raymarcher::probe(peripherals.raymarch)
+                .ok()
+                .filter(|_| FIELD.is_built),
+            GestureEngine::probe(peripherals.gesture)
+                .ok()
+                .filter(|_| GESTURE.is_built),
             Some(devices),
         )
     } else {

@@ -17,6 +17,7 @@ pub mod camera;
 pub mod choice;
 pub mod colour;
 pub mod console;
+pub mod feature;
 pub mod field;
 pub mod fixed;
 pub mod follow;

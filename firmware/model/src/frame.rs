@@ -7,6 +7,8 @@ mod constants;
 mod description;
 mod edges;
 
+use glint_core::feature::WIREFRAME;
+
 use crate::edges::EdgeStats;
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
@@ -97,7 +99,9 @@ impl Frame<'_> {
         progress: &mut dyn FnMut(),
     ) -> Result<FrameStats, RenderError> {
         let mut stats = FrameStats::default();
-        if let Subject::Wireframe(subject) = &self.subject {
+        if WIREFRAME.is_built
+            && let Subject::Wireframe(subject) = &self.subject
+        {
             stats.wireframe = Some(render_wireframe(subject, self.clear, buffer, progress)?);
             return Ok(stats);
         }

@@ -2,6 +2,7 @@
 
 use glint_core::choice::switch_name;
 use glint_core::console::SceneCommands;
+use glint_core::feature::{GESTURE, MESH, OBJECT, UPLOAD};
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
 use glint_core::wire::Manifest;
@@ -84,6 +85,9 @@ impl<'l> SceneCommands<'l> for Machine {
             self.scene.show_wireframe();
             return Ok(Reply::Done);
         };
+        if !UPLOAD.is_built {
+            return Err(CommandError::LeftOut(UPLOAD));
+        }
         upload::receive(self, "program", upload)?;
         let length = upload.length as usize;
         let accepted = self.models.accept_program(length);
@@ -176,6 +180,11 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
     } = machine;
     let built_in = scenes::named(name);
     if let Some(built_in) = built_in
+        && built_in.lacks_features().next().is_some()
+    {
+        return Err(CommandError::Features { built_in });
+    }
+    if let Some(built_in) = built_in
         && built_in.lacks(identity.blocks).next().is_some()
     {
         let blocks = identity.blocks;
@@ -183,17 +192,26 @@ fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
     }
     if built_in.is_some() || name == DEFAULT {
         imu.set_follow(None);
-        if let Some(gesture) = gesture {
+        if GESTURE.is_built
+            && let Some(gesture) = gesture
+        {
             gesture.stop();
         }
-        let removed = models.objects_mut().remove(None);
-        removed.map_err(CommandError::Object)?;
+        if OBJECT.is_built {
+            let removed = models.objects_mut().remove(None);
+            removed.map_err(CommandError::Object)?;
+        }
         scene.reset().map_err(CommandError::View)?;
-        models.show(CUBE);
+        if MESH.is_built {
+            models.show(CUBE);
+        }
         return Ok(match built_in {
-            Some(built_in) => Reply::Lines(built_in.lines),
+            Some(built_in) => Reply::Lines(scenes::lines(built_in)),
             None => Reply::Done,
         });
+    }
+    if !MESH.is_built {
+        return Err(CommandError::Scene(name));
     }
     let is_other = models.show(name).ok_or(CommandError::Scene(name))?;
     scene.set_field(None);

@@ -19,6 +19,8 @@ pub enum Fallback {
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
     NoLineEngine,
+    /// The soft core cannot make the descriptors of the frame, because this firmware is built without that.
+    Descriptors(Lack),
 }
 
 impl From<EngineError> for Fallback {
@@ -51,6 +53,7 @@ impl fmt::Display for Fallback {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")
             }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
+            Self::Descriptors(lack) => lack.fmt(f),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
         }
     }

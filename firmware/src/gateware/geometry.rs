@@ -8,6 +8,7 @@
 use core::mem;
 
 use glint_core::colour::{Shading, Winding};
+use glint_core::feature::{CPU, MESH};
 use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
@@ -90,9 +91,14 @@ impl GeometryPasses {
     /// Writes the registers of the geometry pass of the first mesh of a frame, if it has one.
     pub fn prepare(&mut self, job: &mut Job) -> Result<(), Fallback> {
         self.prepared = None;
-        self.lack = lack(job.frame);
-        if self.lack.is_some() {
+        if !MESH.is_built {
             return Ok(());
+        }
+        self.lack = lack(job.frame);
+        match self.lack {
+            None => {}
+            Some(_) if CPU.is_built => return Ok(()),
+            Some(lack) => return Err(Fallback::Descriptors(lack)),
         }
         self.prepare_mesh(job, 0)
     }
@@ -121,7 +127,10 @@ impl GeometryPasses {
     /// no mesh, or the CPU has made all descriptors.
     pub fn start(&mut self, job: &mut Job, cpu: &mut Cpu) -> Result<bool, Fallback> {
         job.buffers.clear();
-        if self.lack.is_some() {
+        if !MESH.is_built {
+            return Ok(false);
+        }
+        if CPU.is_built && self.lack.is_some() {
             self.set_up(job, cpu)?;
             return Ok(false);
         }
@@ -147,6 +156,9 @@ impl GeometryPasses {
     /// Continues after the end of a geometry pass: starts that of the next mesh, clips the triangles of this one that need it, and prepares
     /// the pass after the next. Returns whether there is a next mesh.
     pub fn advance(&mut self, job: &mut Job) -> Result<bool, Fallback> {
+        if !MESH.is_built {
+            return Ok(false);
+        }
         let (number, counts) = (self.number, job.engine.counts());
         let starts = self.start_prepared(job);
         self.triangles += counts.triangles;

@@ -2,6 +2,7 @@
 
 use glint_core::camera::Projection;
 use glint_core::colour::Shading;
+use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
@@ -217,7 +218,7 @@ impl GatewareRenderer {
     ) -> Option<Result<Rendered, Fallback>> {
         let next = match (self.stage, &frame.subject) {
             (Stage::Idle, _) => return self.begin(frame, output, cpu).err().map(Err),
-            (Stage::Project, Subject::Wireframe(wireframe)) => {
+            (Stage::Project, Subject::Wireframe(wireframe)) if WIREFRAME.is_built => {
                 match self.project(wireframe, frame.size, 0) {
                     Ok(false) => return None,
                     Ok(true) => {
@@ -257,7 +258,9 @@ impl GatewareRenderer {
         if runs {
             return Stage::Geometry;
         }
-        if let Subject::Edges(..) = frame.subject {
+        if EDGES.is_built
+            && let Subject::Edges(..) = frame.subject
+        {
             self.start_edges(frame.size);
             return Stage::Lines;
         }
@@ -284,7 +287,9 @@ impl GatewareRenderer {
         self.start_measurement(frame);
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
-        if let Subject::Wireframe(_) = frame.subject {
+        if WIREFRAME.is_built
+            && let Subject::Wireframe(_) = frame.subject
+        {
             self.projected = Projected::default();
             self.stage = Stage::Project;
             return Ok(());
@@ -292,7 +297,9 @@ impl GatewareRenderer {
         self.prepare_geometry(frame, 0)?;
         let runs = self.start_geometry(frame, 0, cpu);
         let next = runs.and_then(|runs| {
-            self.project_edges(frame, cpu)?;
+            if EDGES.is_built {
+                self.project_edges(frame, cpu)?;
+            }
             Ok(self.after_geometry(runs, frame))
         });
         self.enter(next, frame, output)

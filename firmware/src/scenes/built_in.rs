@@ -1,22 +1,81 @@
 //! A built-in scene.
 
 use glint_core::block::Block;
+use glint_core::feature::Feature;
 
-/// A built-in scene.
+/// A built-in scene, or a list of some.
 #[derive(Debug)]
 pub struct BuiltIn {
     /// Name on the console.
     pub name: &'static str,
     /// The optional blocks of the gateware that it needs.
     pub blocks: &'static [Block],
+    /// The parts of the firmware that it needs.
+    pub features: &'static [Feature],
+    /// What it shows.
+    pub content: Content,
+}
+
+/// What a built-in scene shows.
+#[derive(Debug)]
+pub enum Content {
     /// The console commands that set the picture and start what moves the camera, a line each, from the state at start on.
-    pub lines: &'static str,
+    Lines(&'static str),
+    /// The names of other scenes, each of which has lines.
+    Scenes(&'static [&'static str]),
 }
 
 impl BuiltIn {
+    /// A scene with a picture. A build without one of its features leaves the lines out.
+    pub const fn picture(
+        name: &'static str,
+        blocks: &'static [Block],
+        features: &'static [Feature],
+        lines: &'static str,
+    ) -> Self {
+        let lines = if all_built(features) { lines } else { "" };
+        Self {
+            name,
+            blocks,
+            features,
+            content: Content::Lines(lines),
+        }
+    }
+
+    /// A list of scenes.
+    pub const fn list(
+        name: &'static str,
+        blocks: &'static [Block],
+        features: &'static [Feature],
+        scenes: &'static [&'static str],
+    ) -> Self {
+        Self {
+            name,
+            blocks,
+            features,
+            content: Content::Scenes(scenes),
+        }
+    }
+
     /// The blocks that the scene needs and a gateware with these block enable bits lacks.
     pub fn lacks(&self, enabled: u32) -> impl Iterator<Item = Block> {
         let blocks = self.blocks.iter().copied();
         blocks.filter(move |block| block.bit() & !enabled != 0)
     }
+
+    /// The parts of the firmware that the scene needs and this build lacks.
+    pub fn lacks_features(&self) -> impl Iterator<Item = &'static Feature> {
+        self.features.iter().filter(|feature| !feature.is_built)
+    }
+}
+
+const fn all_built(features: &[Feature]) -> bool {
+    let mut number = 0;
+    while number < features.len() {
+        if !features[number].is_built {
+            return false;
+        }
+        number += 1;
+    }
+    true
 }

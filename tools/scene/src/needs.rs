@@ -1,12 +1,14 @@
-//! What scenes need of the gateware.
+//! What scenes need of the gateware and of the firmware.
 
 use std::collections::BTreeSet;
 
 use glint_core::block::Block;
-use glint_core::colour::Shading;
-use glint_core::console::Command;
+use glint_core::colour::{Shading, Winding};
+use glint_core::console::{Command, ObjectAction};
+use glint_core::feature::{BASE, CPU, Feature, MESH, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::picture::Backend;
+use glint_core::shape::Shape;
 use litex_pac::raymarch::Kind;
 
 use crate::scene::{Scene, Steer};
@@ -33,11 +35,13 @@ pub struct Fields {
     pub prepass: bool,
 }
 
-/// What scenes need of the gateware.
+/// What scenes need of the gateware and of the firmware.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// The optional blocks.
     pub blocks: BTreeSet<Block>,
+    /// The parts of the firmware: names of its Cargo features.
+    pub features: BTreeSet<Feature>,
     /// Smooth shading in the triangle engine.
     pub smooth: bool,
     /// The raymarcher's features.
@@ -45,7 +49,7 @@ pub struct Needs {
 }
 
 impl Scene {
-    /// What the scene needs of the gateware; a list of scenes needs what each of them needs.
+    /// What the scene needs; a list of scenes needs what each of them needs.
     pub fn needs(&self) -> Needs {
         if !self.scenes().is_empty() {
             let mut needs = Needs::of(self.scenes());
@@ -58,6 +62,7 @@ impl Scene {
         if matches!(self.steer(), Steer::Command(command) if command.starts_with("gesture")) {
             blocks.insert(Block::Gesture);
         }
+        let features = self.features();
         let commands: Vec<Command> = self.commands().collect();
         let is_on_cpu = |command: &Command| {
             matches!(
@@ -70,6 +75,7 @@ impl Scene {
         if commands.iter().any(is_on_cpu) {
             return Needs {
                 blocks,
+                features,
                 ..Needs::default()
             };
         }
@@ -103,9 +109,48 @@ impl Scene {
         });
         Needs {
             blocks,
+            features,
             smooth,
             fields,
         }
+    }
+
+    /// The parts of the firmware that execute the scene's lines and draw its picture.
+    fn features(&self) -> BTreeSet<Feature> {
+        let mut features = BTreeSet::new();
+        // The lines have been checked.
+        let commands = self
+            .lines()
+            .filter_map(|line| Command::parse(line).ok().flatten());
+        for command in commands {
+            features.insert(command.feature());
+            match command {
+                Command::Scene { name: Some(mesh) }
+                | Command::Object {
+                    action: Some(ObjectAction::Add { mesh, .. }),
+                } => {
+                    features.insert(MESH);
+                    if !Shape::NAMES.contains(&mesh) {
+                        features.insert(UPLOAD);
+                    }
+                }
+                // The soft core makes the descriptors of such meshes, or the whole picture.
+                Command::Backend {
+                    backend: Some(Backend::Cpu),
+                }
+                | Command::Clip { far: Some(_) }
+                | Command::Winding {
+                    rule: Winding::Screen,
+                }
+                | Command::Cull { on: false }
+                | Command::Orthographic { .. } => {
+                    features.insert(CPU);
+                }
+                _ => {}
+            }
+        }
+        features.remove(&BASE);
+        features
     }
 }
 
@@ -122,6 +167,7 @@ impl Needs {
     fn with(self, other: Self) -> Self {
         Self {
             blocks: &self.blocks | &other.blocks,
+            features: &self.features | &other.features,
             smooth: self.smooth || other.smooth,
             fields: match (self.fields, other.fields) {
                 (Some(one), Some(other)) => Some(one.with(&other)),

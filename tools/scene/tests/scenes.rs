@@ -297,6 +297,40 @@ fn needs_follow_from_the_keys() {
 }
 
 #[test]
+fn parts_of_the_firmware_follow_from_the_commands() {
+    let features = |text: &str| {
+        let needs = with_camera(text).needs();
+        let names = needs.features.iter().map(|feature| feature.name);
+        names.collect::<Vec<_>>().join(" ")
+    };
+    for (text, expected) in [
+        ("model = \"torus\"", "mesh"),
+        ("model = \"cow.obj\"", "mesh upload"),
+        ("model = \"torus\"\nbackend = \"cpu\"", "cpu mesh"),
+        ("model = \"torus\"\nclip = 3", "cpu mesh"),
+        ("model = \"torus\"\nedges = \"over\"", "edges mesh"),
+        ("object = \"torus\"\nlight = \"1,1,1\"", "light mesh object"),
+        ("model = \"torus\"\nsteer = \"gesture on\"", "gesture mesh"),
+        ("field = \"menger:3\"\nsteer = \"imu orbit\"", "field imu"),
+        (
+            "field = \"menger:2\"\nmodel = \"torus\"",
+            "field mesh mesh-in-field",
+        ),
+    ] {
+        assert_eq!(features(text), expected, "{text}");
+    }
+}
+
+/// The bits of `Block` are those of the SoC's description, which numbers the blocks in the text of the register.
+#[test]
+fn the_blocks_have_the_bits_of_the_gateware() {
+    let page = fs::read_to_string(root().join("docs/registers.md")).unwrap();
+    let bits = Block::ALL.map(|block| format!("{} `{block}`", block.bit().trailing_zeros()));
+    let text = format!("a bit each: {}.", bits.join(", "));
+    assert!(page.contains(&text), "docs/registers.md lacks: {text}");
+}
+
+#[test]
 fn several_scenes_need_what_each_needs() {
     let scenes = ["menger", "wireframe", "spheres"].map(|name| built_in(name).unwrap());
     let needs = Needs::of(&scenes);

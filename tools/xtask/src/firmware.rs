@@ -1,10 +1,11 @@
 //! `cargo xtask firmware`: the firmware as the image that the BIOS loads.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
+use glint_scene::{NAMES, Needs, Scene};
 use litex_pac::memories::{MAIN_RAM, SRAM};
 use object::elf::PT_LOAD;
 use object::read::elf::{ElfFile32, ProgramHeader};
@@ -35,18 +36,52 @@ fn main_ram(board: Board) -> Result<u64> {
     size.with_context(|| format!("{} states no size of main memory", path.display()))
 }
 
-/// Builds the firmware for `board` with `features` and returns its image: `target/firmware/glint.bin` for the virtual board and the
-/// Urbana, `glint-BOARD.bin` for another board, `glint-FEATURE….bin` with features. The ELF file is in the same folder.
+/// The sizes of a firmware image in bytes.
+pub struct Image {
+    /// Length of the image.
+    pub length: u64,
+    /// Code.
+    pub code: u64,
+    /// Constants.
+    pub constants: u64,
+    /// Variables: those with a value at start, which are in the image too, and those that are 0 at start.
+    pub variables: u64,
+}
+
+/// Builds the firmware for `board` with all of its parts, and with `features`. The image is `target/firmware/glint.bin` for the virtual
+/// board and the Urbana, `glint-BOARD.bin` for another board, `glint-FEATURE….bin` with features.
 ///
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
-pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
+pub fn build(board: Board, features: &[&str]) -> Result<Image> {
+    compile(board, features, true, features)
+}
+
+/// Builds the firmware for `board` with the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`, or
+/// `glint-all.bin` for all built-in scenes; the names of board and features are in it as for [`build`].
+///
+/// # Errors
+/// As [`build`].
+pub fn build_for(board: Board, scenes: &[Scene], features: &[&str]) -> Result<Image> {
+    let mut names: Vec<&str> = scenes.iter().map(Scene::name).collect();
+    if names == NAMES {
+        names = vec!["all"];
+    }
+    names.extend(features);
+    let needs = Needs::of(scenes);
+    let parts = needs.features.iter().map(|feature| feature.name);
+    let parts: Vec<_> = parts.chain(features.iter().copied()).collect();
+    compile(board, &names, false, &parts)
+}
+
+/// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name.
+fn compile(board: Board, suffixes: &[&str], has_default: bool, features: &[&str]) -> Result<Image> {
     let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
         Board::Virtual | Board::Urbana => &["glint"],
         Board::Ulx3s => &["glint", board.name()],
     };
-    let name = [names, features].concat().join("-");
+    let name = [names, suffixes].concat().join("-");
     let built = paths::target().join("firmware-build");
     let mut cargo = Command::new("cargo");
     cargo.args([
@@ -58,6 +93,9 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
         "--target",
         TARGET,
     ]);
+    if !has_default {
+        cargo.arg("--no-default-features");
+    }
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
     if features.contains(&"peers") {
@@ -78,14 +116,23 @@ pub fn build(board: Board, features: &[&str]) -> Result<PathBuf> {
 
     let elf = fs::read(built.join(TARGET).join("firmware/glint-firmware"))
         .context("reading the firmware")?;
-    let (image, sizes) = image(&elf, main_ram).with_context(|| format!("firmware {name}"))?;
+    let bytes = image(&elf, main_ram).with_context(|| format!("firmware {name}"))?;
     let folder = paths::target().join("firmware");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     let path = folder.join(&name).with_extension("bin");
     write(&path.with_extension("elf"), &elf)?;
-    write(&path, &image)?;
-    println!("  {name}.bin: {} bytes ({sizes})", image.len());
-    Ok(path)
+    write(&path, &bytes)?;
+    let image = sizes(&elf, bytes.len() as u64)?;
+    let Image {
+        length,
+        code,
+        constants,
+        variables,
+    } = image;
+    run::print_progress(&format!(
+        "  {name}.bin: {length} bytes (code {code}, constants {constants}), variables {variables}"
+    ));
+    Ok(image)
 }
 
 /// Writes a file only if its contents change, so that builds which depend on it are not repeated.
@@ -96,8 +143,8 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// Returns the image of an ELF file, which starts at the base of main memory, and a text that lists the image's sections.
-fn image(elf: &[u8], main_ram: u64) -> Result<(Vec<u8>, String)> {
+/// Returns the image of an ELF file, which starts at the base of main memory.
+fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
     let (base, end) = (
@@ -155,6 +202,12 @@ fn image(elf: &[u8], main_ram: u64) -> Result<(Vec<u8>, String)> {
         image.resize(offset, 0);
         image.extend_from_slice(data);
     }
+    Ok(image)
+}
+
+/// The sizes of an ELF file, whose image has this length.
+fn sizes(elf: &[u8], length: u64) -> Result<Image> {
+    let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let size = |wanted: &[SectionKind]| -> u64 {
         let sections = file
             .sections()
@@ -164,19 +217,19 @@ fn image(elf: &[u8], main_ram: u64) -> Result<(Vec<u8>, String)> {
             .map(|s| s.size())
             .sum()
     };
-    let sizes = format!(
-        "code {}, constants {}, data {}, zeroed at start {}",
-        size(&[SectionKind::Text]),
-        size(&[SectionKind::ReadOnlyData, SectionKind::ReadOnlyString]),
-        size(&[SectionKind::Data]),
-        size(&[SectionKind::UninitializedData]),
-    );
-    Ok((image, sizes))
+    Ok(Image {
+        length,
+        code: size(&[SectionKind::Text]),
+        constants: size(&[SectionKind::ReadOnlyData, SectionKind::ReadOnlyString]),
+        variables: size(&[SectionKind::Data, SectionKind::UninitializedData]),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use std::fs;
+
+    use glint_core::feature;
 
     use crate::paths;
 
@@ -191,6 +244,23 @@ mod tests {
             Some((format!("0x{high}_{low}"), format!("{number} {unit}")))
         });
         windows.collect()
+    }
+
+    /// The features of a manifest by default: the parts of the firmware.
+    fn default_features(manifest: &str) -> Vec<String> {
+        let text = fs::read_to_string(paths::root().join(manifest)).unwrap();
+        let manifest: toml::Table = toml::from_str(&text).unwrap();
+        let names = manifest["features"]["default"].as_array().unwrap();
+        let names = names.iter().map(|name| name.as_str().unwrap().to_owned());
+        names.collect()
+    }
+
+    #[test]
+    fn every_part_is_a_feature_of_the_firmware() {
+        let parts = feature::ALL.map(|part| part.name);
+        for manifest in ["Cargo.toml", "firmware/core/Cargo.toml"] {
+            assert_eq!(default_features(manifest), parts, "{manifest}");
+        }
     }
 
     #[test]

@@ -58,7 +58,10 @@ enum Task {
         /// Board to build for; the ULX3S has less memory than the others
         #[arg(long, value_enum, default_value = "virtual")]
         board: gateware::Board,
-        /// Cargo features of the firmware; `peers` lets the console command `bench` measure other crates too
+        /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all` [default: every part]
+        #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',')]
+        scene: Vec<String>,
+        /// Further Cargo features of the firmware, as in its Cargo.toml; `peers` lets the console command `bench` measure other crates too
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
@@ -132,9 +135,18 @@ fn main() -> Result<()> {
         }
         Task::Pac { check } => pac::generate(check),
         Task::Scenes { check } => scenes::generate(check),
-        Task::Firmware { board, features } => {
+        Task::Firmware {
+            board,
+            scene,
+            features,
+        } => {
             let features: Vec<_> = features.iter().map(String::as_str).collect();
-            firmware::build(board, &features).map(|_| ())
+            if scene.is_empty() {
+                firmware::build(board, &features)?;
+            } else {
+                firmware::build_for(board, &scenes::read(&scene)?, &features)?;
+            }
+            Ok(())
         }
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test { clock: None } => test::test(),

@@ -6,12 +6,13 @@ use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
 use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
-use super::table::commands;
+use super::table::{commands, part};
 use super::values::{
     FieldOfView, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name, Sensitivity, Size,
     Upload, View, Whole,
 };
 use crate::colour::{Shading, Winding};
+use crate::feature::Feature;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{Background, Light, Material, Rgb};
@@ -24,6 +25,9 @@ use crate::words::Words;
 pub trait Executor<'a> {
     /// The result of a command. It may borrow from the line.
     type Output;
+
+    /// The result of a command that this build leaves out. [`Command::parse`] refuses such a command.
+    fn left_out(&mut self, feature: Feature) -> Self::Output;
 }
 
 commands! {
@@ -40,29 +44,29 @@ commands! {
     /// Commands of the scene: mesh, field and wireframe.
     SceneCommands {
         scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on";
-        load Load(upload: Upload, name: Option<MeshName>): "upload a mesh (binary) under a name (default model) and show it";
-        models Models(): "list the meshes and the memory for uploads";
-        unload Unload(name: MeshName): "remove an uploaded mesh";
-        program Program(upload: Option<Upload>): "upload a wireframe program (binary) and show it; alone: show the last one";
-        press Press(key: Key, rotate: Flag): "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
-        field Field(field: Option<Or<Off, Field>>): "show or set the distance field; off shows the mesh";
-        mesh Mesh(on: Option<bool>): "turn the mesh in a field on or off, or show the setting";
-        stereo Stereo(eyes: Option<Or<Off, Stereo>>): "show or set the two eyes of a field; off is one eye";
+        load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
+        models Models() in UPLOAD: "list the meshes and the memory for uploads";
+        unload Unload(name: MeshName) in UPLOAD: "remove an uploaded mesh";
+        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one";
+        press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
+        field Field(field: Option<Or<Off, Field>>) in FIELD: "show or set the distance field; off shows the mesh";
+        mesh Mesh(on: Option<bool>) in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
+        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in FIELD: "show or set the two eyes of a field; off is one eye";
     }
 
     /// Commands of objects: several meshes in a frame, each with a place of its own.
     ObjectCommands {
-        object Object(action: Option<Object>): "list or show the objects, add one, change its place or colour, or remove it";
+        object Object(action: Option<Object>) in OBJECT: "list or show the objects, add one, change its place or colour, or remove it";
     }
 
     /// Commands of a field's appearance, and of the light on meshes.
     AppearanceCommands {
-        material Material(material: Option<Material>): "show or set the material of a field; normal colours faces by direction";
-        light Light(light: Option<Or<Default, Light>>): "show the lights, add one by its direction or at the camera, or restore the default";
-        ambient Ambient(colour: Option<Or<Default, Rgb>>): "show or set the ambient light";
-        background Background(background: Option<Background>): "show or set the background of a field";
-        fog Fog(density: Option<Or<Off, U4_28>>): "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
-        occlusion Occlusion(on: Option<bool>): "turn ambient occlusion of a field on or off, or show the setting";
+        material Material(material: Option<Material>) in FIELD: "show or set the material of a field; normal colours faces by direction";
+        light Light(light: Option<Or<Default, Light>>) in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default";
+        ambient Ambient(colour: Option<Or<Default, Rgb>>) in LIGHT: "show or set the ambient light";
+        background Background(background: Option<Background>) in FIELD: "show or set the background of a field";
+        fog Fog(density: Option<Or<Off, U4_28>>) in FIELD: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
+        occlusion Occlusion(on: Option<bool>) in FIELD: "turn ambient occlusion of a field on or off, or show the setting";
     }
 
     /// Commands of the camera.
@@ -78,41 +82,62 @@ commands! {
 
     /// Commands of the motion sensor (IMU).
     ImuCommands {
-        imu Imu(action: Option<Imu>): "show sensor status; calibrate, stream, or steer the camera";
-        mounting Mounting(mounting: Option<Mounting>): "show or set the sensor axes that point into the scene and up on the screen";
-        sensitivity Sensitivity(gain: Option<Sensitivity>): "show or set camera gain (0.125 to 8)";
-        replay Replay(upload: Option<Upload>): "upload a log (binary) and compute its attitudes, or download the last attitudes (binary)";
+        imu Imu(action: Option<Imu>) in IMU: "show sensor status; calibrate, stream, or steer the camera";
+        mounting Mounting(mounting: Option<Mounting>) in IMU: "show or set the sensor axes that point into the scene and up on the screen";
+        sensitivity Sensitivity(gain: Option<Sensitivity>) in IMU: "show or set camera gain (0.125 to 8)";
+        replay Replay(upload: Option<Upload>) in REPLAY: "upload a log (binary) and compute its attitudes, or download the last attitudes (binary)";
     }
 
     /// Commands of the hand in front of the image sensor.
     GestureCommands {
-        gesture Gesture(action: Option<GestureAction>): "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
+        gesture Gesture(action: Option<GestureAction>) in GESTURE: "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }
 
     /// Commands for drawing frames.
     FrameCommands {
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720";
         backend Backend(backend: Option<Backend>): "show or set the backend that draws frames";
-        shading Shading(shading: Option<Shading>): "show or set the shading: flat (one colour per triangle) or smooth (interpolated)";
-        cull Cull(on: bool): "turn culling of back faces on or off";
-        clip Clip(far: Or<Off, U8_28>): "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
-        winding Winding(rule: Winding): "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
-        edges Edges(edges: Option<Or<Off, Edges>>): "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
-        prepass Prepass(on: bool): "turn the cone prepass of a field on or off";
+        shading Shading(shading: Option<Shading>) in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)";
+        cull Cull(on: bool) in MESH: "turn culling of back faces on or off";
+        clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
+        winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
+        edges Edges(edges: Option<Or<Off, Edges>>) in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
+        prepass Prepass(on: bool) in FIELD: "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";
-        bench Bench(kernel: Option<Name>): "measure all kernels in clock cycles, or one";
+        bench Bench(kernel: Option<Name>) in BENCH: "measure all kernels in clock cycles, or one";
     }
 }
 
 /// A function that reads the arguments of a command. `None` means an error, which the reader stores.
 type Read = for<'a> fn(&mut Reader<'a>) -> Option<Command<'a>>;
 
-/// An entry of the table: a command's syntax, and the function that reads its arguments.
-struct Entry {
-    syntax: Syntax,
-    read: Read,
+/// An entry of the table.
+enum Entry {
+    /// A command of this build: its syntax, and the function that reads its arguments.
+    Built { syntax: Syntax, read: Read },
+    /// A command that this build leaves out, and the feature that has it.
+    LeftOut {
+        name: &'static str,
+        feature: Feature,
+    },
+}
+
+impl Entry {
+    const fn name(&self) -> &'static str {
+        match self {
+            Self::Built { syntax, .. } => syntax.name,
+            Self::LeftOut { name, .. } => name,
+        }
+    }
+
+    const fn syntax(&self) -> Option<&Syntax> {
+        match self {
+            Self::Built { syntax, .. } => Some(syntax),
+            Self::LeftOut { .. } => None,
+        }
+    }
 }
 
 /// The name of a command.
@@ -139,8 +164,13 @@ impl<'a> Command<'a> {
         let Some(word) = words.next() else {
             return Ok(None);
         };
-        let Entry { syntax, read } =
-            entry(word.text).ok_or(ParseError(ParseErrorKind::Unknown { word }))?;
+        let (syntax, read) = match entry(word.text) {
+            Some(Entry::Built { syntax, read }) => (syntax, read),
+            Some(&Entry::LeftOut { feature, .. }) => {
+                return Err(ParseError(ParseErrorKind::LeftOut { word, feature }));
+            }
+            None => return Err(ParseError(ParseErrorKind::Unknown { word })),
+        };
         let mut reader = Reader::new(syntax, word, words);
         let command = read(&mut reader);
         reader.end()?;
@@ -149,17 +179,17 @@ impl<'a> Command<'a> {
 }
 
 fn entry(name: &str) -> Option<&'static Entry> {
-    COMMANDS.iter().find(|entry| entry.syntax.name == name)
+    COMMANDS.iter().find(|entry| entry.name() == name)
 }
 
-/// Returns the syntax of the command with this name; `None` for an unknown name.
+/// Returns the syntax of the command with this name; `None` for an unknown name, and for a command that this build leaves out.
 pub(super) fn find(name: &str) -> Option<&'static Syntax> {
-    entry(name).map(|entry| &entry.syntax)
+    entry(name)?.syntax()
 }
 
-/// Returns the syntax of every command, in the order of the help.
+/// Returns the syntax of every command of this build, in the order of the help.
 pub(super) fn syntaxes() -> impl Iterator<Item = &'static Syntax> {
-    COMMANDS.iter().map(|entry| &entry.syntax)
+    COMMANDS.iter().filter_map(Entry::syntax)
 }
 
 /// Writes the help of `command`, or the list of all commands if the name is missing or unknown.

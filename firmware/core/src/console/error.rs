@@ -4,6 +4,7 @@ use core::fmt::{self, Display};
 
 use super::syntax::{Parameter, Syntax};
 use crate::camera::ViewError;
+use crate::feature::Feature;
 use crate::field::FieldError;
 use crate::fixed::Q32_32;
 use crate::follow::SENSITIVITY;
@@ -20,6 +21,8 @@ pub struct ParseError<'a>(pub(super) ParseErrorKind<'a>);
 pub(super) enum ParseErrorKind<'a> {
     /// The first word is not the name of a command.
     Unknown { word: Word<'a> },
+    /// The command of this feature is not in this build.
+    LeftOut { word: Word<'a>, feature: Feature },
     /// The line ends before this parameter.
     Missing {
         syntax: &'static Syntax,
@@ -79,6 +82,7 @@ impl Display for ParseError<'_> {
             ParseErrorKind::Unknown { word } => {
                 write!(f, "{word}: expected a command, `help` lists them")
             }
+            ParseErrorKind::LeftOut { word, feature } => write!(f, "{word}: {feature}"),
             ParseErrorKind::Missing { syntax, parameter } => write!(
                 f,
                 "{}: {} is missing: expected {parameter}, usage: {syntax}",

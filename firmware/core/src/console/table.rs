@@ -6,18 +6,19 @@
 /// commands! {
 ///     /// Documentation of the subject's trait.
 ///     SubjectCommands {
-///         name Variant(argument: Type, …): "help line";
+///         name Variant(argument: Type, …) in FEATURE: "help line";
 ///     }
 /// }
 /// ```
 ///
-/// Each `Type` implements [`Argument`](super::argument::Argument). The macro generates the enumeration `Command`, the list
+/// Each `Type` implements [`Argument`](super::argument::Argument). A build without the [feature](crate::feature) leaves the command out;
+/// a command without `in FEATURE` is in every build. The macro generates the enumeration `Command`, the list
 /// `COMMANDS` for parser, help and completion, and a trait per subject with one method per command.
 macro_rules! commands {
     ($(
         $(#[$doc:meta])*
         $subject:ident {
-            $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?): $summary:literal;)+
+            $($name:ident $variant:ident($($argument:ident: $type:ty),* $(,)?) $(in $feature:ident)?: $summary:literal;)+
         }
     )+) => {
         /// A command with its arguments. Each argument is in its range. The state of the machine may still exclude the command; its
@@ -41,15 +42,22 @@ macro_rules! commands {
 
         /// All commands, in the order of the help.
         static COMMANDS: &[Entry] = &[$($(
-            Entry {
-                syntax: Syntax::new(
-                    stringify!($name),
-                    $summary,
-                    const { &[$(Parameter::of::<$type>(stringify!($argument))),*] },
-                ),
-                read: |_reader| Some(Command::$variant {
-                    $($argument: _reader.read::<$type>(const { &Parameter::of::<$type>(stringify!($argument)) })?,)*
-                }),
+            if part!($($feature)?).is_built {
+                Entry::Built {
+                    syntax: Syntax::new(
+                        stringify!($name),
+                        $summary,
+                        const { &[$(Parameter::of::<$type>(stringify!($argument))),*] },
+                    ),
+                    read: |_reader| Some(Command::$variant {
+                        $($argument: _reader.read::<$type>(const { &Parameter::of::<$type>(stringify!($argument)) })?,)*
+                    }),
+                }
+            } else {
+                Entry::LeftOut {
+                    name: stringify!($name),
+                    feature: part!($($feature)?),
+                }
             },
         )+)+];
 
@@ -68,11 +76,32 @@ macro_rules! commands {
             pub fn execute<E: $($subject<'a> +)+>(self, executor: &mut E) -> E::Output {
                 match self {
                     $($(
-                        Self::$variant { $($argument),* } => executor.$name($($argument),*),
+                        Self::$variant { $($argument),* } if part!($($feature)?).is_built => {
+                            executor.$name($($argument),*)
+                        }
                     )+)+
+                    // The parser makes no other commands.
+                    _ => executor.left_out(self.feature()),
+                }
+            }
+
+            /// The part of the firmware that has the command.
+            pub const fn feature(&self) -> Feature {
+                match self {
+                    $($(Self::$variant { .. } => part!($($feature)?),)+)+
                 }
             }
         }
     };
 }
-pub(super) use commands;
+
+/// The part of the firmware with this name, or the one of every build.
+macro_rules! part {
+    () => {
+        $crate::feature::BASE
+    };
+    ($feature:ident) => {
+        $crate::feature::$feature
+    };
+}
+pub(super) use {commands, part};

@@ -1,5 +1,6 @@
 //! The constants of a frame.
 
+use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
 use glint_core::light::MeshLighting;
 use glint_core::object::MAX_OBJECTS;
 
@@ -36,7 +37,11 @@ pub struct FieldConstants {
 impl FrameConstants {
     /// Returns the constants of the mesh, or those that all objects share, if the frame has a mesh or objects.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
-        self.mesh.as_ref()
+        if MESH.is_built {
+            self.mesh.as_ref()
+        } else {
+            None
+        }
     }
 
     /// Returns the constants of the mesh with this number in `frame`, whose constants these are; `None` after the last mesh.
@@ -103,7 +108,11 @@ impl FrameConstants {
 
     /// Returns the constants of the field, if the frame has a field.
     pub const fn field(&self) -> Option<&FieldConstants> {
-        self.field.as_ref()
+        if FIELD.is_built {
+            self.field.as_ref()
+        } else {
+            None
+        }
     }
 
     /// The scale between depth codes and distances in world units; `None` before the first frame.
@@ -131,18 +140,18 @@ impl FrameConstants {
         (self.light, self.field) = (None, None);
         let (view, size) = (&frame.view, frame.size.pixels().into());
         match &frame.subject {
-            Subject::Mesh(subject) | Subject::Edges(subject, _) => {
+            Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
                 let mesh = self.mesh.get_or_insert_default();
                 mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
                 mesh.set_clip(subject.clip)?;
             }
-            Subject::Field(subject) => {
+            Subject::Field(subject) if FIELD.is_built => {
                 self.mesh = None;
                 let options = subject.options(view);
                 let setup = FieldSetup::new(subject.field, view, size, &options)?;
                 self.set_field(setup, &options);
             }
-            Subject::MeshInField(mesh, subject) => {
+            Subject::MeshInField(mesh, subject) if MESH_IN_FIELD.is_built => {
                 let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
                 let options = subject.options(view);
                 let (mesh, field) =
@@ -153,15 +162,17 @@ impl FrameConstants {
             Subject::Objects(objects) if objects.len() > MAX_OBJECTS => {
                 return Err(RenderError::Objects(objects.len()));
             }
-            Subject::Objects(objects) => {
+            Subject::Objects(objects) if OBJECT.is_built => {
                 let camera = self.mesh.get_or_insert_default();
                 camera.update(view, size, 0, &mut self.scale)?;
                 camera.set_depths(depths(objects, camera));
             }
-            Subject::Wireframe(_) => self.mesh = None,
+            // A wireframe, or a subject that this build leaves out.
+            _ => self.mesh = None,
         }
         let lighting = frame.mesh_lighting();
-        if let Some(mesh) = &mut self.mesh
+        if MESH.is_built
+            && let Some(mesh) = &mut self.mesh
             && lighting != MeshLighting::CAMERA
         {
             let light = MeshLight::new(&lighting, view);

@@ -3,6 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
 use glint_core::field::Field;
 use glint_core::light::MeshLighting;
 use glint_core::mesh::Mesh;
@@ -132,15 +133,19 @@ impl<'a> Subject<'a> {
     /// The mesh, if the subject has one.
     pub const fn mesh_part(&self) -> Option<&MeshSubject<'a>> {
         match self {
-            Self::Mesh(mesh) | Self::Edges(mesh, _) | Self::MeshInField(mesh, _) => Some(mesh),
-            Self::Field(_) | Self::Objects(_) | Self::Wireframe(_) => None,
+            Self::Mesh(mesh) | Self::Edges(mesh, _) | Self::MeshInField(mesh, _)
+                if MESH.is_built =>
+            {
+                Some(mesh)
+            }
+            _ => None,
         }
     }
 
     /// The objects, if the subject has several meshes.
     pub const fn objects(&self) -> Option<&'a [Object<'a>]> {
         match self {
-            Self::Objects(objects) => Some(objects),
+            Self::Objects(objects) if OBJECT.is_built => Some(objects),
             _ => None,
         }
     }
@@ -156,7 +161,7 @@ impl<'a> Subject<'a> {
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         match self {
-            Self::Objects(objects) => {
+            Self::Objects(objects) if OBJECT.is_built => {
                 let object = objects.get(number)?;
                 Some((&object.subject, object.colour))
             }
@@ -195,8 +200,8 @@ impl<'a> Subject<'a> {
     /// The field, if the subject has one.
     pub const fn field_part(&self) -> Option<&FieldSubject<'a>> {
         match self {
-            Self::Field(field) | Self::MeshInField(_, field) => Some(field),
-            Self::Mesh(_) | Self::Edges(..) | Self::Objects(_) | Self::Wireframe(_) => None,
+            Self::Field(field) | Self::MeshInField(_, field) if FIELD.is_built => Some(field),
+            _ => None,
         }
     }
 }
@@ -225,7 +230,9 @@ impl<'a> Frame<'a> {
     /// The lighting of the meshes: that of the frame, or of the field's appearance for a mesh in a field.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
-            Subject::MeshInField(_, field) => field.appearance.mesh_lighting(),
+            Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {
+                field.appearance.mesh_lighting()
+            }
             _ => self.lighting,
         }
     }

@@ -6,14 +6,14 @@ use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};
 use glint_scene::{NAMES, Scene, Steer, built_in, read};
 
-/// Check, list or show scenes: what a picture shows, and what it needs of the gateware (docs/scenes.md).
+/// Check, list or show scenes: what a picture shows, and what it needs of gateware and firmware (docs/scenes.md).
 #[derive(Subcommand)]
 pub enum SceneCommand {
     /// Check scene files, with their meshes, fields and cameras.
     Check(CheckArguments),
     /// List the built-in scenes.
     List,
-    /// Show the console commands of a scene, and the gateware that it needs.
+    /// Show the console commands of a scene, and what it needs of gateware and firmware.
     Show(ShowArguments),
 }
 
@@ -70,7 +70,8 @@ fn show(scene: &Scene) -> anyhow::Result<()> {
             Steer::Command(command) => say(format_args!("steer     {command}"))?,
         }
     }
-    let mut options = scene.needs().options();
+    let needs = scene.needs();
+    let mut options = needs.options();
     options.extend(
         scene
             .clock()
@@ -78,6 +79,8 @@ fn show(scene: &Scene) -> anyhow::Result<()> {
             .flat_map(|clock| ["--clock".to_owned(), clock.to_string()]),
     );
     say(format_args!("gateware  {}", options.join(" ")))?;
+    let features: Vec<_> = needs.features.iter().map(|feature| feature.name).collect();
+    say(format_args!("firmware  {}", features.join(",")))?;
     for (name, limit) in scene.budget() {
         say(format_args!("budget    {name} {limit}"))?;
     }

@@ -1,0 +1,77 @@
+//! The parts of the firmware that a build for some scenes leaves out.
+//!
+//! Each part is a Cargo feature of this crate, which the firmware has under the same name. Code of a part is always compiled and checked;
+//! the constant conditions of this module let the compiler remove what a build leaves out.
+
+use core::fmt;
+
+/// A part of the firmware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Feature {
+    /// Name of the Cargo feature.
+    pub name: &'static str,
+    /// Whether this build has the part.
+    pub is_built: bool,
+}
+
+/// States that this build lacks the part, and how to build one that has it.
+impl fmt::Display for Feature {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let name = self.name;
+        write!(
+            f,
+            "this firmware lacks the feature {name}, expected that of `cargo xtask firmware`, or of one for scenes with `--features {name}`"
+        )
+    }
+}
+
+/// Defines the parts by the names of their Cargo features.
+macro_rules! features {
+    ($($(#[$doc:meta])* $feature:ident = $name:literal;)+) => {
+        $(
+            $(#[$doc])*
+            pub const $feature: Feature = Feature {
+                name: $name,
+                is_built: cfg!(feature = $name),
+            };
+        )+
+
+        /// All parts, in the order of their definitions.
+        pub const ALL: [Feature; [$($name),+].len()] = [$($feature),+];
+    };
+}
+
+features! {
+    /// Meshes, and the options of their triangles.
+    MESH = "mesh";
+    /// Several meshes in a picture, each with a place of its own.
+    OBJECT = "object";
+    /// Edges of a mesh.
+    EDGES = "edges";
+    /// Programs of the wireframe simulator, and the buttons as its keys.
+    WIREFRAME = "wireframe";
+    /// Distance fields and their appearance.
+    FIELD = "field";
+    /// A mesh in a field.
+    MESH_IN_FIELD = "mesh-in-field";
+    /// Lights other than the one at start.
+    LIGHT = "light";
+    /// The motion sensor.
+    IMU = "imu";
+    /// Replay of a log of the motion sensor.
+    REPLAY = "replay";
+    /// The hand in front of the image sensor.
+    GESTURE = "gesture";
+    /// Upload of meshes and wireframe programs.
+    UPLOAD = "upload";
+    /// Pictures by the soft core: those of the backend `cpu`, and those that the gateware cannot draw.
+    CPU = "cpu";
+    /// Benchmarks.
+    BENCH = "bench";
+}
+
+/// What every build has.
+pub const BASE: Feature = Feature {
+    name: "",
+    is_built: true,
+};
