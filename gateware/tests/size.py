@@ -3,12 +3,14 @@
 import json
 import os
 import re
+from importlib.metadata import version
 
 import netlist
 import urbana
 from glint_soc.urbana_platform import CONTROL_PIN_LOADS
 from modules import MODULES
-from tools import BUILD, TESTS, ToolError, run_yosys
+from tools import BUILD, TESTS, YOSYS, ToolError, run_yosys
+from verilate.programs import digest, is_current
 
 SOC = "soc"
 """Name of the whole SoC on the Urbana, as `cargo xtask gateware --board urbana` builds it: with the BIOS in its ROM. `soc-SCENE` is the
@@ -48,13 +50,27 @@ def measure(name):
     """Returns the resources of a block, a variant of one, or the SoC, its longest path in cells, and what its flip-flops and
     nets mean for placement (see `netlist.placement`), as a dictionary.
 
-    The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path.
+    The output of Yosys stays in `target/gateware/size/NAME`; `path.txt` there names the cells of the path. A SoC takes minutes, so it
+    is measured again only after a change.
     """
     if is_soc(name):
         files = BUILD.parent / f"urbana{name.removeprefix(SOC)}" / "gateware"
-        return _measure("glint_urbana", urbana.synthesis_sources(files), name, _MARKS, files)
+        sources = urbana.synthesis_sources(files)
+        stamp, result = (_folder(name) / file for file in ("inputs", "result.json"))
+        code = [TESTS / file for file in ("size.py", "netlist.py", "tools.py", "lutram_reads.v")]
+        inputs = digest([*(files / source for source in sources), *code, *sorted(files.glob("*.init"))], version(YOSYS))
+        if not is_current(stamp, inputs, result):
+            result.write_text(json.dumps(_measure("glint_urbana", sources, name, _MARKS, files)))
+            stamp.write_text(inputs)
+        return json.loads(result.read_text())
     module, parameters = build(name)
     return _measure(module.top, module.sources, name, parameters=parameters)
+
+
+def _folder(name):
+    folder = _FOLDER / name
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
 
 
 def is_soc(name):
@@ -72,8 +88,7 @@ def build(name):
 
 
 def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=None):
-    folder = _FOLDER / name
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = _folder(name)
     cells, mapped, path, log = (folder / file for file in ("cells.json", "netlist.json", "path.txt", "yosys.log"))
     for result in (cells, mapped, path, log):
         result.unlink(missing_ok=True)

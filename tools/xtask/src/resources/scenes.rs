@@ -58,14 +58,6 @@ pub fn resources(write: bool) -> Result<()> {
             .iter()
             .map(|scene| (scene.name().to_owned(), scene.needs().options())),
     );
-    gateware::build(Board::Virtual)?;
-    firmware::build(Board::Virtual, &[])?;
-    run::step(
-        "build glint",
-        Command::new("cargo")
-            .args(["build", "-p", "glint", "--bin", "glint"])
-            .current_dir(paths::root()),
-    )?;
     for (name, options) in &builds {
         let options: Vec<_> = options.iter().map(String::as_str).collect();
         gateware::build_beside(Board::Urbana, name, &options)?;
@@ -77,6 +69,14 @@ pub fn resources(write: bool) -> Result<()> {
     let sizes = two_at_a_time(names, |name| {
         Size::parse(&measured_line("size", &["--size"], name)?)
     })?;
+    gateware::build(Board::Virtual)?;
+    firmware::build(Board::Virtual, &[])?;
+    run::step(
+        "build glint",
+        Command::new("cargo")
+            .args(["build", "-p", "glint", "--bin", "glint"])
+            .current_dir(paths::root()),
+    )?;
     let rows = builds.into_iter().map(|(name, options)| {
         let soc = format!("{SOC}-{name}");
         let size = sizes.iter().find(|size| size.name == soc).cloned();
