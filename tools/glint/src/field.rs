@@ -6,16 +6,24 @@ use glint_core::field::MAX_SPHERES;
 use std::borrow::Cow;
 use std::path::Path;
 
+/// The kind of field whose spheres may be in a file.
+const KIND: &str = "spheres:";
+
+/// The file in the text of a field `spheres:FILE.json`, alone or in a union.
+pub fn file(text: &str) -> Option<&str> {
+    let at = text.find(KIND).filter(|_| text.ends_with(".json"))?;
+    text.get(at + KIND.len()..)
+}
+
 /// Replaces `spheres:FILE.json` in the text of a field, alone or in a union, by `spheres:X,Y,Z,R;...`. Other text is unchanged.
 ///
 /// # Errors
 /// The file cannot be read, or [`spheres`] refuses it.
 pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
-    const KIND: &str = "spheres:";
-    let Some(at) = text.find(KIND).filter(|_| text.ends_with(".json")) else {
+    let Some(file) = file(text) else {
         return Ok(text.into());
     };
-    let (kind, file) = text.split_at(at + KIND.len());
+    let kind = text.strip_suffix(file).unwrap_or(text);
     let list = spheres(&read_file(Path::new(file))?)
         .map_err(|error| error.in_file(file.escape_debug().to_string()))?;
     Ok(format!("{kind}{list}").into())

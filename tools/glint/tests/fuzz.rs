@@ -1,4 +1,4 @@
-//! A short run of every fuzz target; `cargo run --bin fuzz` runs long ones.
+//! A short run of every fuzz target; `cargo run -p glint --example fuzz` runs long ones.
 
 use glint::fuzz::{Inputs, Target, Verdict};
 

@@ -4,15 +4,13 @@ use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
-use glint::error::{FormatError, quote};
+use glint::error::{FormatError, InputError, quote};
 use glint::transfer::Route;
 use glint_core::picture::Size;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use std::fs::{File, Permissions};
-use std::io::{self, BufWriter, Write};
-use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::io::Write;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Options for the connection to a board.
@@ -125,81 +123,16 @@ pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     say(serde_json::to_string(value)?)
 }
 
-/// Writes `bytes` as the whole content of the file at `path`, as [`write_whole`].
-pub fn write_file(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
-    write_whole(path, |out| out.write_all(bytes))
-}
-
-/// Writes the file at `path` whole or not at all: `write` fills a new file beside it, which then takes its place.
-///
-/// A device or a pipe, such as /dev/null, is written directly.
-pub fn write_whole(
-    path: &Path,
-    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> anyhow::Result<()> {
-    replace(path, write).with_context(|| format!("{}: cannot be written", path.display()))
-}
-
-fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let present = path.metadata().ok();
-    if present.as_ref().is_some_and(|present| !present.is_file()) {
-        let mut out = BufWriter::new(File::create(path)?);
-        write(&mut out)?;
-        return out.flush();
-    }
-    // A symbolic link stays, and the file that it leads to is replaced.
-    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
-    let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let permissions = present.map_or(Permissions::from_mode(0o666), |file| file.permissions());
-    let file = tempfile::Builder::new()
-        .permissions(permissions)
-        .tempfile_in(folder.unwrap_or(Path::new(".")))?;
-    let mut out = BufWriter::new(file.as_file());
-    write(&mut out)?;
-    out.flush()?;
-    drop(out);
-    file.persist(path)?;
-    Ok(())
+/// Returns the error for an option or an argument whose value is not as `expected`.
+pub fn bad_value(name: &str, expected: &str, found: impl Into<String>) -> InputError {
+    FormatError::whole(expected, found).in_file(name.escape_debug().to_string())
 }
 
 /// Parses the option `--size`.
 pub fn size(text: &str) -> anyhow::Result<Size> {
     let size = Size::ALL.into_iter().find(|size| size.to_string() == text);
     size.ok_or_else(|| {
-        let error = FormatError::whole("320x180, 640x360 or 1280x720", quote(text.as_bytes()));
-        error.in_file("--size").into()
+        let found = quote(text.as_bytes());
+        bad_value("--size", "320x180, 640x360 or 1280x720", found).into()
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{write_file, write_whole};
-    use std::fs::{self, Permissions};
-    use std::io;
-    use std::os::unix::fs::{PermissionsExt, symlink};
-
-    #[test]
-    fn a_file_is_replaced_whole_or_not_at_all() {
-        let folder = tempfile::tempdir().unwrap();
-        let [file, link] = ["file", "link"].map(|name| folder.path().join(name));
-        write_file(&file, b"before").unwrap();
-        fs::set_permissions(&file, Permissions::from_mode(0o640)).unwrap();
-        symlink(&file, &link).unwrap();
-        let failed = write_whole(&link, |out| {
-            out.write_all(b"a part")?;
-            Err(io::Error::other("full"))
-        });
-        assert_eq!(
-            format!("{:#}", failed.unwrap_err()),
-            format!("{}: cannot be written: full", link.display())
-        );
-        assert_eq!(fs::read(&file).unwrap(), b"before");
-
-        write_file(&link, b"after").unwrap();
-        assert_eq!(fs::read(&file).unwrap(), b"after");
-        assert!(link.is_symlink());
-        assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
-        assert_eq!(folder.path().read_dir().unwrap().count(), 2);
-        write_file("/dev/null".as_ref(), b"anything").unwrap();
-    }
 }

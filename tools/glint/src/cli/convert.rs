@@ -1,6 +1,7 @@
 //! `glint model` and `glint convert`.
 
-use super::common::{print_json, say, spinner, write_file};
+use super::common::{print_json, say, spinner};
+use super::output::{MESH, Output};
 use anyhow::Context;
 use clap::Args;
 use glint::convert::{self, Options, Report};
@@ -101,10 +102,11 @@ fn convert_to(
 ) -> anyhow::Result<()> {
     let in_input = |error: FormatError| error.in_path(name);
     let format = Format::of(out)?;
+    let out = Output::open(out, MESH, [name])?;
     if format == Format::Glm {
         let spinner = spinner("converting");
         let (mesh, report) = convert::convert(&polygons, options).map_err(in_input)?;
-        write_file(out, &mesh)?;
+        out.write(|out| out.write_all(&mesh))?;
         spinner.finish_and_clear();
         return if json {
             print_json(&report)
@@ -120,7 +122,7 @@ fn convert_to(
         Format::Ply | Format::Glm => write::ply(&polygons, &mut bytes),
     }
     .context("mesh: cannot be written")?;
-    write_file(out, &bytes)?;
+    out.write(|out| out.write_all(&bytes))?;
     let copied = Copied {
         points: polygons.points.len(),
         faces: polygons.faces.len(),

@@ -1,7 +1,8 @@
 //! `glint demo`: a tour of the whole machine.
 
-use super::common::{advance, bar, say, spinner, write_whole};
+use super::common::{advance, bar, say, spinner};
 use super::convert::load;
+use super::output::{Output, PICTURE};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{Board, SimulatedBoard, built_firmware};
@@ -23,6 +24,7 @@ use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
 use indicatif::ProgressBar;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -181,7 +183,7 @@ impl DemoArguments {
         bar.finish_and_clear();
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
-        write_whole(&path, |out| picture.write_png(out))?;
+        write_picture(&path, |out| picture.write_png(out))?;
 
         let scale = virtual_board::WIDTH / SIZE.width() as usize;
         let expected = render::on_model(&frame)?.image.colour;
@@ -229,7 +231,7 @@ impl DemoArguments {
                 ..Image::empty(ORBIT_SIZE)
             });
         }
-        write_whole(path, |out| {
+        write_picture(path, |out| {
             write_animation(out, &images, ORBIT_FRAMES_PER_SECOND)
         })?;
         Ok(cycles / u64::from(self.orbit.max(1)))
@@ -276,11 +278,18 @@ impl DemoArguments {
             cycles += stats.cycles.unwrap_or_default();
             images.push(image);
         }
-        write_whole(path, |out| {
+        write_picture(path, |out| {
             write_animation(out, &images, SPONGE_FRAMES_PER_SECOND)
         })?;
         Ok(cycles / u64::from(self.sponge.max(1)))
     }
+}
+
+fn write_picture(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> anyhow::Result<()> {
+    Output::open(path, PICTURE, [""; 0])?.write(write)
 }
 
 /// Shows a built-in scene on the board with flat shading, which the gateware has in every build, checks that its picture equals that
@@ -312,7 +321,7 @@ fn show_scene(
         stats.backend.as_deref() == Some("gateware") && image.colour == expected.image.colour,
         "scene {name}: the picture differs from the model's, or was drawn by the soft core"
     );
-    write_whole(path, |out| image.picture().write_png(out))?;
+    write_picture(path, |out| image.picture().write_png(out))?;
     Ok(stats.cycles.unwrap_or_default())
 }
 

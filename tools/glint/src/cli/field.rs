@@ -1,8 +1,8 @@
 //! The options on the command line for a distance field.
 
-use super::common::named;
+use super::common::{bad_value, named};
 use clap::Args;
-use glint::error::{FormatError, InputError, quote};
+use glint::error::{InputError, quote};
 use glint::field;
 use glint_core::appearance::Appearance;
 use glint_core::field::{Field, KINDS};
@@ -54,12 +54,17 @@ impl FieldArguments {
         self.field.as_deref()
     }
 
+    /// The file of a list of spheres, if `--field` names one.
+    pub fn file(&self) -> Option<&str> {
+        self.name().and_then(field::file)
+    }
+
     /// The parsed field, if `--field` is given.
     pub fn field(&self) -> Result<Option<Field>, InputError> {
         let parse = |text| {
             let text = field::with_files(text)?;
             Field::parse(&text)
-                .map_err(|error| refusal("--field", "a distance field", escaped(error)))
+                .map_err(|error| bad_value("--field", "a distance field", escaped(error)))
         };
         self.name().map(parse).transpose()
     }
@@ -70,7 +75,7 @@ impl FieldArguments {
             return Ok(None);
         };
         if with_mesh {
-            return Err(refusal(
+            return Err(bad_value(
                 "--stereo",
                 "a --field without a mesh",
                 "a mesh".to_owned(),
@@ -78,7 +83,7 @@ impl FieldArguments {
         }
         Stereo::parse(text)
             .map(Some)
-            .map_err(|error| refusal("--stereo", "two eyes", escaped(error)))
+            .map_err(|error| bad_value("--stereo", "two eyes", escaped(error)))
     }
 
     /// Whether cones are marched before the rays (`--prepass`).
@@ -97,20 +102,20 @@ impl FieldArguments {
             ("--prepass", self.prepass),
         ];
         if let (None, Some((option, _))) = (&self.field, given.iter().find(|(_, given)| *given)) {
-            return Err(refusal(option, "a --field", "a mesh".to_owned()));
+            return Err(bad_value(option, "a --field", "a mesh".to_owned()));
         }
         if self.field.is_none() && self.light.len() > 1 {
             let found = self.light.len().to_string();
-            return Err(refusal("--light", "one light on meshes", found));
+            return Err(bad_value("--light", "one light on meshes", found));
         }
         let fog = self.fog.as_deref().map(|text| {
             let found = quote(text.as_bytes());
             text.parse::<U4_28>()
-                .map_err(|_| refusal("--fog", "a density of at least 0 and below 16", found))
+                .map_err(|_| bad_value("--fog", "a density of at least 0 and below 16", found))
         });
         let ambient = self.ambient.as_deref().map(|text| {
             let found = quote(text.as_bytes());
-            parse_rgb(text).ok_or_else(|| refusal("--ambient", "a colour RRGGBB", found))
+            parse_rgb(text).ok_or_else(|| bad_value("--ambient", "a colour RRGGBB", found))
         });
         let mut appearance = Appearance {
             material: self.material.unwrap_or_default(),
@@ -122,11 +127,11 @@ impl FieldArguments {
         };
         for text in &self.light {
             let light = Light::parse(text)
-                .map_err(|error| refusal("--light", "a light", escaped(error)))?;
+                .map_err(|error| bad_value("--light", "a light", escaped(error)))?;
             let found = self.light.len();
             appearance.lights.push(light).map_err(|_| {
                 let expected = format!("at most {MAX_LIGHTS} lights");
-                refusal("--light", &expected, found.to_string())
+                bad_value("--light", &expected, found.to_string())
             })?;
         }
         Ok(appearance)
@@ -144,9 +149,4 @@ fn field_help() -> String {
 /// The text of an error, escaped to one line because it may quote arbitrary input.
 fn escaped(error: impl Display) -> String {
     error.to_string().escape_debug().to_string()
-}
-
-/// Returns the error for an option whose value is not as `expected`.
-fn refusal(option: &str, expected: &str, found: String) -> InputError {
-    FormatError::whole(expected, found).in_file(option)
 }

@@ -1,6 +1,7 @@
 //! `glint gesture`.
 
-use super::common::{LineArguments, advance, bar, named, say, spinner, write_whole};
+use super::common::{LineArguments, advance, bar, named, say, spinner};
+use super::output::{Output, PICTURE};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::board::{Board, BoardName};
@@ -43,6 +44,17 @@ struct SensorArguments {
 }
 
 impl SensorArguments {
+    /// The files that the virtual image sensor shows.
+    fn files(&self) -> anyhow::Result<Vec<PathBuf>> {
+        let Some(folder) = &self.pictures else {
+            return Ok(Vec::new());
+        };
+        let files = folder
+            .read_dir()
+            .and_then(|files| files.map(|file| Ok(file?.path())).collect());
+        files.with_context(|| folder.display().to_string())
+    }
+
     fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         let port = match &self.board {
             BoardName::Serial(port) => port,
@@ -80,6 +92,7 @@ pub struct MaskArguments {
 
 impl MaskArguments {
     fn run(self) -> anyhow::Result<()> {
+        let out = Output::open(&self.out, PICTURE, self.sensor.files()?)?;
         let mut board = self.sensor.open()?;
         let spinner = spinner("the image sensor is set up");
         let bar = bar("mask");
@@ -87,7 +100,7 @@ impl MaskArguments {
         spinner.finish_and_clear();
         bar.finish_and_clear();
         let mask = mask.context("mask")?;
-        write_whole(&self.out, |out| mask.write(out))?;
+        out.write(|out| mask.write(out))?;
         let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();
         say(format_args!(
             "{}x{} pixels, {marked} of the hand's colour",

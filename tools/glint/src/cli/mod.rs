@@ -7,6 +7,7 @@ mod field;
 mod flash;
 mod gesture;
 mod imu;
+mod output;
 mod render;
 mod scene;
 mod terminal;

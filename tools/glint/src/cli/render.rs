@@ -1,15 +1,15 @@
 //! `glint render`.
 
 use super::common::{
-    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file, write_whole,
+    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner,
 };
 use super::convert::load;
 use super::field::FieldArguments;
+use super::output::{DEPTH, Output, PICTURE, STATISTICS};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard};
 use glint::console::Console;
-use glint::error::FormatError;
 use glint::model::Model;
 use glint::object::Description;
 use glint::render::{
@@ -235,20 +235,26 @@ impl RenderArguments {
 
     /// Renders a frame, of a scene or not, and writes pictures and statistics.
     fn write(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<()> {
+        let inputs = self.inputs(scene)?;
+        let open = |path, extensions| Output::open(path, extensions, &inputs);
+        let out = open(&self.out, PICTURE)?;
+        let depth = self.depth.as_deref().map(|path| open(path, DEPTH));
+        let depth = depth.transpose()?;
+        let statistics = self.stats.as_deref().map(|path| open(path, STATISTICS));
+        let statistics = statistics.transpose()?;
         let Rendered { image, stats } = self.render(frame, scene)?;
-        write_whole(&self.out, |out| image.picture().write_png(out))?;
-        if let Some(path) = &self.depth {
+        out.write(|out| image.picture().write_png(out))?;
+        if let Some(out) = depth {
             let scale = frame.constants()?.depth_scale();
             let scale = scale.context("expected a frame with a subject")?;
-            write_whole(path, |out| image.write_depth(out, &scale))?;
+            out.write(|out| image.write_depth(out, &scale))?;
         }
         let totals = Totals {
             stats: &stats,
             evaluations_per_ray: stats.rays.as_ref().map(RayCounts::evaluations_per_ray),
         };
-        if let Some(path) = &self.stats {
-            let json = serde_json::to_string_pretty(&totals)? + "\n";
-            write_file(path, json.as_bytes())?;
+        if let Some(out) = statistics {
+            out.write_json(&totals)?;
         }
         if self.transfer.json {
             let outcome = Outcome {
@@ -261,6 +267,21 @@ impl RenderArguments {
             return print_json(&outcome);
         }
         print_stats(&stats)
+    }
+
+    /// The files that the command reads, with names of generators among them.
+    fn inputs(&self, scene: Option<&Scene>) -> anyhow::Result<Vec<PathBuf>> {
+        let mut names = self
+            .objects()?
+            .into_iter()
+            .map(|object| object.model)
+            .collect::<Vec<_>>();
+        names.extend(self.model.clone());
+        names.extend(self.scene.clone());
+        names.extend(self.field.file().map(str::to_owned));
+        names.extend(scene.into_iter().flat_map(scene::meshes).map(str::to_owned));
+        let files = names.into_iter().map(PathBuf::from);
+        Ok(files.chain(self.view.clone()).collect())
     }
 
     fn camera(&self) -> anyhow::Result<View> {
@@ -326,11 +347,8 @@ impl RenderArguments {
         };
         let number: Option<U8_28> = text.parse().ok();
         let far = number.filter(|far| *far < 256).ok_or_else(|| {
-            FormatError::whole(
-                "a distance from 0 to below 256",
-                glint::error::quote(text.as_bytes()),
-            )
-            .in_file("--far")
+            let found = glint::error::quote(text.as_bytes());
+            bad_value("--far", "a distance from 0 to below 256", found)
         })?;
         Ok(Clip::View { far })
     }
@@ -339,7 +357,7 @@ impl RenderArguments {
     fn check_eye(&self, view: &View, source: &str) -> anyhow::Result<()> {
         if self.model.is_some() && !view.is_within(MAX_EYE) {
             let found = RenderError::Eye(view.eye()).to_string();
-            return Err(FormatError::whole("a camera", found).in_file(source).into());
+            return Err(bad_value(source, "a camera", found).into());
         }
         Ok(())
     }

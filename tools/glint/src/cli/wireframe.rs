@@ -1,13 +1,13 @@
 //! `glint wireframe`.
 
 use super::common::{
-    TransferArguments, advance, bar, named, print_json, say, size, spinner, write_file, write_whole,
+    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner,
 };
+use super::output::{Output, PICTURE, PROGRAM, STATISTICS};
 use super::render::print_stats;
 use clap::{Args, Subcommand};
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
-use glint::error::FormatError;
 use glint::model;
 use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, WireframeSubject, on_model};
 use glint::view;
@@ -188,14 +188,16 @@ impl CheckArguments {
 impl ConvertArguments {
     fn run(self) -> anyhow::Result<()> {
         let form = Form::of(&self.out)?;
+        let out = Output::open(&self.out, PROGRAM, [&self.input])?;
         let bytes = wireframe::read(&self.input)?;
-        write_file(&self.out, &form.encode(&wireframe::check(&bytes)?))
+        let program = form.encode(&wireframe::check(&bytes)?);
+        out.write(|out| out.write_all(&program))
     }
 }
 
 /// The result of `make`, as the command prints it.
 #[derive(Serialize)]
-struct Output {
+struct Written {
     segments: usize,
     dropped: usize,
     bytes: usize,
@@ -206,6 +208,7 @@ impl MakeArguments {
         let form = Form::of(&self.out)?;
         let viewing = self.viewing()?;
         let extent = self.extent()?;
+        let out = Output::open(&self.out, PROGRAM, [&self.model])?;
         let spinner = spinner("reading the model");
         let polygons = model::polygons(&self.model)?;
         let Made {
@@ -214,10 +217,11 @@ impl MakeArguments {
             dropped,
         } = wireframe::make(polygons, extent, &viewing)
             .map_err(|error| error.in_file(&self.model))?;
-        write_file(&self.out, &form.encode(&wireframe::check(&bytes)?))?;
+        let program = form.encode(&wireframe::check(&bytes)?);
+        out.write(|out| out.write_all(&program))?;
         spinner.finish_and_clear();
         if self.json {
-            return print_json(&Output {
+            return print_json(&Written {
                 segments,
                 dropped,
                 bytes: bytes.len(),
@@ -238,8 +242,7 @@ impl MakeArguments {
             return Ok(Some(self.extent));
         }
         let found = self.extent.to_string();
-        let error = FormatError::whole("a side above 0 and below 32", found);
-        Err(error.in_file("--extent").into())
+        Err(bad_value("--extent", "a side above 0 and below 32", found).into())
     }
 
     fn viewing(&self) -> anyhow::Result<Viewing> {
@@ -261,6 +264,10 @@ impl RenderArguments {
         let script = press.map(wireframe::script).transpose();
         let script = script.map_err(|error| error.in_file("--press"))?;
         let script = script.unwrap_or_default();
+        let out = Output::open(&self.out, PICTURE, [&self.program])?;
+        let statistics = self.stats.as_deref();
+        let statistics = statistics.map(|path| Output::open(path, STATISTICS, [&self.program]));
+        let statistics = statistics.transpose()?;
         let bytes = wireframe::read(&self.program)?;
         let Played {
             bytes,
@@ -284,10 +291,9 @@ impl RenderArguments {
                 self.on_board(name, &bytes, script, size)?
             }
         };
-        write_whole(&self.out, |out| image.picture().write_png(out))?;
-        if let Some(path) = &self.stats {
-            let json = serde_json::to_string_pretty(&stats)? + "\n";
-            write_file(path, json.as_bytes())?;
+        out.write(|out| image.picture().write_png(out))?;
+        if let Some(out) = statistics {
+            out.write_json(&stats)?;
         }
         if self.transfer.json {
             return print_json(&stats);

@@ -109,7 +109,7 @@ fn logs_of_a_gyroscope() {
         ),
         (
             &["side.csv", "--still", "-1"],
-            "--still: expected a number of seconds up to 86400, found '-1'",
+            "--still: expected a number of seconds from 0 to 86400, found '-1'",
         ),
     ] {
         let all = [&["imu", "replay", "--out", "x.csv"], arguments].concat();

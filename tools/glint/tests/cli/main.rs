@@ -6,4 +6,6 @@ mod conversions;
 mod fields;
 mod input;
 mod meshes;
+mod output;
+mod package;
 mod wireframes;

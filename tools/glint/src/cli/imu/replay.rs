@@ -2,12 +2,13 @@
 
 use super::source::read_log;
 use crate::cli::common::{
-    TransferArguments, advance, bar, count_bar, print_json, say, spinner, write_whole,
+    TransferArguments, advance, bad_value, bar, count_bar, print_json, say, spinner,
 };
+use crate::cli::output::{Output, TABLE};
 use clap::Args;
 use glint::board::{Board, ModelOrBoard};
 use glint::console::Console;
-use glint::error::FormatError;
+use glint::error::quote;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Prepared, Replayed, Stage};
 use glint::transfer::Route;
@@ -48,7 +49,7 @@ pub struct ReplayArguments {
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
     /// Length of the rest at the start of the log, in seconds. The mean rate during the rest is the bias; motion during the rest
-    /// is an error.
+    /// is an error. 0 means none.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
     /// Disable tilt correction by the accelerometer.
@@ -133,13 +134,14 @@ impl From<Quaternion> for Attitude {
 impl ReplayArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let options = self.options()?;
+        let out = Output::open(&self.out, TABLE, [&self.log])?;
         let entries = read_log(&self.log)?;
         let prepared = replay::prepare(&entries, &options).map_err(|error| match error {
             replay::Error::Still(error) => error.in_path(&self.log).into(),
             error => anyhow::Error::from(error),
         })?;
         let replayed = self.replay(prepared)?;
-        write_whole(&self.out, |out| write(out, &entries, &replayed.attitudes))?;
+        out.write(|out| write(out, &entries, &replayed.attitudes))?;
         self.report(&entries, &replayed, options.units)
     }
 
@@ -186,16 +188,13 @@ impl ReplayArguments {
     }
 
     fn options(&self) -> anyhow::Result<Options> {
-        let bad_value = |option: &str, expected: String, found: &str| {
-            FormatError::whole(expected, glint::error::quote(found.as_bytes())).in_file(option)
-        };
         let gyro = Q32_32::from_str(&self.gyro_lsb).ok();
         let per_dps = gyro
             .filter(|&lsb| Scale::new(lsb).is_some())
             .ok_or_else(|| {
                 let [low, high] = LSB_PER_DPS;
                 let expected = format!("a number of LSB per °/s from {low} to {high}");
-                bad_value("--gyro-lsb", expected, &self.gyro_lsb)
+                bad_value("--gyro-lsb", &expected, quote(self.gyro_lsb.as_bytes()))
             })?;
         let accel = self.accel_lsb.parse::<u32>().ok();
         let [low, high] = LSB_PER_G;
@@ -203,17 +202,18 @@ impl ReplayArguments {
             .filter(|lsb| (low..=high).contains(lsb))
             .ok_or_else(|| {
                 let expected = format!("a whole number of LSB per g from {low} to {high}");
-                bad_value("--accel-lsb", expected, &self.accel_lsb)
+                bad_value("--accel-lsb", &expected, quote(self.accel_lsb.as_bytes()))
             })?;
         let still = match &self.still {
             None => None,
             Some(text) => {
                 let seconds = text.parse::<f64>().ok();
-                let seconds = seconds.filter(|seconds| *seconds > 0.0 && *seconds <= 86_400.0);
+                let seconds = seconds.filter(|seconds| (0.0..=86_400.0).contains(seconds));
                 let seconds = seconds.ok_or_else(|| {
-                    bad_value("--still", "a number of seconds up to 86400".into(), text)
+                    let expected = "a number of seconds from 0 to 86400";
+                    bad_value("--still", expected, quote(text.as_bytes()))
                 })?;
-                Some((seconds * 1e6) as u64)
+                Some((seconds * 1e6) as u64).filter(|still| *still > 0)
             }
         };
         Ok(Options {

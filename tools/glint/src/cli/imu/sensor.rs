@@ -2,14 +2,12 @@
 
 use super::source::SensorArguments;
 use crate::cli::common::{advance, count_bar, print_json, say};
-use anyhow::Context;
+use crate::cli::output::{Output, TABLE};
 use clap::Args;
 use glint::console::Console;
 use glint::imu::log::Entry;
 use glint::imu::sensor;
 use glint_core::calibration::{MOST_SAMPLES, SAMPLES};
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 /// Stream samples: t_us,ax,ay,az,gx,gy,gz in raw counts.
@@ -104,31 +102,30 @@ pub struct RecordArguments {
 
 impl RecordArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let unwritable = || format!("{}: cannot be written", self.log.display());
-        let mut out = BufWriter::new(File::create(&self.log).with_context(unwritable)?);
+        let out = Output::open(&self.log, TABLE, self.sensor.file())?;
         let mut board = self.sensor.open()?;
         let bar = count_bar("recording", "samples");
         let mut progress = advance(&bar);
-        let (mut count, mut end) = (0, 0);
-        let mut written = writeln!(out, "{}", sensor::HEADER);
+        let mut entries = Vec::new();
         sensor::stream(
             &mut Console::new(board.as_mut()),
             self.samples,
             &mut |entry| {
-                if written.is_ok() {
-                    written = writeln!(out, "{}", line(&entry));
-                }
-                (count, end) = (count + 1, entry.t_us);
-                progress(count, self.samples.into());
+                entries.push(entry);
+                progress(entries.len() as u64, self.samples.into());
             },
         )?;
-        written
-            .and_then(|()| out.flush())
-            .with_context(unwritable)?;
         bar.finish_and_clear();
+        out.write(|out| {
+            writeln!(out, "{}", sensor::HEADER)?;
+            entries
+                .iter()
+                .try_for_each(|entry| writeln!(out, "{}", line(entry)))
+        })?;
         say(format_args!(
-            "recorded    {count} samples in {:.3} s",
-            end as f64 / 1e6
+            "recorded    {} samples in {:.3} s",
+            entries.len(),
+            entries.last().map_or(0, |entry| entry.t_us) as f64 / 1e6
         ))
     }
 }

@@ -23,6 +23,11 @@ pub struct SensorArguments {
 }
 
 impl SensorArguments {
+    /// The log with the virtual sensor's motion, if given.
+    pub fn file(&self) -> Option<&Path> {
+        self.sensor.as_deref()
+    }
+
     /// Opens the board and waits for its sensor's first sample.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         anyhow::ensure!(

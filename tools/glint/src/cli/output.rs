@@ -1,0 +1,149 @@
+//! Output files. Each is checked before the work begins, and written whole or not at all.
+
+use super::common::bad_value;
+use anyhow::Context;
+use serde::Serialize;
+use std::fs::{File, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::os::unix::fs::{MetadataExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+
+/// Extensions of a picture.
+pub const PICTURE: &[&str] = &["png"];
+/// Extensions of distances as little-endian numbers.
+pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
+/// Extensions of statistics.
+pub const STATISTICS: &[&str] = &["json"];
+/// Extensions of a mesh.
+pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
+/// Extensions of a program of the wireframe simulator.
+pub const PROGRAM: &[&str] = &["wft", "wfb"];
+/// Extensions of a table.
+pub const TABLE: &[&str] = &["csv"];
+
+/// An output file that can be written.
+pub struct Output {
+    path: PathBuf,
+    /// The device or pipe, such as /dev/null, that is written directly; `None` for a file, which is replaced.
+    device: Option<File>,
+}
+
+impl Output {
+    /// Checks that the file at `path` can be written, and opens a device or a pipe. `inputs` are the files that the command reads.
+    ///
+    /// # Errors
+    /// The name has another extension than `extensions`, the file is one of `inputs`, or it cannot be written.
+    pub fn open<P: AsRef<Path>>(
+        path: &Path,
+        extensions: &[&str],
+        inputs: impl IntoIterator<Item = P>,
+    ) -> anyhow::Result<Self> {
+        let present = path.metadata().ok();
+        let device = match &present {
+            Some(present) if !present.is_file() => {
+                Some(File::create(path).with_context(|| unwritable(path))?)
+            }
+            _ => {
+                check_extension(path, extensions)?;
+                None
+            }
+        };
+        if let (None, Some(present)) = (&device, &present) {
+            let identity = (present.dev(), present.ino());
+            let same = |input: &P| {
+                let input = input.as_ref().metadata();
+                input.is_ok_and(|input| (input.dev(), input.ino()) == identity)
+            };
+            if let Some(input) = inputs.into_iter().find(same) {
+                let found = format!("the input {}", input.as_ref().display());
+                return Err(
+                    bad_value(&path.display().to_string(), "another file to write", found).into(),
+                );
+            }
+        }
+        if device.is_none() {
+            // A file without a name shows that the folder takes new files; it vanishes when it is closed.
+            tempfile::tempfile_in(folder(&target(path))).with_context(|| unwritable(path))?;
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            device,
+        })
+    }
+
+    /// Writes the file whole or not at all: `write` fills a new file beside it, which then takes its place.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
+        let written = match self.device {
+            Some(device) => fill(&device, write),
+            None => replace(&self.path, write),
+        };
+        written.with_context(|| unwritable(&self.path))
+    }
+}
+
+impl Output {
+    /// Writes a value as JSON, indented.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_json(self, value: &impl Serialize) -> anyhow::Result<()> {
+        let json = serde_json::to_string_pretty(value)?;
+        self.write(|out| writeln!(out, "{json}"))
+    }
+}
+
+fn unwritable(path: &Path) -> String {
+    format!("{}: cannot be written", path.display())
+}
+
+/// Refuses a name with another extension than those given. A name without an extension promises nothing, and is accepted.
+fn check_extension(path: &Path, extensions: &[&str]) -> anyhow::Result<()> {
+    let Some(found) = path.extension() else {
+        return Ok(());
+    };
+    let found = found.to_string_lossy();
+    if extensions
+        .iter()
+        .any(|known| found.eq_ignore_ascii_case(known))
+    {
+        return Ok(());
+    }
+    let expected = format!("a name that ends in .{}", extensions.join(", ."));
+    let found = format!("'.{}'", found.escape_debug());
+    Err(bad_value(&path.display().to_string(), &expected, found).into())
+}
+
+/// The file that a new file replaces. A symbolic link stays, and the file that it leads to is replaced.
+fn target(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
+}
+
+fn folder(path: &Path) -> &Path {
+    let folder = path.parent().filter(|folder| *folder != Path::new(""));
+    folder.unwrap_or(Path::new("."))
+}
+
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let path = target(path);
+    let permissions = match path.metadata() {
+        Ok(present) => present.permissions(),
+        Err(_) => Permissions::from_mode(0o666),
+    };
+    let file = tempfile::Builder::new()
+        .permissions(permissions)
+        .tempfile_in(folder(&path))?;
+    fill(file.as_file(), write)?;
+    // Some file systems report only now that they are full.
+    file.as_file().sync_all()?;
+    file.persist(path)?;
+    Ok(())
+}
+
+fn fill(file: &File, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    write(&mut out)?;
+    out.flush()
+}

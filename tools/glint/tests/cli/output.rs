@@ -1,0 +1,242 @@
+//! Output files: written whole or not at all, never over an input, and checked before the work.
+
+use crate::common::{SQUARE, VIEW, folder, glint, refused, succeed};
+use std::fs;
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+/// Runs the program with files of at most 512 bytes, as on a full file system.
+fn when_full(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 1; exec \"$0\" \"$@\"",
+            env!("CARGO_BIN_EXE_glint"),
+        ])
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let names = folder.read_dir().unwrap();
+    let mut names: Vec<_> = names
+        .map(|file| file.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+const LOG: &str = "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,0\n1000,0,0,4096,0,0,0\n";
+
+#[test]
+fn a_full_file_system_leaves_no_part_of_a_file() {
+    let folder = folder("full");
+    fs::write(folder.join("old.png"), "before").unwrap();
+    fs::write(folder.join("log.csv"), LOG).unwrap();
+    let present = names(&folder);
+    for (arguments, file) in [
+        (
+            &["render", "icosphere:4", "--out", "new.png"][..],
+            "new.png",
+        ),
+        (&["render", "icosphere:4", "--out", "old.png"], "old.png"),
+        (
+            &["render", "cube", "--out", "/dev/null", "--depth", "a.f32"],
+            "a.f32",
+        ),
+        (&["render", "cube", "--out", "/dev/full"], "/dev/full"),
+        (
+            &[
+                "render",
+                "cube",
+                "--out",
+                "/dev/null",
+                "--stats",
+                "/dev/full",
+            ],
+            "/dev/full",
+        ),
+        (&["model", "teapot", "a.glm"], "a.glm"),
+        (&["model", "teapot", "a.obj"], "a.obj"),
+        (
+            &["imu", "replay", "log.csv", "--out", "/dev/full"],
+            "/dev/full",
+        ),
+        (&["wireframe", "make", "teapot", "--out", "a.wfb"], "a.wfb"),
+    ] {
+        let error = when_full(&folder, arguments);
+        let expected = format!("error: {file}: cannot be written: ");
+        assert!(error.starts_with(&expected), "{arguments:?}: {error}");
+        assert_eq!(names(&folder), present, "{arguments:?}");
+    }
+    assert_eq!(fs::read(folder.join("old.png")).unwrap(), b"before");
+}
+
+#[test]
+fn an_input_is_never_an_output() {
+    let folder = folder("inputs");
+    fs::write(folder.join("m.obj"), SQUARE).unwrap();
+    fs::write(folder.join("view.json"), VIEW).unwrap();
+    fs::write(folder.join("spheres.json"), "[[0,0,0,0.5]]").unwrap();
+    fs::write(folder.join("log.csv"), LOG).unwrap();
+    fs::write(folder.join("a.wft"), "end\n").unwrap();
+    symlink("m.obj", folder.join("m.png")).unwrap();
+    fs::hard_link(folder.join("log.csv"), folder.join("hard.csv")).unwrap();
+    symlink("a.wft", folder.join("a.png")).unwrap();
+    let before = names(&folder);
+    for (arguments, output, input) in [
+        (
+            &["imu", "replay", "log.csv", "--out", "log.csv"][..],
+            "log.csv",
+            "log.csv",
+        ),
+        (
+            &["imu", "replay", "log.csv", "--out", "hard.csv"],
+            "hard.csv",
+            "log.csv",
+        ),
+        (
+            &[
+                "imu", "record", "log.csv", "--sensor", "hard.csv", "--board", "virtual",
+            ],
+            "log.csv",
+            "hard.csv",
+        ),
+        (&["convert", "m.obj", "m.obj"], "m.obj", "m.obj"),
+        (&["convert", "m.obj", "./m.obj"], "./m.obj", "m.obj"),
+        (&["render", "m.obj", "--out", "m.png"], "m.png", "m.obj"),
+        (
+            &["render", "--object", "m.obj", "--out", "m.png"],
+            "m.png",
+            "m.obj",
+        ),
+        (
+            &[
+                "render",
+                "cube",
+                "--view",
+                "view.json",
+                "--out",
+                "a",
+                "--stats",
+                "view.json",
+            ],
+            "view.json",
+            "view.json",
+        ),
+        (
+            &[
+                "render",
+                "--field",
+                "spheres:spheres.json",
+                "--out",
+                "a",
+                "--stats",
+                "spheres.json",
+            ],
+            "spheres.json",
+            "spheres.json",
+        ),
+        (
+            &["wireframe", "convert", "a.wft", "a.wft"],
+            "a.wft",
+            "a.wft",
+        ),
+        (
+            &["wireframe", "render", "a.wft", "--out", "a.png"],
+            "a.png",
+            "a.wft",
+        ),
+    ] {
+        let error = refused(&folder, arguments);
+        let expected =
+            format!("error: {output}: expected another file to write, found the input {input}");
+        assert_eq!(error, expected, "{arguments:?}");
+    }
+    assert_eq!(names(&folder), before);
+    assert_eq!(fs::read_to_string(folder.join("log.csv")).unwrap(), LOG);
+}
+
+#[test]
+fn an_extension_says_what_is_written() {
+    let folder = folder("extensions");
+    fs::write(folder.join("log.csv"), LOG).unwrap();
+    for (arguments, message) in [
+        (
+            &["render", "cube", "--out", "x.jpg"][..],
+            "x.jpg: expected a name that ends in .png, found '.jpg'",
+        ),
+        (
+            &["render", "cube", "--out", "x.png", "--depth", "x.png"],
+            "x.png: expected a name that ends in .f32, .bin, .raw, found '.png'",
+        ),
+        (
+            &["render", "cube", "--out", "x.png", "--stats", "x.csv"],
+            "x.csv: expected a name that ends in .json, found '.csv'",
+        ),
+        (
+            &["imu", "replay", "log.csv", "--out", "x.json"],
+            "x.json: expected a name that ends in .csv, found '.json'",
+        ),
+        (
+            &["gesture", "mask", "--board", "virtual", "--out", "x.gif"],
+            "x.gif: expected a name that ends in .png, found '.gif'",
+        ),
+    ] {
+        let error = refused(&folder, arguments);
+        assert_eq!(error, format!("error: {message}"));
+    }
+    succeed(
+        &folder,
+        &["render", "cube", "--out", "X.PNG", "--depth", "depth"],
+    );
+    assert_eq!(names(&folder), ["X.PNG", "depth", "log.csv"]);
+}
+
+#[test]
+fn an_output_is_checked_before_the_work() {
+    let folder = folder("checked");
+    // The port does not exist, and would be an error later.
+    let board = ["--board", "/dev/no-such-port"];
+    for arguments in [
+        &["render", "cube", "--out", "gone/a.png"][..],
+        &[
+            "render",
+            "cube",
+            "--out",
+            "/dev/null",
+            "--stats",
+            "gone/a.json",
+        ],
+        &["imu", "record", "gone/log.csv"],
+        &["gesture", "mask", "--out", "gone/a.png"],
+    ] {
+        let output = glint(&folder, &[arguments, &board].concat());
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{error}");
+        assert!(
+            error.starts_with("error: gone/") && error.contains(": cannot be written: "),
+            "{error}"
+        );
+    }
+    assert!(names(&folder).is_empty());
+}
+
+#[test]
+fn a_link_stays_and_permissions_too() {
+    let folder = folder("links");
+    let [file, link] = ["file.glm", "link.glm"].map(|name| folder.join(name));
+    fs::write(&file, "before").unwrap();
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+    symlink(&file, &link).unwrap();
+    succeed(&folder, &["model", "cube", "link.glm"]);
+    assert!(link.is_symlink());
+    assert!(fs::read(&file).unwrap().starts_with(b"GLM1"));
+    assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
+    assert_eq!(names(&folder), ["file.glm", "link.glm"]);
+}
