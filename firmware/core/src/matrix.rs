@@ -223,7 +223,8 @@ fn is_long(row: [i32; 3]) -> bool {
 
 /// Returns A/s for a matrix A that is a rotation or a reflection times one scale s, in units of 2^−30; `None` for any other.
 ///
-/// The squares of the lengths may differ by a part of 2^−12, and so may the scalar products from 0.
+/// The squares of the lengths may differ by a part of 2^−12, and so may the scalar products from 0. A row of length s has s·2^24 units, so
+/// the rounding of its entries alone may exceed this part if s is below 1/128.
 fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
     let [a, b, c] = rows;
     let square = dot(a, a);
@@ -264,7 +265,8 @@ impl Normals {
     }
 
     /// A divided by its scale, Q2.30, if A is a rotation or a reflection times one scale, within a part of 2^−12; otherwise
-    /// `None`. Its transpose brings the direction of a light to the mesh, and the normals of the mesh stay as they are.
+    /// `None`. Its transpose brings the direction of a light to the mesh, and the normals of the mesh stay as they are. A product of
+    /// up to four matrices with one scale below 1/128 may be `None` too, by the rounding of its entries.
     pub const fn rotation(&self) -> Option<&[[i32; 3]; 3]> {
         self.rotation.as_ref()
     }

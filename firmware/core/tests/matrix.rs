@@ -138,7 +138,8 @@ proptest! {
         prop_assert!(error <= 0.51, "{error}");
     }
 
-    /// With one scale for all axes, a light that is brought to the mesh makes the same angle with the mesh's normals.
+    /// With one scale for all axes, a light that is brought to the mesh makes the same angle with the mesh's normals. Rounding may hide
+    /// a scale below 1/128.
     #[test]
     fn a_light_comes_to_a_mesh_of_one_scale(
         scale in factor(),
@@ -148,7 +149,10 @@ proptest! {
     ) {
         let Ok(matrix) = any_matrix([scale; 3], angles, [0.0; 3]) else { return Ok(()) };
         let (normal, light) = (normalised(normal), normalised(light));
-        let rotation = *matrix.normals().rotation().expect("one scale");
+        let Some(rotation) = matrix.normals().rotation().copied() else {
+            prop_assert!(scale.abs() < 1.0 / 128.0, "one scale");
+            return Ok(());
+        };
         let rotation = rotation.map(|row| row.map(|x| f64::from(x) / 2f64.powi(30)));
         let turned = normalised(applied(inverse_transpose(rows(&matrix)), normal));
         let expected: f64 = (0..3).map(|i| turned[i] * light[i]).sum();
