@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX};
+use glint_core::picture::Size;
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source, quote};
@@ -151,6 +152,15 @@ impl Scene {
         let lines = self.settings().iter();
         // The lines have been checked.
         lines.filter_map(|line| Command::parse(line).ok().flatten())
+    }
+
+    /// The size of the picture; that at start if the scene sets none.
+    pub fn size(&self) -> Size {
+        let size = |command| match command {
+            Command::Size { size } => Some(size),
+            _ => None,
+        };
+        self.commands().find_map(size).unwrap_or_default()
     }
 
     /// Frequency of the system clock in MHz; `None` for that of the board.

@@ -1,13 +1,15 @@
-//! `cargo xtask resources --scenes`: the sizes of the builds for the built-in scenes, and the cycles of their frames.
+//! `cargo xtask resources --scenes`: the sizes of the builds for the built-in scenes, gateware and firmware, and what their frames take.
 
 use std::fs;
 use std::process::Command;
+use std::slice;
 
 use anyhow::{Context, Result, bail};
 use glint_scene::{Needs, Scene};
 use serde::Deserialize;
 
 use super::SOC;
+use super::budget::{Budget, Limits};
 use super::measure::{measured_line, two_at_a_time};
 use super::number::number;
 use super::size::{Resource, Size};
@@ -22,8 +24,14 @@ const COLUMNS: [(Resource, &str); 4] = [
     (Resource::Ramb36, "ramb36"),
 ];
 
-/// LUTs of the XC7S50.
-const LUTS: f64 = 32_600.0;
+/// Bytes of a word of the engines' memory ports.
+const WORD: f64 = 16.0;
+
+/// Pictures a second that scan-out reads.
+const REFRESH: f64 = 60.0;
+
+/// Bytes of a pixel of the frame buffer.
+const PIXEL: f64 = 2.0;
 
 /// Name of the build for all scenes.
 const ALL: &str = "all";
@@ -33,6 +41,17 @@ const ALL: &str = "all";
 struct Stats {
     cycles: u64,
     clock: u64,
+    words_read: u64,
+    words_written: u64,
+}
+
+/// What a scene's frame takes.
+struct Frame {
+    cycles: f64,
+    /// Frames a second, when one follows the other.
+    rate: f64,
+    /// Megabytes a second of main memory: the engines' at this rate, and scan-out's.
+    memory: f64,
 }
 
 /// A row of the table.
@@ -40,8 +59,10 @@ struct Row {
     name: String,
     options: Vec<String>,
     size: Size,
-    /// Cycles of a frame and frames a second; `None` for the build for all scenes, and for smooth shading.
-    frame: Option<[f64; 2]>,
+    /// Bytes of the firmware's image.
+    firmware: f64,
+    /// `None` for the build for all scenes, and for smooth shading.
+    frame: Option<Frame>,
     budget: Vec<(&'static str, f64)>,
 }
 
@@ -81,8 +102,14 @@ pub fn resources(write: bool) -> Result<()> {
         let soc = format!("{SOC}-{name}");
         let size = sizes.iter().find(|size| size.name == soc).cloned();
         let scene = scenes.iter().find(|scene| scene.name() == name);
+        let firmware = firmware::build_for(
+            Board::Urbana,
+            scene.map_or(&scenes[..], slice::from_ref),
+            &[],
+        )?;
         Ok(Row {
             size: size.with_context(|| format!("no size of {name}"))?,
+            firmware: firmware.length as f64,
             // The soft core would make the descriptors of smooth frames, in minutes on the virtual board.
             frame: scene
                 .filter(|scene| !scene.needs().smooth)
@@ -94,7 +121,7 @@ pub fn resources(write: bool) -> Result<()> {
         })
     });
     let rows = rows.collect::<Result<Vec<_>>>()?;
-    let table = table(&rows);
+    let table = table(&rows, &Budget::read()?.device);
     print!("\n{table}");
     if write {
         let path = paths::root().join("docs/scene-builds.md");
@@ -104,8 +131,8 @@ pub fn resources(write: bool) -> Result<()> {
     within(&rows)
 }
 
-/// Cycles of a scene's frame, and frames a second.
-fn frame(scene: &Scene) -> Result<[f64; 2]> {
+/// Draws a scene's frame on the virtual board.
+fn frame(scene: &Scene) -> Result<Frame> {
     let folder = paths::target().join("scenes");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
     let stats = folder.join(scene.name()).with_extension("json");
@@ -127,15 +154,24 @@ fn frame(scene: &Scene) -> Result<[f64; 2]> {
     )?;
     let text =
         fs::read_to_string(&stats).with_context(|| format!("reading {}", stats.display()))?;
-    let Stats { cycles, clock } = serde_json::from_str(&text)?;
-    Ok([cycles as f64, clock as f64 / cycles as f64])
+    let stats: Stats = serde_json::from_str(&text)?;
+    let cycles = stats.cycles as f64;
+    let rate = stats.clock as f64 / cycles;
+    let engines = (stats.words_read + stats.words_written) as f64 * WORD * rate;
+    let scan_out = scene.size().pixel_count() as f64 * PIXEL * REFRESH;
+    Ok(Frame {
+        cycles,
+        rate,
+        memory: (engines + scan_out) / 1e6,
+    })
 }
 
 /// The value of a row that a limit of a scene bounds; `None` for one that is not measured here.
 fn value(row: &Row, name: &str) -> Option<f64> {
-    match (name, row.frame) {
-        ("cycles", Some([cycles, _])) => Some(cycles),
-        ("fps", Some([_, rate])) => Some(rate),
+    match name {
+        "cycles" => row.frame.as_ref().map(|frame| frame.cycles),
+        "fps" => row.frame.as_ref().map(|frame| frame.rate),
+        "firmware" => Some(row.firmware),
         _ => {
             let column = COLUMNS.iter().find(|(_, limit)| *limit == name);
             column.map(|(resource, _)| row.size.of(*resource))
@@ -143,32 +179,54 @@ fn value(row: &Row, name: &str) -> Option<f64> {
     }
 }
 
-fn table(rows: &[Row]) -> String {
+/// The rows as a table in Markdown; `device` has the limits of the XC7S50.
+fn table(rows: &[Row], device: &Limits) -> String {
     let full = rows
         .iter()
         .find(|row| row.name == ALL)
         .map(|row| row.size.of(Resource::Lut));
-    let mut out = "| scene | LUT | of all | of the XC7S50 | FF | DSP48 | RAMB36 | cycles | frames a second | build |\n\
-                   |---|---:|---:|---:|---:|---:|---:|---:|---:|---|\n"
+    let mut out = "| scene | LUT | of all | FF | DSP48 | RAMB36 | slices | fits the XC7S50 | firmware | cycles | frames a second | \
+                   memory | build |\n|---|---:|---:|---:|---:|---:|---:|---|---:|---:|---:|---:|---|\n"
         .to_owned();
     for row in rows {
-        let [lut, ff, dsp, ramb] = COLUMNS.map(|(resource, _)| row.size.of(resource));
+        let lut = row.size.of(Resource::Lut);
         let share = full.map_or(0.0, |full| 100.0 * lut / full);
-        let [cycles, rate] = row.frame.map_or_else(Default::default, |frame| {
-            frame.map(|value| number(value.floor()))
+        let cells = [
+            Resource::Ff,
+            Resource::Dsp48,
+            Resource::Ramb36,
+            Resource::Slices,
+        ];
+        let cells = cells.map(|resource| number(row.size.of(resource)));
+        let frame = row.frame.as_ref().map_or_else(Default::default, |frame| {
+            [frame.cycles, frame.rate, frame.memory].map(|value| number(value.floor()))
         });
         out += &format!(
-            "| `{}` | {} | {share:.0} % | {:.0} % | {} | {} | {} | {cycles} | {rate} | `{}` |\n",
+            "| `{}` | {} | {share:.0} % | {} | {} | {} | {} | `{}` |\n",
             row.name,
             number(lut),
-            100.0 * lut / LUTS,
-            number(ff),
-            number(dsp),
-            number(ramb),
+            cells.join(" | "),
+            fits(&row.size, device),
+            number(row.firmware),
+            frame.join(" | "),
             row.options.join(" ")
         );
     }
     out
+}
+
+/// Whether a build fits a device: "yes", or what it has too much of.
+fn fits(size: &Size, device: &Limits) -> String {
+    let beyond = device.iter().filter_map(|(resource, limit)| {
+        let share = size.of(*resource) / f64::from(*limit) * 100.0;
+        (share > 100.0).then(|| format!("{} {share:.0} %", resource.name()))
+    });
+    let beyond: Vec<_> = beyond.collect();
+    if beyond.is_empty() {
+        "yes".to_owned()
+    } else {
+        format!("no: {}", beyond.join(", "))
+    }
 }
 
 fn page(table: &str) -> String {
@@ -178,8 +236,11 @@ fn page(table: &str) -> String {
 # Builds for scenes
 
 The cells of the Urbana's SoC in the build for each [scene](scenes.md), and in the build for `{ALL}` scenes, by Yosys as in
-[resources.md](resources.md). Cycles are those of the scene's frame, in its size, on the virtual board with all blocks and two lanes, which
-has no smooth shading. The last column has the options of `cargo xtask gateware`.
+[resources.md](resources.md): slices are the lower bound. The column `firmware` has the bytes of the image for the scene. Cycles are
+those of the scene's frame, in its size, on the virtual board with all blocks and two lanes, which has no smooth shading. Frames a second
+are as many as can be drawn one after the other. The column `memory` has the megabytes a second that the engines then move, plus those
+of scan-out at 60 Hz, without the soft core's; [boards.md](boards.md) has what the memory of a board moves at most. The last column
+has the options of `cargo xtask gateware`.
 
 {table}"
     )
@@ -211,4 +272,31 @@ fn within(rows: &[Row]) -> Result<()> {
         return Ok(());
     }
     bail!("beyond the budgets of scenes/*.toml:\n{}", lines.join("\n"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::table::tests::measured;
+    use super::*;
+
+    #[test]
+    fn a_row_has_what_is_beyond_the_device() {
+        let row = Row {
+            name: "lamp".into(),
+            options: vec!["--blocks".into(), "scanout".into()],
+            size: measured(None).sizes.remove(0),
+            firmware: 54_321.0,
+            frame: Some(Frame {
+                cycles: 1_354_166.7,
+                rate: 60.0,
+                memory: 55.3,
+            }),
+            budget: vec![],
+        };
+        let device = Limits::from([(Resource::Lut, 1_234), (Resource::Ramb36, 2)]);
+        let table = table(&[row], &device);
+        let expected = "| `lamp` | 1,234 | 0 % | 2,000 | 7 | 2.5 | 400 | no: RAMB36 125 % | 54,321 | 1,354,166 | 60 | 55 \
+                        | `--blocks scanout` |\n";
+        assert!(table.ends_with(expected), "{table}");
+    }
 }
