@@ -12,10 +12,14 @@ pub const MAX_LINE: usize = 64 << 10;
 pub const MAX_POINTS: usize = 3 * MAX_TRIANGLES;
 /// Maximum number of triangles in a mesh: at 16 bytes each they fill the 32 MiB that a board has for a mesh.
 pub const MAX_TRIANGLES: usize = 1 << 21;
-/// Maximum number of corners of a polygon; the time of ear clipping grows with its square.
+/// Maximum number of corners of a polygon.
 pub const MAX_POLYGON: usize = 8192;
-/// Maximum magnitude of a coordinate. Larger values indicate a damaged file.
-pub const MAX_COORDINATE: f64 = 1e15;
+/// Maximum magnitude of a coordinate.
+pub const MAX_COORDINATE: f64 = 1e30;
+/// Magnitude of a coordinate above which a remark says that the file may be damaged.
+pub const USUAL_COORDINATE: f64 = 1e15;
+/// Maximum number of remarks on a file; further ones are dropped.
+pub const MAX_REMARKS: usize = 8;
 
 /// Place of an error in an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

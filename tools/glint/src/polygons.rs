@@ -1,6 +1,6 @@
 //! A mesh as read from a file: points, and polygons between them.
 
-use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_TRIANGLES, Place};
+use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES, Place};
 
 /// A point or a direction, in the file's unit.
 pub type Vector = [f64; 3];
@@ -68,7 +68,7 @@ pub struct Polygons {
     pub corners: Vec<Corner>,
     /// The faces.
     pub faces: Vec<Face>,
-    /// Remarks for the user, such as a missing material file.
+    /// Remarks for the user, such as a missing material file; at most [`MAX_REMARKS`] from a file.
     pub remarks: Vec<String>,
     triangles: usize,
     largest_point: Largest,
@@ -100,6 +100,14 @@ impl Largest {
 }
 
 impl Polygons {
+    /// Adds a remark, unless it is there already or [`MAX_REMARKS`] others are.
+    pub fn remark(&mut self, remark: impl Into<String>) {
+        let remark = remark.into();
+        if self.remarks.len() < MAX_REMARKS && !self.remarks.contains(&remark) {
+            self.remarks.push(remark);
+        }
+    }
+
     /// Adds a point and returns its index.
     ///
     /// # Errors

@@ -3,15 +3,25 @@
 //! Ear clipping that always gives n − 2 triangles and uses every corner, so that a closed mesh stays closed: dropping a
 //! collinear corner would leave a neighbour's vertex in the middle of an edge.
 
+mod tree;
+
 use crate::polygons::{Corner, Face, Polygons, Vector};
+use std::collections::VecDeque;
+use tree::Tree;
+
+/// A point of a polygon's plane.
+type Point = [f64; 2];
 
 /// Buffers reused for each face.
 #[derive(Default)]
 pub struct Scratch {
-    plane: Vec<[f64; 2]>,
+    plane: Vec<Point>,
     next: Vec<usize>,
     previous: Vec<usize>,
     is_ear: Vec<bool>,
+    /// The ears, with corners among them that are no ears any more.
+    ears: VecDeque<usize>,
+    tree: Tree,
     triangles: Vec<[Corner; 3]>,
 }
 
@@ -66,7 +76,7 @@ pub fn face<'a>(polygons: &Polygons, face: &Face, scratch: &'a mut Scratch) -> &
 }
 
 /// Projects a polygon along the axis nearest to its normal (Newell's method), so that it runs counter-clockwise in `plane`.
-fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<[f64; 2]>) {
+fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
     let origin = corners
         .first()
         .map_or([0.0; 3], |&corner| polygons.point(corner));
@@ -95,64 +105,69 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<[f64; 2]>) {
 }
 
 /// Twice the signed area of a triangle in the plane.
-fn area([ax, ay]: [f64; 2], [bx, by]: [f64; 2], [cx, cy]: [f64; 2]) -> f64 {
+fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Clips one ear after the other. Which corners are ears is stored, and clipping an ear updates its two neighbours only, so the
-/// time grows with the square of the number of corners. If a self-intersecting polygon has no ears left, any corner is clipped.
+/// Clips one ear after the other. The ears wait in a queue, and clipping one updates its two neighbours only. If a
+/// self-intersecting polygon has no ears left, any corner is clipped.
 fn clip_ears(corners: &[Corner], scratch: &mut Scratch) {
     let n = corners.len();
     scratch.next.clear();
     scratch.next.extend((1..n).chain([0]));
     scratch.previous.clear();
     scratch.previous.extend([n - 1].into_iter().chain(0..n - 1));
+    scratch.tree.fill(&scratch.plane);
     scratch.is_ear.clear();
+    scratch.ears.clear();
     for i in 0..n {
         let ear = is_ear(scratch, i);
         scratch.is_ear.push(ear);
+        scratch.ears.extend(ear.then_some(i));
     }
     let mut at = 0;
-    for left in (3..=n).rev() {
-        let mut steps = 0;
-        while !scratch.is_ear[at] && steps < left {
-            at = scratch.next[at];
-            steps += 1;
-        }
+    for _ in 3..=n {
+        at = next_ear(scratch).unwrap_or(at);
         let (before, after) = (scratch.previous[at], scratch.next[at]);
         scratch
             .triangles
             .push([corners[before], corners[at], corners[after]]);
         scratch.next[before] = after;
         scratch.previous[after] = before;
+        scratch.is_ear[at] = false;
+        scratch.tree.remove(at);
         for i in [before, after] {
-            scratch.is_ear[i] = is_ear(scratch, i);
+            let ear = is_ear(scratch, i);
+            if ear && !scratch.is_ear[i] {
+                scratch.ears.push_back(i);
+            }
+            scratch.is_ear[i] = ear;
         }
-        // The search for the next ear skips the corner `after`. Without this the triangles would often
-        // form a fan of narrow triangles around one corner.
+        // The next ear is not the corner `after`, if there is another one. Otherwise the triangles would often form a fan of narrow
+        // triangles around one corner.
+        if scratch.ears.front() == Some(&after) {
+            scratch.ears.rotate_left(1);
+        }
         at = scratch.next[after];
     }
 }
 
-/// Whether a corner is convex and no other corner lies in the triangle that it forms with its neighbours.
-fn is_ear(scratch: &Scratch, i: usize) -> bool {
-    let (before, after) = (scratch.previous[i], scratch.next[i]);
-    let [a, b, c] = [before, i, after].map(|i| scratch.plane[i]);
-    if area(a, b, c) <= 0.0 {
-        return false;
-    }
-    let mut at = scratch.next[after];
-    while at != before {
-        let p = scratch.plane[at];
-        // Where a hole is joined to the outline, the polygon passes the same points twice, so points equal to a corner of the
-        // triangle do not count.
-        let shared = p == a || p == b || p == c;
-        if !shared && area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0 {
-            return false;
+/// Takes the next ear from the queue.
+fn next_ear(scratch: &mut Scratch) -> Option<usize> {
+    while let Some(corner) = scratch.ears.pop_front() {
+        if scratch.is_ear[corner] {
+            return Some(corner);
         }
-        at = scratch.next[at];
     }
-    true
+    None
+}
+
+/// Whether a corner is convex and no other corner lies in the triangle that it forms with its neighbours. Where a hole is joined to
+/// the outline, the polygon passes the same points twice, so points equal to a corner of the triangle do not count.
+fn is_ear(scratch: &Scratch, i: usize) -> bool {
+    let corners = [scratch.previous[i], i, scratch.next[i]];
+    let [a, b, c] = corners.map(|i| scratch.plane[i]);
+    area(a, b, c) > 0.0 && !scratch.tree.has_point_in(&scratch.plane, &[a, b, c])
 }
 
 #[cfg(test)]
@@ -258,6 +273,49 @@ mod tests {
         let areas = areas(&points.map(|[x, y]| [x, y, 0.0]));
         assert_eq!(areas.iter().sum::<f64>(), 24.0);
         assert!(areas.iter().all(|&a| a >= 0.0), "{areas:?}");
+    }
+
+    /// Polygons in which the ears are hard to find: teeth, spikes around a centre, and a spiral.
+    #[test]
+    fn large_concave_polygons() {
+        let n = 8192;
+        let part = |i: usize| i as f64 / n as f64;
+        let teeth = (0..n - 2)
+            .map(|i| {
+                [
+                    part(i) * 1e3,
+                    if i % 2 == 0 { 0.0 } else { 1.0 + part(i) },
+                    0.0,
+                ]
+            })
+            .chain([[2e3, 9.0, 0.0], [-1e3, 9.0, 0.0]]);
+        let around = |i: usize, radius: f64, turns: f64| {
+            let (sin, cos) = (part(i) * turns * std::f64::consts::TAU).sin_cos();
+            [radius * cos, radius * sin, 0.0]
+        };
+        let spikes = (0..n).map(|i| around(i, if i % 2 == 0 { 1.0 } else { 100.0 }, 1.0));
+        let spiral = (0..n).map(|i| match i < n / 2 {
+            true => around(i, 1.0 + part(i), 40.0),
+            false => around(n - 1 - i, 1.005 + part(n - 1 - i), 40.0),
+        });
+        for (name, points) in [
+            ("teeth", teeth.collect::<Vec<_>>()),
+            ("spikes", spikes.collect()),
+            ("spiral", spiral.collect()),
+        ] {
+            let areas = areas(&points);
+            assert_eq!(areas.len(), n - 2, "{name}");
+            let whole: f64 = (0..n)
+                .map(|i| (points[i], points[(i + 1) % n]))
+                .map(|(a, b)| a[0] * b[1] - a[1] * b[0])
+                .sum();
+            // Ears of a simple polygon add up to its area, and none is turned over.
+            let sum: f64 = areas.iter().map(|area| area.abs()).sum();
+            assert!(
+                (sum - whole.abs()).abs() < 1e-9 * sum,
+                "{name}: {sum} {whole}"
+            );
+        }
     }
 
     #[test]

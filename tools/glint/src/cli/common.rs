@@ -118,6 +118,12 @@ pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     }
 }
 
+/// Prints a warning to standard error, on one line.
+pub fn warn(text: impl std::fmt::Display) {
+    // There is no place to report that standard error is closed.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
 /// Prints a value as JSON on one line.
 pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     say(serde_json::to_string(value)?)

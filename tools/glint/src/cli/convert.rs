@@ -1,6 +1,6 @@
 //! `glint model` and `glint convert`.
 
-use super::common::{print_json, say, spinner};
+use super::common::{print_json, say, spinner, warn};
 use super::output::{MESH, Output};
 use anyhow::Context;
 use clap::Args;
@@ -184,7 +184,7 @@ pub fn print_report(report: &Report) -> anyhow::Result<()> {
         .try_for_each(|remark| say(format_args!("note       {remark}")))
 }
 
-/// Loads the MODEL argument of a command: a mesh file, or the name of a generator.
+/// Loads the MODEL argument of a command: a mesh file, or the name of a generator. Remarks on the file become warnings.
 pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
     let spinner = spinner("reading the model");
     let model = model::load(
@@ -195,5 +195,9 @@ pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
         },
     )?;
     spinner.finish_and_clear();
+    let report = model.report.as_ref();
+    for remark in report.map_or(&[][..], |report| &report.remarks) {
+        warn(format_args!("{}: {remark}", name.escape_debug()));
+    }
     Ok(model)
 }

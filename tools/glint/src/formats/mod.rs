@@ -8,11 +8,12 @@ pub mod stl;
 pub mod text;
 pub mod write;
 
-use crate::error::{FormatError, InputError, MAX_FILE};
+use crate::error::{FormatError, InputError, MAX_FILE, USUAL_COORDINATE};
 use crate::polygons::Polygons;
-use std::fs::File;
+use std::fs::{File, Metadata};
 use std::io::Read;
 use std::path::Path;
+use text::BYTE_ORDER_MARK;
 
 /// A mesh file's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,8 +80,10 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
     let parsed = match format {
         Format::Obj => {
             let mut beside = |name: &str| {
-                let name = Path::new(name).file_name()?;
-                read_file(&path.with_file_name(name)).ok()
+                let file = path.with_file_name(Path::new(name).file_name()?);
+                // A device or a pipe could block, or be endless.
+                file.metadata().ok().filter(Metadata::is_file)?;
+                read_file(&file).ok()
             };
             match obj::parse(&bytes, &mut beside) {
                 Err(obj::ObjError::Mtl(error)) => return Err(error),
@@ -92,5 +95,16 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
         Format::Ply => ply::parse(&bytes),
         Format::Glm => glm::parse(&bytes),
     };
-    parsed.map_err(|error| error.in_path(path))
+    let mut polygons = parsed.map_err(|error| error.in_path(path))?;
+    if format != Format::Glm && bytes.starts_with(BYTE_ORDER_MARK) {
+        polygons.remark("the byte order mark at the start is skipped");
+    }
+    let largest = polygons.points.as_flattened().iter();
+    let largest = largest.fold(0.0, |largest: f64, c| largest.max(c.abs()));
+    if largest > USUAL_COORDINATE {
+        polygons.remark(format!(
+            "a coordinate of magnitude {largest:e}: the file may be damaged"
+        ));
+    }
+    Ok(polygons)
 }

@@ -5,10 +5,10 @@
 
 use super::mtl;
 use super::text::{Line, Lines, coordinate, vector};
-use crate::error::{FormatError, InputError, MAX_LINE, Place, quote};
+use crate::error::{FormatError, InputError, MAX_LINE, MAX_REMARKS, Place, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Statements without effect on the drawn surface.
 const IGNORED: &[&[u8]] = &[
@@ -121,6 +121,10 @@ struct Reader {
     palette: HashMap<Vec<u8>, Rgb8>,
     colour: Option<Rgb8>,
     corners: Vec<Corner>,
+    /// Unknown keywords that a remark names.
+    skipped: Vec<Vec<u8>>,
+    /// Material files that were asked for. Each is read once.
+    libraries: HashSet<Vec<u8>>,
 }
 
 impl Reader {
@@ -140,6 +144,7 @@ impl Reader {
             b"usemtl" => self.colour = self.palette.get(rest_of(line)).copied(),
             b"mtllib" => self.library(rest_of(line), materials)?,
             _ if IGNORED.contains(&keyword) => {}
+            _ if keyword.iter().all(u8::is_ascii_graphic) => self.skip(keyword, place),
             _ => {
                 return Err(FormatError::new(
                     place,
@@ -150,6 +155,15 @@ impl Reader {
             }
         }
         Ok(())
+    }
+
+    /// Skips an unknown statement, with a remark at its first place.
+    fn skip(&mut self, keyword: &[u8], place: Place) {
+        if self.skipped.len() < MAX_REMARKS && !self.skipped.iter().any(|known| known == keyword) {
+            self.skipped.push(keyword.to_vec());
+            let text = format!("{place}the unknown statement {} is skipped", quote(keyword));
+            self.polygons.remark(text);
+        }
     }
 
     fn vertex<'a>(
@@ -229,6 +243,9 @@ impl Reader {
     }
 
     fn library(&mut self, names: &[u8], materials: &mut Materials) -> Result<(), ObjError> {
+        if !self.libraries.insert(names.to_vec()) {
+            return Ok(());
+        }
         // `names` is one file name with spaces, or several file names. If a file with the whole text as its name exists, only
         // that file is read.
         let mut found = false;
@@ -249,8 +266,8 @@ impl Reader {
                 }
             }
         }
-        if !found && self.polygons.remarks.len() < 8 {
-            self.polygons.remarks.push(format!(
+        if !found {
+            self.polygons.remark(format!(
                 "no material file {} beside the mesh: its colours are missing",
                 quote(names)
             ));
@@ -390,11 +407,11 @@ mod tests {
             ),
             (
                 "\nv 0 nan 0\n",
-                "line 2: expected a number within ±1e15, found 'nan'",
+                "line 2: expected a number within ±1e30, found 'nan'",
             ),
             (
                 "v 1e300 0 0\n",
-                "line 1: expected a number within ±1e15, found '1e300'",
+                "line 1: expected a number within ±1e30, found '1e300'",
             ),
             (
                 "f 0 1 2\n",

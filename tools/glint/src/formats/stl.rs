@@ -3,15 +3,15 @@
 //! Own parser instead of `stl_io`: its errors have neither line nor offset, it skips the colours of the attribute word, and it
 //! takes a binary file for ASCII if its header starts with `solid`.
 
-use super::text::{Lines, any_number, checked_at, vector};
+use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, vector};
 use crate::error::{FormatError, MAX_TRIANGLES, Place, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file is binary if its length is exactly that for the triangle count in its header; any other file that starts
-/// with `solid` is ASCII. Normals are ignored: the winding has the same information and is more reliable.
+/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, since a text there is a count that no
+/// file has; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark. Normals are ignored: the winding has the same information and is more reliable.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.
@@ -22,11 +22,13 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
         .map(u32::from_le_bytes);
     let length = count.map(|count| HEADER as u64 + RECORD as u64 * u64::from(count));
     let starts_as_text = file
+        .strip_prefix(BYTE_ORDER_MARK)
+        .unwrap_or(file)
         .trim_ascii_start()
         .get(..5)
         .is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let polygons = match (count, length) {
-        (Some(count), Some(length)) if length == file.len() as u64 => parse_binary(file, count)?,
+        (Some(count), Some(length)) if length <= file.len() as u64 => parse_binary(file, count)?,
         _ if starts_as_text => parse_ascii(file)?,
         (Some(count), Some(length)) => {
             return Err(FormatError::whole(
@@ -94,6 +96,15 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     }
     let colours = Colours::of_header(&header[..80]);
     let mut polygons = Polygons::default();
+    let (records, rest) = records
+        .split_at_checked(RECORD * count as usize)
+        .unwrap_or((records, &[]));
+    if !rest.is_empty() {
+        polygons.remark(format!(
+            "{} bytes after the last triangle are skipped",
+            rest.len()
+        ));
+    }
     for (record, offset) in records.chunks_exact(RECORD).zip((HEADER..).step_by(RECORD)) {
         let mut corners = [Corner::at(0); 3];
         for (i, corner) in corners.iter_mut().enumerate() {
@@ -287,7 +298,7 @@ mod tests {
             ),
             (
                 binary(b"", 1, &[(nan, 0)]),
-                "byte 112: expected a number within ±1e15, found NaN",
+                "byte 112: expected a number within ±1e30, found NaN",
             ),
             (
                 b"solid\n".to_vec(),

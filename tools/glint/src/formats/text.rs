@@ -2,6 +2,9 @@
 
 use crate::error::{FormatError, MAX_COORDINATE, MAX_LINE, Place, quote};
 
+/// The byte order mark of UTF-8.
+pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Lines of a text, ended by LF, CR LF or CR.
 pub struct Lines<'a> {
     rest: &'a [u8],
@@ -18,10 +21,10 @@ pub struct Line<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The lines of a whole text.
+    /// The lines of a whole text, without the byte order mark that some programs write at its start.
     pub fn new(text: &'a [u8]) -> Self {
         Self {
-            rest: text,
+            rest: text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text),
             number: 0,
         }
     }
@@ -170,7 +173,7 @@ mod tests {
             "inf",
             "-infinity",
             "1e300",
-            "1e16",
+            "1e31",
             "x",
             "",
             "1,5",

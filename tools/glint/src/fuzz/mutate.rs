@@ -52,7 +52,7 @@ const WORDS: [&str; 20] = [
     "inf",
     "1e300",
     "-1e-320",
-    "1e15",
+    "1e30",
     "0.5",
 ];
 const BYTES: [u8; 10] = [0, 1, 0x0a, 0x0d, 0x1b, 0x20, 0x7f, 0x80, 0xfe, 0xff];

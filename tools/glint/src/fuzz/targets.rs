@@ -191,8 +191,8 @@ impl Target {
                 run_model(input);
                 Verdict::Accepted
             }),
-            Self::Imu => log::parse(input).map_or(Verdict::Rejected, |entries| {
-                run_replay(&entries);
+            Self::Imu => log::parse(input).map_or(Verdict::Rejected, |log| {
+                run_replay(&log.entries);
                 Verdict::Accepted
             }),
             Self::Replay => run_image(input),

@@ -25,19 +25,30 @@ const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATUR
 /// Maximum number of columns in a header; logs in use have fewer.
 const MOST_COLUMNS: usize = 64;
 
-/// The position in the file of each of [`COLUMNS`], and the number of columns in the file.
+/// The columns of a file.
 struct Header {
+    /// Position in the file of each of [`COLUMNS`].
     places: [Option<usize>; COLUMNS.len()],
+    /// Number of columns in the file.
     count: usize,
+    /// Names of the other columns.
+    ignored: Vec<String>,
+}
+
+/// A parsed log.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Log {
+    /// The samples, at least one.
+    pub entries: Vec<Entry>,
+    /// Names of the columns that are ignored.
+    pub ignored: Vec<String>,
 }
 
 /// Parses a log.
 ///
 /// # Errors
 /// The first violation of the format, with its line and column.
-pub fn parse(text: &[u8]) -> Result<Vec<Entry>, FormatError> {
-    // Spreadsheets start a CSV with a byte order mark.
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+pub fn parse(text: &[u8]) -> Result<Log, FormatError> {
     let mut lines = Lines::new(text);
     let Some(first) = next_filled(&mut lines)? else {
         return Err(FormatError::whole(
@@ -53,7 +64,10 @@ pub fn parse(text: &[u8]) -> Result<Vec<Entry>, FormatError> {
     if entries.is_empty() {
         return Err(FormatError::whole("at least one sample", "none"));
     }
-    Ok(entries)
+    Ok(Log {
+        entries,
+        ignored: header.ignored,
+    })
 }
 
 /// The next line that is not blank.
@@ -76,15 +90,20 @@ impl Header {
     fn parse(line: Line<'_>) -> Result<Self, FormatError> {
         let mut places = [None; COLUMNS.len()];
         let mut count = 0;
+        let mut ignored = Vec::new();
         for cell in cells(line) {
-            let column = COLUMNS.iter().position(|name| name.as_bytes() == cell);
-            let Some(column) = column.filter(|_| count < MOST_COLUMNS) else {
-                let expected = format!("only columns {}", COLUMNS.join(","));
-                return Err(FormatError::new(line.place(), expected, quote(cell)));
-            };
-            if places[column].replace(count).is_some() {
-                let expected = format!("one column {}", COLUMNS[column]);
-                return Err(FormatError::new(line.place(), expected, "two"));
+            if count == MOST_COLUMNS {
+                let expected = format!("at most {MOST_COLUMNS} columns");
+                return Err(FormatError::new(line.place(), expected, "more"));
+            }
+            match COLUMNS.iter().position(|name| name.as_bytes() == cell) {
+                None => ignored.push(quote(cell)),
+                Some(column) => {
+                    if places[column].replace(count).is_some() {
+                        let expected = format!("one column {}", COLUMNS[column]);
+                        return Err(FormatError::new(line.place(), expected, "two"));
+                    }
+                }
             }
             count += 1;
         }
@@ -94,11 +113,15 @@ impl Header {
                 return Err(FormatError::new(line.place(), expected, quote(line.text)));
             }
         }
-        Ok(Self { places, count })
+        Ok(Self {
+            places,
+            count,
+            ignored,
+        })
     }
 
     fn entry(&self, line: Line<'_>) -> Result<Entry, FormatError> {
-        let mut row = [&[][..]; COLUMNS.len()];
+        let mut row = [&[][..]; MOST_COLUMNS];
         let mut found = 0;
         for cell in cells(line) {
             if let Some(place) = row.get_mut(found) {
@@ -144,8 +167,9 @@ mod tests {
 
     #[test]
     fn columns_in_any_order() {
-        let text = b"\xef\xbb\xbfgz, t_us ,ax,ay,az,temp,gx,gy\r\n-3,9323,4,5,6,-4880,1,+2\r\n\r\n  \n7,18446744073709551615,1,1,1,1,1,-32768";
-        let entries = parse(text).unwrap();
+        let text = b"\xef\xbb\xbfmx,gz, t_us ,ax,ay,az,temp,gx,gy,\r\nx,-3,9323,4,5,6,-4880,1,+2,\r\n\r\n  \n,7,18446744073709551615,1,1,1,1,1,-32768,8";
+        let Log { entries, ignored } = parse(text).unwrap();
+        assert_eq!(ignored, ["'mx'", "''"]);
         let first = Entry {
             line: 2,
             t_us: 9323,
@@ -159,6 +183,7 @@ mod tests {
             (5, u64::MAX, [1, i16::MIN, 7])
         );
         let bare = parse(b"t_us,ax,ay,az,gx,gy,gz\n1,2,3,4,5,6,7\n").unwrap();
+        let bare = bare.entries;
         assert_eq!((bare[0].temp, bare[0].gyro), (None, [5, 6, 7]));
     }
 
@@ -180,16 +205,12 @@ mod tests {
                 "line 1: expected a column gz, found 't_us,ax,ay,az,gx,gy'",
             ),
             (
-                "t_us,ax,ay,az,gx,gy,gz,mx\n",
-                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found 'mx'",
-            ),
-            (
                 "t_us,ax,ay,az,gx,gy,gz,ax\n",
                 "line 1: expected one column ax, found two",
             ),
             (
                 "1,2,3,4,5,6,7\n",
-                "line 1: expected only columns t_us,ax,ay,az,gx,gy,gz,temp, found '1'",
+                "line 1: expected a column t_us, found '1,2,3,4,5,6,7'",
             ),
         ] {
             assert_eq!(parse(text.as_bytes()).unwrap_err().to_string(), message);

@@ -109,6 +109,6 @@ fn a_material_file_beside_the_mesh() {
     let error = refused(&folder, &["convert", "a.obj", "b.glm"]);
     assert_eq!(
         error,
-        "error: sub/a.mtl: line 2: expected a number within ±1e15, found 'x'"
+        "error: sub/a.mtl: line 2: expected a number within ±1e30, found 'x'"
     );
 }

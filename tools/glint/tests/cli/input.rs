@@ -29,12 +29,12 @@ fn bad_meshes() {
         (
             "nan.obj",
             SQUARE.replace("1 0 0", "1 NaN 0").into(),
-            "line 2: expected a number within ±1e15, found 'NaN'",
+            "line 2: expected a number within ±1e30, found 'NaN'",
         ),
         (
             "huge.obj",
             SQUARE.replace("1 0 0", "1 1e300 0").into(),
-            "line 2: expected a number within ±1e15, found '1e300'",
+            "line 2: expected a number within ±1e30, found '1e300'",
         ),
         (
             "zero.obj",

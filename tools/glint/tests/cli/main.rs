@@ -8,4 +8,5 @@ mod input;
 mod meshes;
 mod output;
 mod package;
+mod tolerance;
 mod wireframes;

@@ -1,6 +1,6 @@
 //! The two sources of samples: a board's sensor, and a log file.
 
-use crate::cli::common::{LineArguments, spinner};
+use crate::cli::common::{LineArguments, spinner, warn};
 use clap::Args;
 use glint::board::{Board, BoardName};
 use glint::console::Console;
@@ -56,8 +56,16 @@ impl SensorArguments {
     }
 }
 
-/// Reads and parses the log at `path`.
+/// Reads and parses the log at `path`. A warning names the columns that are ignored.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
-    Ok(log::parse(&text).map_err(|error| error.in_path(path))?)
+    let log = log::parse(&text).map_err(|error| error.in_path(path))?;
+    if !log.ignored.is_empty() {
+        warn(format_args!(
+            "{}: ignored columns: {}",
+            path.display(),
+            log.ignored.join(", ")
+        ));
+    }
+    Ok(log.entries)
 }

@@ -1,6 +1,6 @@
 //! Header of a PLY file: its elements and their properties.
 
-use crate::error::{FormatError, Place, quote};
+use crate::error::{FormatError, MAX_REMARKS, Place, quote};
 use crate::formats::text::{Line, Lines};
 
 /// Maximum number of elements in a header, and of properties in an element; files in use have fewer.
@@ -151,6 +151,8 @@ pub struct Header {
     pub encoding: Encoding,
     /// Elements in file order.
     pub elements: Vec<Element>,
+    /// Remarks on lines that start with no keyword; they are skipped.
+    pub remarks: Vec<String>,
 }
 
 impl Header {
@@ -162,6 +164,7 @@ impl Header {
     pub fn parse(lines: &mut Lines) -> Result<Self, FormatError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let mut remarks = Vec::new();
         let mut number = 0;
         while let Some(line) = lines.next_line()? {
             number = line.number;
@@ -217,9 +220,20 @@ impl Header {
                 ([b"end_header"], _) => {
                     let encoding =
                         encoding.ok_or_else(|| refuse("a line format before end_header"))?;
-                    return Ok(Self { encoding, elements });
+                    return Ok(Self {
+                        encoding,
+                        elements,
+                        remarks,
+                    });
                 }
-                _ => return Err(header_line(line)),
+                ([b"format" | b"element" | b"property" | b"end_header", ..], _) => {
+                    return Err(header_line(line));
+                }
+                _ if remarks.len() < MAX_REMARKS => remarks.push(format!(
+                    "{place}the header line {} is skipped",
+                    quote(line.text)
+                )),
+                _ => {}
             }
         }
         Err(FormatError::new(

@@ -7,7 +7,7 @@ mod header;
 mod source;
 
 use super::text::{Lines, checked};
-use crate::error::{FormatError, MAX_COORDINATE, MAX_POLYGON, Place};
+use crate::error::{FormatError, MAX_COORDINATE, MAX_POLYGON, Place, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
@@ -20,7 +20,7 @@ use source::{AsciiSource, BinarySource, Source};
 pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut lines = Lines::new(file);
     let header = Header::parse(&mut lines)?;
-    let polygons = match header.encoding {
+    let mut polygons = match header.encoding {
         Encoding::Ascii => read_body(&header, AsciiSource::new(lines))?,
         Encoding::LittleEndian | Encoding::BigEndian => {
             let offset = file.len() - lines.rest().len();
@@ -29,6 +29,9 @@ pub fn parse(file: &[u8]) -> Result<Polygons, FormatError> {
         }
     };
     polygons.check_indices()?;
+    for remark in header.remarks {
+        polygons.remark(remark);
+    }
     Ok(polygons)
 }
 
@@ -139,12 +142,23 @@ fn coordinate(value: f64, place: Place) -> Result<f64, FormatError> {
     })
 }
 
+/// Adds a remark for each list of an element that is skipped.
+fn remark_lists(element: &Element, used: impl Fn(&Property) -> bool, polygons: &mut Polygons) {
+    for property in &element.properties {
+        if matches!(property.kind, Kind::List { .. }) && !used(property) {
+            let [list, of] = [&property.name, &element.name].map(|name| quote(name));
+            polygons.remark(format!("the list {list} of {of} is skipped"));
+        }
+    }
+}
+
 fn read_vertices(
     element: &Element,
     source: &mut impl Source,
     polygons: &mut Polygons,
 ) -> Result<(), FormatError> {
     let slots: Vec<Slot> = element.properties.iter().map(Slot::of).collect();
+    remark_lists(element, |_| false, polygons);
     if !has_all(&slots, |slot| {
         if let Slot::Position(i) = slot {
             Some(*i)
@@ -217,6 +231,7 @@ fn read_faces(
             "none",
         ));
     }
+    remark_lists(element, is_indices, polygons);
     let with_colour = has_colour(&slots);
     // Faces use the vertices' normals if the vertices come first, as in every known file.
     let with_normal = !polygons.normals.is_empty();
@@ -381,7 +396,7 @@ mod tests {
             ),
             (
                 ascii("1 1 0 0 0 255", "1 nan 0 0 0 255"),
-                "line 20: expected a number within ±1e15, found NaN",
+                "line 20: expected a number within ±1e30, found NaN",
             ),
             (
                 ascii("property double z", "property double w"),

@@ -1,0 +1,121 @@
+//! Files with more in them than their format has: loaded, each with a line of warning.
+
+use crate::common::{SQUARE, folder, glint, picture, succeed};
+use std::fs;
+use std::path::Path;
+
+const STL: &str = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
+const PLY: &str = "ply\nformat ascii 1.0\nauthor a b\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list uchar int rings\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 1 7\n1 0 0 0\n0 1 0 0\n3 0 1 2 2 0.5 0.5\n";
+
+/// Renders a model, and returns the lines of warning.
+fn warnings(folder: &Path, model: &str) -> Vec<String> {
+    let output = glint(folder, &["render", model, "--out", "a.png"]);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{model}: {error}");
+    assert!(picture(&folder.join("a.png")).iter().any(|&c| c != 0));
+    error.lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn meshes_with_more_than_their_format() {
+    let folder = folder("tolerance");
+    let mark = "\u{feff}";
+    let binary = {
+        let corners = [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let corners = corners.map(f32::to_le_bytes);
+        let header = [&[b's'; 80][..], &1_u32.to_le_bytes(), &[0; 12]].concat();
+        [&header[..], corners.as_flattened(), &[0; 2], b"the end"].concat()
+    };
+    let cases: Vec<(&str, Vec<u8>, &[&str])> = vec![
+        (
+            "mark.obj",
+            format!("{mark}{SQUARE}").into(),
+            &["the byte order mark at the start is skipped"],
+        ),
+        (
+            "mark.stl",
+            format!("{mark}{STL}").into(),
+            &["the byte order mark at the start is skipped"],
+        ),
+        (
+            "mark.ply",
+            format!("{mark}{}", PLY.replace("author a b\n", "")).into(),
+            &[
+                "the list 'rings' of 'vertex' is skipped",
+                "the list 'texcoord' of 'face' is skipped",
+                "the byte order mark at the start is skipped",
+            ],
+        ),
+        (
+            "unknown.obj",
+            format!("crease 1 2\n{SQUARE}crease 3 4\nrefl x\n").into(),
+            &[
+                "line 1: the unknown statement 'crease' is skipped",
+                "line 8: the unknown statement 'refl' is skipped",
+            ],
+        ),
+        (
+            "header.ply",
+            PLY.into(),
+            &[
+                "the list 'rings' of 'vertex' is skipped",
+                "the list 'texcoord' of 'face' is skipped",
+                "line 3: the header line 'author a b' is skipped",
+            ],
+        ),
+        (
+            "rest.stl",
+            binary,
+            &["7 bytes after the last triangle are skipped"],
+        ),
+        (
+            "large.obj",
+            SQUARE
+                .replace("v 1", "v 1e30")
+                .replace(" 1 0\n", " 1e30 0\n")
+                .into(),
+            &["a coordinate of magnitude 1e30: the file may be damaged"],
+        ),
+    ];
+    for (name, contents, expected) in cases {
+        fs::write(folder.join(name), contents).unwrap();
+        let expected: Vec<_> = expected
+            .iter()
+            .map(|text| format!("warning: {name}: {text}"))
+            .collect();
+        assert_eq!(warnings(&folder, name), expected);
+    }
+}
+
+#[test]
+fn a_material_file_that_is_a_pipe_or_a_device_is_not_opened() {
+    let folder = folder("pipes");
+    let made = std::process::Command::new("mkfifo")
+        .arg(folder.join("pipe.mtl"))
+        .status();
+    assert!(made.unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", folder.join("zero.mtl")).unwrap();
+    for library in ["pipe.mtl", "zero.mtl"] {
+        fs::write(folder.join("a.obj"), format!("mtllib {library}\n{SQUARE}")).unwrap();
+        let expected = format!(
+            "warning: a.obj: no material file '{library}' beside the mesh: its colours are missing"
+        );
+        assert_eq!(warnings(&folder, "a.obj"), [expected]);
+    }
+}
+
+#[test]
+fn a_log_with_more_columns() {
+    let folder = folder("columns");
+    let log = "t_us,ax,ay,az,gx,gy,gz,mx,my\n0,0,0,4096,0,0,0,1,2\n1000,0,0,4096,0,0,0,x,\n";
+    fs::write(folder.join("log.csv"), log).unwrap();
+    let replay = ["imu", "replay", "log.csv", "--still", "0", "--out", "a.csv"];
+    let output = glint(&folder, &replay);
+    assert!(output.status.success());
+    assert_eq!(
+        String::from_utf8(output.stderr).unwrap(),
+        "warning: log.csv: ignored columns: 'mx', 'my'\n"
+    );
+    fs::write(folder.join("log.csv"), log.replace(",mx,my", ",,")).unwrap();
+    succeed(&folder, &replay);
+}
