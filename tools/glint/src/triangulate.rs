@@ -7,10 +7,7 @@ mod tree;
 
 use crate::polygons::{Corner, Face, Polygons, Vector};
 use std::collections::VecDeque;
-use tree::Tree;
-
-/// A point of a polygon's plane.
-type Point = [f64; 2];
+use tree::{Point, Tree, area};
 
 /// Buffers reused for each face.
 #[derive(Default)]
@@ -102,11 +99,6 @@ fn project(polygons: &Polygons, corners: &[Corner], plane: &mut Vec<Point>) {
         let p = local(corner);
         [p[x], p[y]]
     }));
-}
-
-/// Twice the signed area of a triangle in the plane.
-fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
-    (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
 /// Clips one ear after the other. The ears wait in a queue, and clipping one updates its two neighbours only. If a

@@ -1,6 +1,12 @@
 //! A k-d tree over the corners of a polygon in its plane: which of them lie in a triangle.
 
-use super::{Point, area};
+/// A point of a polygon's plane.
+pub type Point = [f64; 2];
+
+/// Twice the signed area of a triangle in the plane.
+pub fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
+    (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+}
 
 /// Points of a part of the tree from which on it is searched point by point.
 const LEAF: usize = 16;
