@@ -128,6 +128,18 @@ impl Gesture {
         started
     }
 
+    /// The image sensor that is on. If it is off, this sets one up, which takes some 50 ms, and turns it off again.
+    ///
+    /// # Errors
+    /// There is no image sensor, or it does not accept its set-up.
+    pub fn check(&mut self) -> Result<Model, SetUpError> {
+        self.sensor.unwrap_or_else(|| {
+            let started = self.engine.start(self.size, self.clock);
+            self.engine.set_power(false);
+            started
+        })
+    }
+
     /// Looks at the image sensor after this time.
     fn look_after(&mut self, span: Duration) {
         let counters = self.engine.counters();

@@ -5,6 +5,7 @@ use core::slice;
 use glint_core::mesh::{MAX_NAME, Mesh, MeshError};
 use glint_core::object::Place;
 use glint_core::regions::Region;
+use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
 use heapless::{String, Vec};
 
@@ -144,6 +145,11 @@ impl Models {
     pub fn add_object(&mut self, name: &str, place: &Place) -> Option<Result<(), ObjectError>> {
         let mesh = self.find(name)?;
         Some(self.objects.add(&named(name, mesh).name, mesh, place))
+    }
+
+    /// A built-in shape; `None` if there is no memory for it.
+    pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
+        self.shapes.shape(shape)
     }
 
     fn find(&mut self, name: &str) -> Option<Mesh<'static>> {

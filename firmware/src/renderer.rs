@@ -2,6 +2,7 @@
 
 use glint_core::feature::{CPU, EDGES};
 use glint_core::picture::{Backend, Size};
+use glint_core::wire::crc32;
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError, Subject};
@@ -176,6 +177,31 @@ impl Renderer {
         };
         let frame = scene.frame(models);
         Some(gateware.repeat(&frame, &mut output, &mut cpu, count))
+    }
+
+    /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
+    /// gateware has no triangle engine, or while no frame buffer is free.
+    pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
+        let colour = self.display.back()?;
+        let gateware = self.gateware.as_mut()?;
+        let mut output = Output {
+            colour,
+            depth: None,
+        };
+        let mut cpu = Cpu {
+            scratch: &mut self.scratch,
+            edges: &mut self.edges,
+            progress: &mut || {},
+        };
+        let drawn = loop {
+            if let Some(drawn) = gateware.advance(frame, &mut output, &mut cpu) {
+                break drawn;
+            }
+        };
+        // The engine writes to memory and not to the CPU's data cache, which may hold older data.
+        cpu::flush_data_cache();
+        let pixels = output.colour.get(..frame.size.pixel_count());
+        Some(drawn.map(|_| crc32(bytemuck::cast_slice(pixels.unwrap_or_default()))))
     }
 
     /// Colours of the last frame: RGB565, row by row.

@@ -1,52 +1,276 @@
 //! Self-tests of the machine.
 
-use glint_core::mpu6050::Error;
-use glint_hal::i2c;
+use core::fmt;
+use core::time::Duration;
+
+use embedded_hal::i2c::NoAcknowledgeSource;
+use glint_core::feature::{GESTURE, IMU, MESH};
+use glint_core::{image_sensor, mpu6050};
+use glint_hal::gesture::SetUpError;
+use glint_hal::i2c::BusError;
+use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use litex_pac::cpu;
 
+use crate::gateware::Fallback;
 use crate::machine::Machine;
+use crate::sensor::{self, SensorError};
 
-/// Number of bytes in the memory test: four times the size of the data cache.
+/// Number of bytes at the start of the memory test: four times the size of the data cache.
 const TESTED: usize = 16 << 10;
+/// Longest time until a vertical blanking.
+const BLANKING: Duration = Duration::from_millis(100);
+/// Longest time until the motion sensor, which may be starting, sends a sample.
+const SAMPLE: Duration = Duration::from_millis(300);
 
-/// Runs all tests and returns the name of each test and whether it passed.
-pub fn run(machine: &mut Machine) -> [(&'static str, bool); 6] {
-    let memory = memory(machine.models.staging());
-    [
-        ("identity", machine.identity.matches()),
-        ("clock", machine.clock.cycles() < machine.clock.cycles()),
-        ("cycle counter", cpu::cycles_low() != cpu::cycles_low()),
-        ("memory", memory),
-        ("scan-out", machine.renderer.display.is_visible()),
-        ("i2c", !is_stuck(machine)),
-    ]
+/// Result of a test.
+pub enum Verdict {
+    /// The part is there and works.
+    Passed,
+    /// The board, the gateware or the firmware lacks the part.
+    Absent,
+    /// The part is there and does not work.
+    Failed(Failure),
 }
 
-/// Whether a wire of the sensor's bus is stuck low.
-fn is_stuck(machine: &Machine) -> bool {
-    matches!(
-        machine.imu.error(),
-        Some(Error::Bus(
-            i2c::BusError::ClockStuck | i2c::BusError::DataStuck
-        ))
-    )
+/// What a test has found.
+pub enum Failure {
+    /// The build ids of gateware and firmware differ.
+    Identity,
+    /// A counter of time stands still.
+    Stopped,
+    /// A word of memory.
+    Memory {
+        /// Address of the word.
+        address: usize,
+        /// The written value.
+        expected: u32,
+        /// The value read.
+        found: u32,
+    },
+    /// No vertical blanking came in time.
+    Blanking,
+    /// Number of lines of the screen since reset whose pixels came too late.
+    Underflows(u32),
+    /// The checksum of a picture.
+    Checksum {
+        /// That of the model.
+        expected: u32,
+        /// That of the gateware.
+        found: u32,
+    },
+    /// The gateware did not draw a picture.
+    Engine(Fallback),
+    /// The motion sensor.
+    Sensor(SensorError),
+    /// The motion sensor reports no error and sends no sample.
+    NoSample,
+    /// The image sensor.
+    ImageSensor(SetUpError),
 }
 
-/// Tests the start of `window`, a part of main memory: writes a different word to each address, flushes the cache, and
-/// returns whether all words read back right.
-fn memory(window: &mut [u8]) -> bool {
-    let (words, _) = window
-        .get_mut(..TESTED)
-        .unwrap_or_default()
-        .as_chunks_mut::<4>();
-    let pattern = |index: usize| (index as u32).wrapping_mul(0x9e37_79b9).to_le_bytes();
-    for (index, word) in words.iter_mut().enumerate() {
-        *word = pattern(index);
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Passed => f.write_str("ok"),
+            Self::Absent => f.write_str("absent"),
+            Self::Failed(failure) => write!(f, "FAILED: {failure}"),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Identity => f.write_str("build ids of firmware and gateware differ"),
+            Self::Stopped => f.write_str("the counter stands still"),
+            Self::Memory {
+                address,
+                expected,
+                found,
+            } => write!(
+                f,
+                "{address:#010x} is {found:#010x}, expected {expected:#010x}"
+            ),
+            Self::Blanking => write!(
+                f,
+                "no vertical blanking for {} ms, expected one each 17 ms",
+                BLANKING.as_millis()
+            ),
+            Self::Underflows(count) => write!(f, "{count} underflows since reset, expected none"),
+            Self::Checksum { expected, found } => {
+                write!(f, "checksum {found:#010x}, expected {expected:#010x}")
+            }
+            Self::Engine(error) => error.fmt(f),
+            Self::Sensor(error) if IMU.is_built => error.fmt(f),
+            Self::NoSample => write!(f, "no sample for {} ms", SAMPLE.as_millis()),
+            Self::ImageSensor(error) if GESTURE.is_built => error.fmt(f),
+            // A failure of a part that this build leaves out.
+            Self::Sensor(_) | Self::ImageSensor(_) => Ok(()),
+        }
+    }
+}
+
+impl Verdict {
+    fn check(passed: bool, failure: Failure) -> Self {
+        if passed {
+            Self::Passed
+        } else {
+            Self::Failed(failure)
+        }
+    }
+}
+
+/// Runs all tests, prints a line for each, and returns the number of tests that failed.
+pub fn run(machine: &mut Machine) -> u32 {
+    let mut failed = 0;
+    let mut report = |machine: &mut Machine, name: &str, verdict: Verdict| {
+        failed += u32::from(matches!(verdict, Verdict::Failed(_)));
+        machine
+            .terminal
+            .print(format_args!("selftest {name} {verdict}\n"));
+    };
+    for (name, test) in TESTS {
+        let verdict = test(machine);
+        report(machine, name, verdict);
+    }
+    for picture in TestPicture::ALL {
+        let verdict = draw(machine, picture);
+        report(machine, picture.name(), verdict);
+    }
+    // After the pictures, which use the memory that scan-out reads.
+    let verdict = underflow(machine);
+    report(machine, "underflow", verdict);
+    failed
+}
+
+type Test = fn(&mut Machine) -> Verdict;
+
+/// The tests before those of the engines, which need memory and scan-out.
+const TESTS: [(&str, Test); 7] = [
+    ("identity", |machine| {
+        Verdict::check(machine.identity.matches(), Failure::Identity)
+    }),
+    ("clock", |machine| {
+        let passed = machine.clock.cycles() < machine.clock.cycles();
+        Verdict::check(passed, Failure::Stopped)
+    }),
+    ("cycle counter", |_| {
+        let passed = cpu::cycles_low() != cpu::cycles_low();
+        Verdict::check(passed, Failure::Stopped)
+    }),
+    ("memory", |machine| memory(machine.models.staging())),
+    ("imu", imu),
+    ("camera", camera),
+    ("scan-out", scan_out),
+];
+
+/// Tests `window`, a part of main memory: writes a different word to each address at its start and to one address for each address line,
+/// flushes the cache, and reads all words back.
+fn memory(window: &mut [u8]) -> Verdict {
+    let (words, _) = window.as_chunks_mut::<4>();
+    let count = words.len();
+    let start = TESTED / 4;
+    let lines = (start.ilog2()..usize::BITS).map(|line| 1 << line);
+    let places = (0..start).chain(lines).take_while(|place| *place < count);
+    let pattern = |place: usize| (place as u32).wrapping_mul(0x9e37_79b9);
+    for place in places.clone() {
+        words[place] = pattern(place).to_le_bytes();
     }
     cpu::flush_data_cache();
-    !words.is_empty()
-        && words
-            .iter()
-            .enumerate()
-            .all(|(index, word)| *word == pattern(index))
+    for place in places {
+        let (expected, word) = (pattern(place), &words[place]);
+        let found = u32::from_le_bytes(*word);
+        if found != expected {
+            return Verdict::Failed(Failure::Memory {
+                address: word.as_ptr().addr(),
+                expected,
+                found,
+            });
+        }
+    }
+    Verdict::Passed
+}
+
+fn imu(machine: &mut Machine) -> Verdict {
+    if !IMU.is_built || machine.devices.is_none() {
+        return Verdict::Absent;
+    }
+    let before = machine.imu.samples();
+    let end = machine.clock.after(SAMPLE);
+    loop {
+        sensor::deliver(&mut machine.imu);
+        match machine.imu.error() {
+            Some(mpu6050::Error::Bus(BusError::NoAcknowledge(NoAcknowledgeSource::Address))) => {
+                return Verdict::Absent;
+            }
+            Some(error) => return Verdict::Failed(Failure::Sensor(error)),
+            None if machine.imu.samples() != before => return Verdict::Passed,
+            None if end.passed() => return Verdict::Failed(Failure::NoSample),
+            None => {}
+        }
+    }
+}
+
+fn camera(machine: &mut Machine) -> Verdict {
+    if !GESTURE.is_built {
+        return Verdict::Absent;
+    }
+    match machine.gesture.as_mut().map(crate::gesture::Gesture::check) {
+        None | Some(Err(image_sensor::Error::Absent)) => Verdict::Absent,
+        Some(Err(error)) => Verdict::Failed(Failure::ImageSensor(error)),
+        Some(Ok(_)) => Verdict::Passed,
+    }
+}
+
+/// Waits until a frame buffer is free, which the next vertical blanking ensures.
+fn scan_out(machine: &mut Machine) -> Verdict {
+    let display = &mut machine.renderer.display;
+    if !display.is_visible() {
+        return Verdict::Absent;
+    }
+    let end = machine.clock.after(BLANKING);
+    while display.back().is_none() {
+        if end.passed() {
+            return Verdict::Failed(Failure::Blanking);
+        }
+    }
+    Verdict::Passed
+}
+
+fn underflow(machine: &mut Machine) -> Verdict {
+    let display = &machine.renderer.display;
+    match display.counters().underflow_count {
+        _ if !display.is_visible() => Verdict::Absent,
+        count => Verdict::check(count == 0, Failure::Underflows(count)),
+    }
+}
+
+/// Draws a picture by the gateware, and compares its checksum with that of the model.
+fn draw(machine: &mut Machine, picture: TestPicture) -> Verdict {
+    if !picture.is_built() {
+        return Verdict::Absent;
+    }
+    let Machine {
+        models, renderer, ..
+    } = machine;
+    let mesh = if MESH.is_built {
+        models.shape(MESH_SHAPE)
+    } else {
+        None
+    };
+    let mut verdict = Verdict::Absent;
+    let mut draw = |frame: &glint_model::Frame| {
+        verdict = match renderer.checksum(frame) {
+            None => Verdict::Absent,
+            Some(Ok(found)) => {
+                let expected = picture.stored();
+                Verdict::check(found == expected, Failure::Checksum { expected, found })
+            }
+            Some(Err(error)) if error.is_left_out() => Verdict::Absent,
+            Some(Err(error)) => Verdict::Failed(Failure::Engine(error)),
+        };
+    };
+    // No picture has a camera that is refused.
+    let _ = picture.describe(mesh, &mut draw);
+    verdict
 }

@@ -50,7 +50,7 @@ impl Shapes {
     }
 
     /// A shape; `None` if there is no memory for it, which the windows of main memory exclude.
-    fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
+    pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         let place = self.shapes.get_mut(shape as usize)?;
         if place.is_none() {
             let memory = mem::take(&mut self.memory);

@@ -22,6 +22,7 @@ pub mod line;
 pub mod mesh_in_field;
 mod options;
 pub mod raymarch;
+pub mod selftest;
 pub mod triangle;
 pub mod wireframe;
 

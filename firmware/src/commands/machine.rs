@@ -102,14 +102,7 @@ impl<'l> MachineCommands<'l> for Machine {
     }
 
     fn selftest(&mut self) -> Outcome<'l> {
-        let mut failed = 0;
-        for (name, passed) in selftest::run(self) {
-            let result = if passed { "ok" } else { "FAILED" };
-            self.terminal
-                .print(format_args!("selftest {name} {result}\n"));
-            failed += u32::from(!passed);
-        }
-        match failed {
+        match selftest::run(self) {
             0 => Ok(Reply::Done),
             failed => Err(CommandError::SelfTest(failed)),
         }

@@ -23,6 +23,19 @@ pub enum Fallback {
     Descriptors(Lack),
 }
 
+impl Fallback {
+    /// Whether this build of the gateware lacks what the frame needs.
+    pub const fn is_left_out(&self) -> bool {
+        matches!(
+            self,
+            Self::Field(_)
+                | Self::NoRaymarcher
+                | Self::NoLineEngine
+                | Self::Triangle(EngineError::Shading | EngineError::Status(Error::Triangles))
+        )
+    }
+}
+
 impl From<EngineError> for Fallback {
     fn from(error: EngineError) -> Self {
         Self::Triangle(error)

@@ -35,7 +35,7 @@ commands! {
     MachineCommands {
         help Help(command: Option<CommandName>): "list the commands, or explain one";
         info Info(key: Option<Name>): "show the state of the machine, or one entry of it";
-        selftest SelfTest(): "test clock, memory, scan-out and I2C bus";
+        selftest SelfTest(): "test clock, memory, sensors, scan-out, and a picture of every engine against its stored checksum";
         leds Leds(value: u16): "set the 16 LEDs";
         buttons Buttons(): "show buttons and switches";
         reboot Reboot(): "reset the SoC";

@@ -9,4 +9,5 @@ mod firmware;
 mod pins;
 mod program;
 mod scan_out;
+mod selftest;
 mod sensor;

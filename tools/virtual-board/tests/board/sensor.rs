@@ -14,7 +14,7 @@ fn millisecond(board: &VirtualBoard) -> u64 {
     u64::from(board.clock_hz()) / 1000
 }
 
-fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
+pub fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
     // The noise of a typical sensor, without the errors that would need a calibration.
     let imperfections = Imperfections {
         noise: 0.005,
@@ -86,7 +86,7 @@ fn numbers(text: &str) -> Vec<f64> {
 }
 
 /// Starts a board with a sensor that is already set up, since a reset of the sensor would take a tenth of a second.
-fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
+pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
     let image = image();
     let start = Start::Fast { firmware: &image };
     let mut board = VirtualBoard::builder()

@@ -1,0 +1,150 @@
+//! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours' bytes, row by row, the low byte first.
+//!
+//! The firmware draws each picture by the gateware, and compares its checksum with the one that the model computed. A test of this crate
+//! computes and stores the checksums.
+
+mod checksums;
+
+use glint_core::appearance::Appearance;
+use glint_core::camera::{View, ViewError};
+use glint_core::colour::Shading;
+use glint_core::feature::{FIELD, MESH, WIREFRAME};
+use glint_core::field::Field;
+use glint_core::fixed::{Q32_32, Turns};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_core::shape::Shape;
+use glint_core::stereo::{Stereo, Tint};
+use glint_core::wireframe::{CUBE, Motion, Program};
+
+use crate::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
+
+/// A picture of the self-test. Each needs another part of the gateware.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TestPicture {
+    /// The torus with flat shading: the triangle engine.
+    Triangle,
+    /// The torus with smooth shading.
+    Smooth,
+    /// The cube of the wireframe simulator: the line engine.
+    Line,
+    /// A sponge of three levels: the raymarcher.
+    Sponge,
+    /// Repeated cubes.
+    Cubes,
+    /// Two spheres.
+    Spheres,
+    /// Repeated cubes for two eyes.
+    Stereo,
+}
+
+/// The mesh of the pictures that have one.
+pub const MESH_SHAPE: Shape = Shape::Torus;
+
+impl TestPicture {
+    /// All pictures, in the order of their definition.
+    pub const ALL: [Self; 7] = [
+        Self::Triangle,
+        Self::Smooth,
+        Self::Line,
+        Self::Sponge,
+        Self::Cubes,
+        Self::Spheres,
+        Self::Stereo,
+    ];
+
+    /// Name for messages: the block, and its part that the picture needs.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Triangle => "triangle flat",
+            Self::Smooth => "triangle smooth",
+            Self::Line => "line",
+            Self::Sponge => "raymarch sponge",
+            Self::Cubes => "raymarch cubes",
+            Self::Spheres => "raymarch spheres",
+            Self::Stereo => "raymarch stereo",
+        }
+    }
+
+    /// Whether this build of the firmware has the part that draws the picture.
+    #[must_use]
+    pub const fn is_built(self) -> bool {
+        match self {
+            Self::Triangle | Self::Smooth => MESH.is_built,
+            Self::Line => WIREFRAME.is_built,
+            Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => FIELD.is_built,
+        }
+    }
+
+    /// The stored checksum of the colours.
+    #[must_use]
+    pub const fn stored(self) -> u32 {
+        checksums::STORED[self as usize]
+    }
+
+    /// Calls `draw` with the description of the picture. `mesh` is the mesh of [`MESH_SHAPE`].
+    ///
+    /// # Errors
+    /// [`ViewError`] for a camera out of range, which no picture has.
+    pub fn describe(
+        self,
+        mesh: Option<Mesh>,
+        draw: &mut dyn FnMut(&Frame),
+    ) -> Result<(), ViewError> {
+        let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
+        let view = View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?;
+        let mut draw = |subject| draw(&Frame::new(subject, view, Size::W320));
+        if MESH.is_built
+            && let (Some(shading), Some(mesh)) = (self.shading(), mesh)
+        {
+            draw(Subject::Mesh(MeshSubject {
+                shading,
+                ..MeshSubject::new(mesh)
+            }));
+        }
+        if WIREFRAME.is_built
+            && self == Self::Line
+            && let Ok(program) = Program::new_checked(CUBE.as_flattened())
+        {
+            let pose = Motion::default().pose();
+            draw(Subject::Wireframe(WireframeSubject { program, pose }));
+        }
+        if FIELD.is_built
+            && let Some(Ok(field)) = self.field().map(Field::parse)
+        {
+            draw(Subject::Field(FieldSubject {
+                field: &field,
+                appearance: &Appearance::default(),
+                stereo: (self == Self::Stereo).then_some(EYES),
+                prepass: false,
+            }));
+        }
+        Ok(())
+    }
+
+    const fn shading(self) -> Option<Shading> {
+        match self {
+            Self::Triangle => Some(Shading::Flat),
+            Self::Smooth => Some(Shading::Smooth),
+            _ => None,
+        }
+    }
+
+    /// The field in the form of the console.
+    const fn field(self) -> Option<&'static str> {
+        match self {
+            Self::Sponge => Some("menger:3"),
+            Self::Cubes | Self::Stereo => Some("cubes:2,0.4"),
+            Self::Spheres => Some("spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35"),
+            Self::Triangle | Self::Smooth | Self::Line => None,
+        }
+    }
+}
+
+/// The eyes of [`TestPicture::Stereo`].
+const EYES: Stereo = Stereo {
+    half_separation: Q32_32::lit("0.05"),
+    zero_parallax: Q32_32::lit("2.5"),
+    tint: Tint::RedCyan,
+};

@@ -1,0 +1,68 @@
+//! The checksums that the self-test compares with are those of the model's pictures.
+
+use glint_core::mesh::Mesh;
+use glint_core::shape::MAX_BYTES;
+use glint_core::wire::crc32;
+use glint_model::Projected;
+use glint_model::selftest::{MESH_SHAPE, TestPicture};
+use glint_vectors::Picture;
+
+/// The stored checksums, in the form in which they are committed.
+fn file(checksums: &[u32]) -> String {
+    let lines: String = checksums
+        .iter()
+        .map(|checksum| format!("    {checksum:#010x},\n"))
+        .collect();
+    format!(
+        "//! The checksums of the self-test's pictures, in the order of their definition.
+// Written by `GLINT_UPDATE=1 cargo test -p glint-model --test selftest`. Do not edit.
+
+pub(super) const STORED: [u32; {}] = [
+{lines}];
+",
+        checksums.len()
+    )
+}
+
+/// Draws every picture, and compares its checksum with the stored one; with `GLINT_UPDATE` in the environment, stores it.
+#[test]
+fn the_stored_checksums_are_those_of_the_model() {
+    #[repr(align(16))]
+    struct Aligned([u8; MAX_BYTES]);
+    let mut memory = Box::new(Aligned([0; MAX_BYTES]));
+    let length = MESH_SHAPE.write(&mut memory.0).unwrap();
+    let mesh = Mesh::new_checked(&memory.0[..length]).unwrap();
+    let mut seen = Vec::new();
+    for picture in TestPicture::ALL {
+        let mut draw = |frame: &glint_model::Frame| {
+            let [width, height] = frame.size.pixels();
+            let mut target = Picture::blank((width, height));
+            let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+            let constants = frame.constants().unwrap();
+            frame
+                .draw(&constants, &mut target.target(), &mut scratch, &mut || {})
+                .unwrap();
+            let bytes = target.colour.iter().flat_map(|colour| colour.to_le_bytes());
+            seen.push(crc32(&bytes.collect::<Vec<_>>()));
+        };
+        picture.describe(Some(mesh), &mut draw).unwrap();
+    }
+    // Another picture each, so that none stands for another.
+    let mut distinct = seen.clone();
+    distinct.sort_unstable();
+    distinct.dedup();
+    assert_eq!(distinct.len(), TestPicture::ALL.len());
+    if std::env::var_os("GLINT_UPDATE").is_some() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/selftest/checksums.rs");
+        std::fs::write(path, file(&seen)).unwrap();
+        return;
+    }
+    for (picture, checksum) in TestPicture::ALL.into_iter().zip(seen) {
+        assert_eq!(
+            picture.stored(),
+            checksum,
+            "{}: `GLINT_UPDATE=1 cargo test -p glint-model --test selftest` stores the checksums",
+            picture.name()
+        );
+    }
+}

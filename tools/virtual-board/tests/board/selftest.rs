@@ -1,0 +1,56 @@
+//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong.
+
+use crate::firmware::{address, command, image, patch, started};
+use crate::sensor::{board_with_sensor, sensor};
+use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
+use virtual_board::virtual_mpu6050::{Fault, State};
+
+/// The verdict on the part `name`.
+fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
+    let key = format!("selftest {name} ");
+    let mut lines = answer.lines();
+    lines
+        .find_map(|line| line.strip_prefix(&key))
+        .unwrap_or_else(|| panic!("no {name} in {answer}"))
+}
+
+#[test]
+fn plugged_sensors_pass() {
+    let mut board = board_with_sensor(|_| State::default());
+    let nothing = Scene::new([320, 240], |_| Vec::new());
+    let timing = Timing::SHORT;
+    board.plug_image_sensor(ImageSensor::new(Model::Ov7670, nothing, timing));
+    let answer = command(&mut board, "selftest");
+    assert_eq!(verdict(&answer, "imu"), "ok", "{answer}");
+    assert_eq!(verdict(&answer, "camera"), "ok", "{answer}");
+    assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+}
+
+#[test]
+fn an_unknown_sensor_and_a_picture_with_another_checksum_fail() {
+    let mut image = image();
+    // Moves an end of the last segment of the built-in wireframe program.
+    let program = address(&["wireframe", "cube", "CUBE"]);
+    patch(&mut image, program + 14 * 16, &[0x0800_0800]);
+    let (mut board, _) = started(&image);
+    let mut unknown = sensor(|_| State::default());
+    unknown.chip.fault = Some(Fault::Identity(0x12));
+    board.plug(unknown);
+    // The search for a sensor is repeated each 30 ms.
+    board.run(3_000_000);
+    let answer = command(&mut board, "selftest");
+    assert!(
+        verdict(&answer, "imu").starts_with("FAILED: WHO_AM_I is 0x12: expected 0x68"),
+        "{answer}"
+    );
+    let line = verdict(&answer, "line");
+    assert!(
+        line.starts_with("FAILED: checksum 0x") && line.contains(", expected 0x"),
+        "{answer}"
+    );
+    assert_eq!(verdict(&answer, "triangle flat"), "ok", "{answer}");
+    assert!(
+        answer.ends_with("error: selftest: 2 failed, expected none\r\nglint> "),
+        "{answer}"
+    );
+}
