@@ -192,6 +192,13 @@ impl FieldSetup {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
 
+    /// Whether an eye is in a solid, where each of its rays ends at once.
+    pub fn has_eye_inside(&self) -> bool {
+        let eyes = &self.eyes[..if self.stereo.is_some() { 2 } else { 1 }];
+        let is_inside = |eye: &Eye| eye.outside == [0; 3] && self.sample(eye.origin).distance < 0;
+        eyes.iter().any(is_inside)
+    }
+
     /// Evaluates the field at a point with coordinates in s10.12. Returns the distance and the nearest surface; at equal
     /// distances of a face and a sphere, the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {

@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::common::{
-    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner,
+    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner, warn,
 };
 use super::convert::load;
 use super::field::FieldArguments;
@@ -14,7 +14,7 @@ use glint::model::Model;
 use glint::object::Description;
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
-    Renderer, Route, Stats, Subject,
+    Renderer, Route, Stats, Subject, remarks,
 };
 use glint::scene::{self, Changes};
 use glint::transfer::Progress;
@@ -243,6 +243,7 @@ impl RenderArguments {
         let statistics = self.stats.as_deref().map(|path| open(path, STATISTICS));
         let statistics = statistics.transpose()?;
         let Rendered { image, stats } = self.render(frame, scene)?;
+        remarks(frame, &stats)?.iter().for_each(warn);
         out.write(|out| image.picture().write_png(out))?;
         if let Some(out) = depth {
             let scale = frame.constants()?.depth_scale();

@@ -6,6 +6,7 @@
 mod board;
 mod commands;
 mod model;
+mod remarks;
 mod renderer;
 mod stats;
 
@@ -14,5 +15,6 @@ pub use board::BoardRenderer;
 pub use commands::{field_commands, lighting_commands, mesh_commands, size_command, view_command};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 pub use model::{ModelRenderer, on_model};
+pub use remarks::remarks;
 pub use renderer::{Error, Parts, Rendered, Renderer};
 pub use stats::{EdgeCounts, RayCounts, Stats, TriangleCounts, WireframeCounts};

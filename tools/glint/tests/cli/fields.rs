@@ -1,6 +1,6 @@
 //! `glint render` of distance fields, alone and with a mesh, by the model.
 
-use crate::common::{VIEW, depths, folder, json, picture, refused, succeed};
+use crate::common::{SQUARE, VIEW, depths, folder, glint, json, picture, refused, succeed};
 
 #[test]
 fn fields_and_their_files() {
@@ -160,4 +160,38 @@ fn a_mesh_in_a_field() {
             .all(|(line, start)| line.starts_with(start)),
         "{said}"
     );
+}
+
+#[test]
+fn warnings_of_pictures_that_show_nothing() {
+    let folder = folder("shows_nothing");
+    std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
+    let inside = "is inside the field, and sees one surface in all directions: move it with --camera or --look-at, or choose another --field\n";
+    let culled = "warning: no triangle is drawn: all face away, or lie outside of the picture; --no-cull draws back faces, --look-at moves the camera\n";
+    let outside = "warning: no triangle is drawn: all lie outside of the picture; --look-at moves the camera\n";
+    for (arguments, expected) in [
+        (&["--field", "planes:1"][..], inside),
+        (&["--field", "planes:2.5"], ""),
+        (&["cube", "--field", "planes:1"], inside),
+        (&["--field", "menger:3", "--look-at", "1,1,1,-1,-1,-1"], ""),
+        (
+            &["--field", "box:1,1,1", "--look-at", "0,0,0,1,0,0"],
+            inside,
+        ),
+        (&["square.obj", "--camera", "2,30,120"], culled),
+        (&["square.obj", "--camera", "2,30,120", "--no-cull"], ""),
+        (
+            &["square.obj", "--no-cull", "--look-at", "3,0,0,1,0,0"],
+            outside,
+        ),
+    ] {
+        let output = glint(
+            &folder,
+            &[&["render", "--out", "a.png"], arguments].concat(),
+        );
+        assert!(output.status.success(), "{arguments:?}");
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(error.lines().count(), expected.lines().count(), "{error}");
+        assert!(error.ends_with(expected), "{arguments:?}: {error}");
+    }
 }

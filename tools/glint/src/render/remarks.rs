@@ -1,0 +1,36 @@
+//! Remarks on pictures that do not show what was asked for.
+
+use super::{Frame, Stats};
+use glint_model::RenderError;
+
+/// The remarks on a frame with these statistics, each with what to do.
+///
+/// # Errors
+/// The frame cannot be drawn.
+pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError> {
+    let mut remarks = Vec::new();
+    let constants = frame.constants()?;
+    if constants
+        .field()
+        .is_some_and(|field| field.setup.has_eye_inside())
+    {
+        let [x, y, z] = frame.view.eye();
+        remarks.push(format!(
+            "the eye ({x}, {y}, {z}) is inside the field, and sees one surface in all directions: move it with --camera or --look-at, \
+             or choose another --field"
+        ));
+    }
+    if let Some(counts) = &stats.mesh
+        && counts.triangles_in > 0
+        && counts.triangles_drawn == 0
+    {
+        remarks.push(if frame.subject.meshes().any(|mesh| mesh.culls()) {
+            "no triangle is drawn: all face away, or lie outside of the picture; --no-cull draws back faces, --look-at moves the camera"
+                .to_owned()
+        } else {
+            "no triangle is drawn: all lie outside of the picture; --look-at moves the camera"
+                .to_owned()
+        });
+    }
+    Ok(remarks)
+}
