@@ -168,6 +168,16 @@ pub mod ctrl {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `reset`.
+        pub const RESET: u32 = 0x0;
+        /// `scratch`.
+        pub const SCRATCH: u32 = 0x4;
+        /// `bus_errors`.
+        pub const BUS_ERRORS: u32 = 0x8;
+    }
+
     /// A value of `reset`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Reset(u32);
@@ -267,6 +277,18 @@ pub mod identity {
             unsafe { Register::at(0xf000_080c) }
         }
     }
+
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `build_id`.
+        pub const BUILD_ID: u32 = 0x0;
+        /// `blocks`.
+        pub const BLOCKS: u32 = 0x4;
+        /// `clock`.
+        pub const CLOCK: u32 = 0x8;
+        /// `main_ram`.
+        pub const MAIN_RAM: u32 = 0xc;
+    }
 }
 
 /// The registers of `uart`.
@@ -356,6 +378,26 @@ pub mod uart {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `rxtx`.
+        pub const RXTX: u32 = 0x0;
+        /// `txfull`.
+        pub const TXFULL: u32 = 0x4;
+        /// `rxempty`.
+        pub const RXEMPTY: u32 = 0x8;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0xc;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x10;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x14;
+        /// `txempty`.
+        pub const TXEMPTY: u32 = 0x18;
+        /// `rxfull`.
+        pub const RXFULL: u32 = 0x1c;
+    }
+
     /// A value of `ev_status`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct EvStatus(u32);
@@ -378,11 +420,25 @@ pub mod uart {
             self.0 & 1 != 0
         }
 
+        /// This value with another `tx`.
+        #[inline]
+        #[must_use]
+        pub const fn with_tx(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `rx`, bit 1: Level of the `rx` event
         #[inline]
         #[must_use]
         pub const fn rx(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `rx`.
+        #[inline]
+        #[must_use]
+        pub const fn with_rx(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
     }
 
@@ -578,6 +634,30 @@ pub mod timer0 {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `load`.
+        pub const LOAD: u32 = 0x0;
+        /// `reload`.
+        pub const RELOAD: u32 = 0x4;
+        /// `en`.
+        pub const EN: u32 = 0x8;
+        /// `update_value`.
+        pub const UPDATE_VALUE: u32 = 0xc;
+        /// `value`.
+        pub const VALUE: u32 = 0x10;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x14;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x18;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x1c;
+        /// `uptime_latch`.
+        pub const UPTIME_LATCH: u32 = 0x20;
+        /// `uptime_cycles`.
+        pub const UPTIME_CYCLES: u32 = 0x24;
+    }
+
     /// A value of `ev_status`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct EvStatus(u32);
@@ -598,6 +678,13 @@ pub mod timer0 {
         #[must_use]
         pub const fn zero(self) -> bool {
             self.0 & 1 != 0
+        }
+
+        /// This value with another `zero`.
+        #[inline]
+        #[must_use]
+        pub const fn with_zero(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 
@@ -883,6 +970,60 @@ pub mod sdram {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_2060) }
         }
+    }
+
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `dfii_control`.
+        pub const DFII_CONTROL: u32 = 0x0;
+        /// `dfii_pi0_command`.
+        pub const DFII_PI0_COMMAND: u32 = 0x4;
+        /// `dfii_pi0_command_issue`.
+        pub const DFII_PI0_COMMAND_ISSUE: u32 = 0x8;
+        /// `dfii_pi0_address`.
+        pub const DFII_PI0_ADDRESS: u32 = 0xc;
+        /// `dfii_pi0_baddress`.
+        pub const DFII_PI0_BADDRESS: u32 = 0x10;
+        /// `dfii_pi0_wrdata`.
+        pub const DFII_PI0_WRDATA: u32 = 0x14;
+        /// `dfii_pi0_rddata`.
+        pub const DFII_PI0_RDDATA: u32 = 0x18;
+        /// `dfii_pi1_command`.
+        pub const DFII_PI1_COMMAND: u32 = 0x1c;
+        /// `dfii_pi1_command_issue`.
+        pub const DFII_PI1_COMMAND_ISSUE: u32 = 0x20;
+        /// `dfii_pi1_address`.
+        pub const DFII_PI1_ADDRESS: u32 = 0x24;
+        /// `dfii_pi1_baddress`.
+        pub const DFII_PI1_BADDRESS: u32 = 0x28;
+        /// `dfii_pi1_wrdata`.
+        pub const DFII_PI1_WRDATA: u32 = 0x2c;
+        /// `dfii_pi1_rddata`.
+        pub const DFII_PI1_RDDATA: u32 = 0x30;
+        /// `dfii_pi2_command`.
+        pub const DFII_PI2_COMMAND: u32 = 0x34;
+        /// `dfii_pi2_command_issue`.
+        pub const DFII_PI2_COMMAND_ISSUE: u32 = 0x38;
+        /// `dfii_pi2_address`.
+        pub const DFII_PI2_ADDRESS: u32 = 0x3c;
+        /// `dfii_pi2_baddress`.
+        pub const DFII_PI2_BADDRESS: u32 = 0x40;
+        /// `dfii_pi2_wrdata`.
+        pub const DFII_PI2_WRDATA: u32 = 0x44;
+        /// `dfii_pi2_rddata`.
+        pub const DFII_PI2_RDDATA: u32 = 0x48;
+        /// `dfii_pi3_command`.
+        pub const DFII_PI3_COMMAND: u32 = 0x4c;
+        /// `dfii_pi3_command_issue`.
+        pub const DFII_PI3_COMMAND_ISSUE: u32 = 0x50;
+        /// `dfii_pi3_address`.
+        pub const DFII_PI3_ADDRESS: u32 = 0x54;
+        /// `dfii_pi3_baddress`.
+        pub const DFII_PI3_BADDRESS: u32 = 0x58;
+        /// `dfii_pi3_wrdata`.
+        pub const DFII_PI3_WRDATA: u32 = 0x5c;
+        /// `dfii_pi3_rddata`.
+        pub const DFII_PI3_RDDATA: u32 = 0x60;
     }
 
     /// A value of `dfii_control`.
@@ -1563,6 +1704,26 @@ pub mod i2c {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `command`.
+        pub const COMMAND: u32 = 0x0;
+        /// `answer`.
+        pub const ANSWER: u32 = 0x4;
+        /// `control`.
+        pub const CONTROL: u32 = 0x8;
+        /// `rounds`.
+        pub const ROUNDS: u32 = 0xc;
+        /// `status`.
+        pub const STATUS: u32 = 0x10;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x14;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x18;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x1c;
+    }
+
     /// A value of `command`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Command(u32);
@@ -1643,11 +1804,25 @@ pub mod i2c {
             (self.0 & 0xff) as u8
         }
 
+        /// This value with another `byte`.
+        #[inline]
+        #[must_use]
+        pub const fn with_byte(self, value: u8) -> Self {
+            Self(self.0 & !0xff | value as u32 & 0xff)
+        }
+
         /// `valid`, bit 8: `byte` is valid.
         #[inline]
         #[must_use]
         pub const fn valid(self) -> bool {
             (self.0 >> 8) & 1 != 0
+        }
+
+        /// This value with another `valid`.
+        #[inline]
+        #[must_use]
+        pub const fn with_valid(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 8) | (value as u32 & 0x1) << 8)
         }
     }
 
@@ -1761,11 +1936,25 @@ pub mod i2c {
             self.0 & 1 != 0
         }
 
+        /// This value with another `scl`.
+        #[inline]
+        #[must_use]
+        pub const fn with_scl(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `sda`, bit 1: State of the SDA wire.
         #[inline]
         #[must_use]
         pub const fn sda(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `sda`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sda(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
 
         /// `room`, bit 2: The queue has room for a command.
@@ -1775,11 +1964,25 @@ pub mod i2c {
             (self.0 >> 2) & 1 != 0
         }
 
+        /// This value with another `room`.
+        #[inline]
+        #[must_use]
+        pub const fn with_room(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        }
+
         /// `busy`, bit 3: A transaction runs, or commands are queued.
         #[inline]
         #[must_use]
         pub const fn busy(self) -> bool {
             (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `busy`.
+        #[inline]
+        #[must_use]
+        pub const fn with_busy(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
 
         /// `failed`, bit 4: An error has ended the transaction; commands wait for `clear`.
@@ -1789,11 +1992,25 @@ pub mod i2c {
             (self.0 >> 4) & 1 != 0
         }
 
+        /// This value with another `failed`.
+        #[inline]
+        #[must_use]
+        pub const fn with_failed(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+
         /// `error`, bits 10 to 8: Error.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Option<Error> {
             Error::from_bits(((self.0 >> 8) & 0x7) as u8)
+        }
+
+        /// This value with another `error`.
+        #[inline]
+        #[must_use]
+        pub const fn with_error(self, value: Error) -> Self {
+            Self(self.0 & !(0x7 << 8) | (value as u32 & 0x7) << 8)
         }
     }
 
@@ -1817,6 +2034,13 @@ pub mod i2c {
         #[must_use]
         pub const fn ended(self) -> bool {
             self.0 & 1 != 0
+        }
+
+        /// This value with another `ended`.
+        #[inline]
+        #[must_use]
+        pub const fn with_ended(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 
@@ -2069,6 +2293,22 @@ pub mod buttons {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `in`.
+        pub const IN: u32 = 0x0;
+        /// `mode`.
+        pub const MODE: u32 = 0x4;
+        /// `edge`.
+        pub const EDGE: u32 = 0x8;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0xc;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x10;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x14;
+    }
+
     /// A value of `ev_status`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct EvStatus(u32);
@@ -2091,11 +2331,25 @@ pub mod buttons {
             self.0 & 1 != 0
         }
 
+        /// This value with another `i0`.
+        #[inline]
+        #[must_use]
+        pub const fn with_i0(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `i1`, bit 1: Level of the `i1` event
         #[inline]
         #[must_use]
         pub const fn i1(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `i1`.
+        #[inline]
+        #[must_use]
+        pub const fn with_i1(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
 
         /// `i2`, bit 2: Level of the `i2` event
@@ -2105,11 +2359,25 @@ pub mod buttons {
             (self.0 >> 2) & 1 != 0
         }
 
+        /// This value with another `i2`.
+        #[inline]
+        #[must_use]
+        pub const fn with_i2(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        }
+
         /// `i3`, bit 3: Level of the `i3` event
         #[inline]
         #[must_use]
         pub const fn i3(self) -> bool {
             (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `i3`.
+        #[inline]
+        #[must_use]
+        pub const fn with_i3(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
     }
 
@@ -2288,6 +2556,12 @@ pub mod switches {
             unsafe { Register::at(0xf000_3800) }
         }
     }
+
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `in`.
+        pub const IN: u32 = 0x0;
+    }
 }
 
 /// The registers of `leds`.
@@ -2319,6 +2593,12 @@ pub mod leds {
             // SAFETY: the SoC's description has this register, of this width, at this address.
             unsafe { Register::at(0xf000_4000) }
         }
+    }
+
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `out`.
+        pub const OUT: u32 = 0x0;
     }
 }
 
@@ -2476,6 +2756,42 @@ pub mod scanout {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `ident`.
+        pub const IDENT: u32 = 0x0;
+        /// `caps`.
+        pub const CAPS: u32 = 0x4;
+        /// `control`.
+        pub const CONTROL: u32 = 0x8;
+        /// `status`.
+        pub const STATUS: u32 = 0xc;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x10;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x14;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x18;
+        /// `fb_next`.
+        pub const FB_NEXT: u32 = 0x1c;
+        /// `scale`.
+        pub const SCALE: u32 = 0x20;
+        /// `fb_current`.
+        pub const FB_CURRENT: u32 = 0x24;
+        /// `frame_count`.
+        pub const FRAME_COUNT: u32 = 0x28;
+        /// `underflow_count`.
+        pub const UNDERFLOW_COUNT: u32 = 0x2c;
+        /// `cycles_busy`.
+        pub const CYCLES_BUSY: u32 = 0x30;
+        /// `cycles_stalled`.
+        pub const CYCLES_STALLED: u32 = 0x34;
+        /// `items_in`.
+        pub const ITEMS_IN: u32 = 0x38;
+        /// `items_out`.
+        pub const ITEMS_OUT: u32 = 0x3c;
+    }
+
     /// A value of `caps`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Caps(u32);
@@ -2498,6 +2814,13 @@ pub mod scanout {
             (self.0 & 0xfff) as u16
         }
 
+        /// This value with another `width`: the low 12 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_width(self, value: u16) -> Self {
+            Self(self.0 & !0xfff | value as u32 & 0xfff)
+        }
+
         /// `height`, bits 23 to 12: Lines of an output frame.
         #[inline]
         #[must_use]
@@ -2505,11 +2828,25 @@ pub mod scanout {
             ((self.0 >> 12) & 0xfff) as u16
         }
 
+        /// This value with another `height`: the low 12 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_height(self, value: u16) -> Self {
+            Self(self.0 & !(0xfff << 12) | (value as u32 & 0xfff) << 12)
+        }
+
         /// `scales`, bits 26 to 24: Bit k: the scale 2^k is supported.
         #[inline]
         #[must_use]
         pub const fn scales(self) -> u8 {
             ((self.0 >> 24) & 0x7) as u8
+        }
+
+        /// This value with another `scales`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_scales(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 24) | (value as u32 & 0x7) << 24)
         }
     }
 
@@ -2565,11 +2902,25 @@ pub mod scanout {
             self.0 & 1 != 0
         }
 
+        /// This value with another `enabled`.
+        #[inline]
+        #[must_use]
+        pub const fn with_enabled(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `fetching`, bit 1: A source line is read from memory.
         #[inline]
         #[must_use]
         pub const fn fetching(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `fetching`.
+        #[inline]
+        #[must_use]
+        pub const fn with_fetching(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
 
         /// `scale`, bits 6 to 4: Scale, as latched at the last vblank.
@@ -2579,11 +2930,25 @@ pub mod scanout {
             ((self.0 >> 4) & 0x7) as u8
         }
 
+        /// This value with another `scale`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_scale(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 4) | (value as u32 & 0x7) << 4)
+        }
+
         /// `error`, bits 9 to 8: Error of the last frame, updated at each vblank.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Option<Error> {
             Error::from_bits(((self.0 >> 8) & 0x3) as u8)
+        }
+
+        /// This value with another `error`.
+        #[inline]
+        #[must_use]
+        pub const fn with_error(self, value: Error) -> Self {
+            Self(self.0 & !(0x3 << 8) | (value as u32 & 0x3) << 8)
         }
     }
 
@@ -2607,6 +2972,13 @@ pub mod scanout {
         #[must_use]
         pub const fn vblank(self) -> bool {
             self.0 & 1 != 0
+        }
+
+        /// This value with another `vblank`.
+        #[inline]
+        #[must_use]
+        pub const fn with_vblank(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 
@@ -3396,6 +3768,158 @@ pub mod triangle {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `ident`.
+        pub const IDENT: u32 = 0x0;
+        /// `caps`.
+        pub const CAPS: u32 = 0x4;
+        /// `control`.
+        pub const CONTROL: u32 = 0x8;
+        /// `status`.
+        pub const STATUS: u32 = 0xc;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x10;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x14;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x18;
+        /// `geometry`.
+        pub const GEOMETRY: u32 = 0x1c;
+        /// `mesh`.
+        pub const MESH: u32 = 0x20;
+        /// `mesh_bytes`.
+        pub const MESH_BYTES: u32 = 0x24;
+        /// `geometry_descriptors`.
+        pub const GEOMETRY_DESCRIPTORS: u32 = 0x28;
+        /// `descriptor_limit`.
+        pub const DESCRIPTOR_LIMIT: u32 = 0x2c;
+        /// `geometry_lists`.
+        pub const GEOMETRY_LISTS: u32 = 0x30;
+        /// `list_shift`.
+        pub const LIST_SHIFT: u32 = 0x34;
+        /// `exceptions`.
+        pub const EXCEPTIONS: u32 = 0x38;
+        /// `exception_limit`.
+        pub const EXCEPTION_LIMIT: u32 = 0x3c;
+        /// `scale_shift`.
+        pub const SCALE_SHIFT: u32 = 0x40;
+        /// `row_u0`.
+        pub const ROW_U0: u32 = 0x44;
+        /// `row_u1`.
+        pub const ROW_U1: u32 = 0x48;
+        /// `row_u2`.
+        pub const ROW_U2: u32 = 0x4c;
+        /// `row_v0`.
+        pub const ROW_V0: u32 = 0x50;
+        /// `row_v1`.
+        pub const ROW_V1: u32 = 0x54;
+        /// `row_v2`.
+        pub const ROW_V2: u32 = 0x58;
+        /// `row_n0`.
+        pub const ROW_N0: u32 = 0x5c;
+        /// `row_n1`.
+        pub const ROW_N1: u32 = 0x60;
+        /// `row_n2`.
+        pub const ROW_N2: u32 = 0x64;
+        /// `tx_low`.
+        pub const TX_LOW: u32 = 0x68;
+        /// `tx_high`.
+        pub const TX_HIGH: u32 = 0x6c;
+        /// `ty_low`.
+        pub const TY_LOW: u32 = 0x70;
+        /// `ty_high`.
+        pub const TY_HIGH: u32 = 0x74;
+        /// `tz_low`.
+        pub const TZ_LOW: u32 = 0x78;
+        /// `tz_high`.
+        pub const TZ_HIGH: u32 = 0x7c;
+        /// `near_low`.
+        pub const NEAR_LOW: u32 = 0x80;
+        /// `near_high`.
+        pub const NEAR_HIGH: u32 = 0x84;
+        /// `depth_scale`.
+        pub const DEPTH_SCALE: u32 = 0x88;
+        /// `raster`.
+        pub const RASTER: u32 = 0x8c;
+        /// `frame`.
+        pub const FRAME: u32 = 0x90;
+        /// `depth`.
+        pub const DEPTH: u32 = 0x94;
+        /// `clear`.
+        pub const CLEAR: u32 = 0x98;
+        /// `lists_0`.
+        pub const LISTS_0: u32 = 0x9c;
+        /// `descriptors_0`.
+        pub const DESCRIPTORS_0: u32 = 0xa0;
+        /// `count_0`.
+        pub const COUNT_0: u32 = 0xa4;
+        /// `lists_1`.
+        pub const LISTS_1: u32 = 0xa8;
+        /// `descriptors_1`.
+        pub const DESCRIPTORS_1: u32 = 0xac;
+        /// `count_1`.
+        pub const COUNT_1: u32 = 0xb0;
+        /// `triangles`.
+        pub const TRIANGLES: u32 = 0xb4;
+        /// `unseen`.
+        pub const UNSEEN: u32 = 0xb8;
+        /// `culled`.
+        pub const CULLED: u32 = 0xbc;
+        /// `descriptor_count`.
+        pub const DESCRIPTOR_COUNT: u32 = 0xc0;
+        /// `exception_count`.
+        pub const EXCEPTION_COUNT: u32 = 0xc4;
+        /// `cycles_busy`.
+        pub const CYCLES_BUSY: u32 = 0xc8;
+        /// `cycles_stalled`.
+        pub const CYCLES_STALLED: u32 = 0xcc;
+        /// `stalled_reads`.
+        pub const STALLED_READS: u32 = 0xd0;
+        /// `stalled_lists`.
+        pub const STALLED_LISTS: u32 = 0xd4;
+        /// `stalled_frame`.
+        pub const STALLED_FRAME: u32 = 0xd8;
+        /// `items_in`.
+        pub const ITEMS_IN: u32 = 0xdc;
+        /// `items_out`.
+        pub const ITEMS_OUT: u32 = 0xe0;
+        /// `cycles_geometry`.
+        pub const CYCLES_GEOMETRY: u32 = 0xe4;
+        /// `vertices`.
+        pub const VERTICES: u32 = 0xe8;
+        /// `cycles_raster`.
+        pub const CYCLES_RASTER: u32 = 0xec;
+        /// `cycles_walking`.
+        pub const CYCLES_WALKING: u32 = 0xf0;
+        /// `cycles_empty`.
+        pub const CYCLES_EMPTY: u32 = 0xf4;
+        /// `groups`.
+        pub const GROUPS: u32 = 0xf8;
+        /// `pixels_covered`.
+        pub const PIXELS_COVERED: u32 = 0xfc;
+        /// `pixels_drawn`.
+        pub const PIXELS_DRAWN: u32 = 0x100;
+        /// `cycles_held`.
+        pub const CYCLES_HELD: u32 = 0x104;
+        /// `cycles_memory`.
+        pub const CYCLES_MEMORY: u32 = 0x108;
+        /// `cycles_flush`.
+        pub const CYCLES_FLUSH: u32 = 0x10c;
+        /// `light_0`.
+        pub const LIGHT_0: u32 = 0x110;
+        /// `light_1`.
+        pub const LIGHT_1: u32 = 0x114;
+        /// `light_2`.
+        pub const LIGHT_2: u32 = 0x118;
+        /// `light_colour`.
+        pub const LIGHT_COLOUR: u32 = 0x11c;
+        /// `ambient`.
+        pub const AMBIENT: u32 = 0x120;
+        /// `colour`.
+        pub const COLOUR: u32 = 0x124;
+    }
+
     /// A value of `caps`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Caps(u32);
@@ -3418,11 +3942,25 @@ pub mod triangle {
             (self.0 & 0x7) as u8
         }
 
+        /// This value with another `sizes`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sizes(self, value: u8) -> Self {
+            Self(self.0 & !0x7 | value as u32 & 0x7)
+        }
+
         /// `gouraud`, bit 3: Smooth shading: colours interpolated between vertices. A descriptor has 96 bytes with smooth shading, 48 without.
         #[inline]
         #[must_use]
         pub const fn gouraud(self) -> bool {
             (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `gouraud`.
+        #[inline]
+        #[must_use]
+        pub const fn with_gouraud(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
 
         /// `triangles`, bit 4: Triangles: geometry passes, and raster passes with lists. Without them a raster pass draws the raymarcher's field alone.
@@ -3432,6 +3970,13 @@ pub mod triangle {
             (self.0 >> 4) & 1 != 0
         }
 
+        /// This value with another `triangles`.
+        #[inline]
+        #[must_use]
+        pub const fn with_triangles(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+
         /// `lines`, bit 5: Lines: geometry passes with `lines`.
         #[inline]
         #[must_use]
@@ -3439,11 +3984,25 @@ pub mod triangle {
             (self.0 >> 5) & 1 != 0
         }
 
+        /// This value with another `lines`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lines(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
+        }
+
         /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.
         #[inline]
         #[must_use]
         pub const fn count_bits(self) -> u8 {
             ((self.0 >> 8) & 0x3f) as u8
+        }
+
+        /// This value with another `count_bits`: the low 6 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_count_bits(self, value: u8) -> Self {
+            Self(self.0 & !(0x3f << 8) | (value as u32 & 0x3f) << 8)
         }
     }
 
@@ -3499,11 +4058,25 @@ pub mod triangle {
             self.0 & 1 != 0
         }
 
+        /// This value with another `geometry_busy`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry_busy(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `raster_busy`, bit 1: The raster pass runs.
         #[inline]
         #[must_use]
         pub const fn raster_busy(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `raster_busy`.
+        #[inline]
+        #[must_use]
+        pub const fn with_raster_busy(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
 
         /// `geometry_error`, bits 7 to 4: Result of the last geometry pass.
@@ -3513,11 +4086,25 @@ pub mod triangle {
             Error::from_bits(((self.0 >> 4) & 0xf) as u8)
         }
 
+        /// This value with another `geometry_error`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry_error(self, value: Error) -> Self {
+            Self(self.0 & !(0xf << 4) | (value as u32 & 0xf) << 4)
+        }
+
         /// `raster_error`, bits 11 to 8: Result of the last raster pass.
         #[inline]
         #[must_use]
         pub const fn raster_error(self) -> Option<Error> {
             Error::from_bits(((self.0 >> 8) & 0xf) as u8)
+        }
+
+        /// This value with another `raster_error`.
+        #[inline]
+        #[must_use]
+        pub const fn with_raster_error(self, value: Error) -> Self {
+            Self(self.0 & !(0xf << 8) | (value as u32 & 0xf) << 8)
         }
     }
 
@@ -3543,11 +4130,25 @@ pub mod triangle {
             self.0 & 1 != 0
         }
 
+        /// This value with another `geometry`.
+        #[inline]
+        #[must_use]
+        pub const fn with_geometry(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `raster`, bit 1: Level of the `raster` event
         #[inline]
         #[must_use]
         pub const fn raster(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `raster`.
+        #[inline]
+        #[must_use]
+        pub const fn with_raster(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
     }
 
@@ -4761,6 +5362,146 @@ pub mod raymarch {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `ident`.
+        pub const IDENT: u32 = 0x0;
+        /// `caps`.
+        pub const CAPS: u32 = 0x4;
+        /// `control`.
+        pub const CONTROL: u32 = 0x8;
+        /// `status`.
+        pub const STATUS: u32 = 0xc;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x10;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x14;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x18;
+        /// `solid`.
+        pub const SOLID: u32 = 0x1c;
+        /// `cube_half`.
+        pub const CUBE_HALF: u32 = 0x20;
+        /// `half_x`.
+        pub const HALF_X: u32 = 0x24;
+        /// `half_y`.
+        pub const HALF_Y: u32 = 0x28;
+        /// `half_z`.
+        pub const HALF_Z: u32 = 0x2c;
+        /// `tuning`.
+        pub const TUNING: u32 = 0x30;
+        /// `far`.
+        pub const FAR: u32 = 0x34;
+        /// `near`.
+        pub const NEAR: u32 = 0x38;
+        /// `origin_left_x`.
+        pub const ORIGIN_LEFT_X: u32 = 0x3c;
+        /// `outside_left_x`.
+        pub const OUTSIDE_LEFT_X: u32 = 0x40;
+        /// `first_left_x`.
+        pub const FIRST_LEFT_X: u32 = 0x44;
+        /// `origin_left_y`.
+        pub const ORIGIN_LEFT_Y: u32 = 0x48;
+        /// `outside_left_y`.
+        pub const OUTSIDE_LEFT_Y: u32 = 0x4c;
+        /// `first_left_y`.
+        pub const FIRST_LEFT_Y: u32 = 0x50;
+        /// `origin_left_z`.
+        pub const ORIGIN_LEFT_Z: u32 = 0x54;
+        /// `outside_left_z`.
+        pub const OUTSIDE_LEFT_Z: u32 = 0x58;
+        /// `first_left_z`.
+        pub const FIRST_LEFT_Z: u32 = 0x5c;
+        /// `origin_right_x`.
+        pub const ORIGIN_RIGHT_X: u32 = 0x60;
+        /// `outside_right_x`.
+        pub const OUTSIDE_RIGHT_X: u32 = 0x64;
+        /// `first_right_x`.
+        pub const FIRST_RIGHT_X: u32 = 0x68;
+        /// `origin_right_y`.
+        pub const ORIGIN_RIGHT_Y: u32 = 0x6c;
+        /// `outside_right_y`.
+        pub const OUTSIDE_RIGHT_Y: u32 = 0x70;
+        /// `first_right_y`.
+        pub const FIRST_RIGHT_Y: u32 = 0x74;
+        /// `origin_right_z`.
+        pub const ORIGIN_RIGHT_Z: u32 = 0x78;
+        /// `outside_right_z`.
+        pub const OUTSIDE_RIGHT_Z: u32 = 0x7c;
+        /// `first_right_z`.
+        pub const FIRST_RIGHT_Z: u32 = 0x80;
+        /// `bounds_x`.
+        pub const BOUNDS_X: u32 = 0x84;
+        /// `bounds_y`.
+        pub const BOUNDS_Y: u32 = 0x88;
+        /// `bounds_z`.
+        pub const BOUNDS_Z: u32 = 0x8c;
+        /// `across_x`.
+        pub const ACROSS_X: u32 = 0x90;
+        /// `across_y`.
+        pub const ACROSS_Y: u32 = 0x94;
+        /// `across_z`.
+        pub const ACROSS_Z: u32 = 0x98;
+        /// `down_x`.
+        pub const DOWN_X: u32 = 0x9c;
+        /// `down_y`.
+        pub const DOWN_Y: u32 = 0xa0;
+        /// `down_z`.
+        pub const DOWN_Z: u32 = 0xa4;
+        /// `cone_offset_x`.
+        pub const CONE_OFFSET_X: u32 = 0xa8;
+        /// `cone_offset_y`.
+        pub const CONE_OFFSET_Y: u32 = 0xac;
+        /// `cone_offset_z`.
+        pub const CONE_OFFSET_Z: u32 = 0xb0;
+        /// `cone_spread`.
+        pub const CONE_SPREAD: u32 = 0xb4;
+        /// `depth_scale`.
+        pub const DEPTH_SCALE: u32 = 0xb8;
+        /// `colour_0`.
+        pub const COLOUR_0: u32 = 0xbc;
+        /// `colour_1`.
+        pub const COLOUR_1: u32 = 0xc0;
+        /// `colour_2`.
+        pub const COLOUR_2: u32 = 0xc4;
+        /// `colour_3`.
+        pub const COLOUR_3: u32 = 0xc8;
+        /// `colour_4`.
+        pub const COLOUR_4: u32 = 0xcc;
+        /// `colour_5`.
+        pub const COLOUR_5: u32 = 0xd0;
+        /// `colour_6`.
+        pub const COLOUR_6: u32 = 0xd4;
+        /// `colour_7`.
+        pub const COLOUR_7: u32 = 0xd8;
+        /// `horizon`.
+        pub const HORIZON: u32 = 0xdc;
+        /// `fog_shift`.
+        pub const FOG_SHIFT: u32 = 0xe0;
+        /// `table`.
+        pub const TABLE: u32 = 0xe4;
+        /// `sphere`.
+        pub const SPHERE: u32 = 0xe8;
+        /// `cycles_busy`.
+        pub const CYCLES_BUSY: u32 = 0xec;
+        /// `cycles_stalled`.
+        pub const CYCLES_STALLED: u32 = 0xf0;
+        /// `items_in`.
+        pub const ITEMS_IN: u32 = 0xf4;
+        /// `items_out`.
+        pub const ITEMS_OUT: u32 = 0xf8;
+        /// `cycles_idle`.
+        pub const CYCLES_IDLE: u32 = 0xfc;
+        /// `evaluations`.
+        pub const EVALUATIONS: u32 = 0x100;
+        /// `hits`.
+        pub const HITS: u32 = 0x104;
+        /// `misses`.
+        pub const MISSES: u32 = 0x108;
+        /// `undecided`.
+        pub const UNDECIDED: u32 = 0x10c;
+    }
+
     /// A value of `caps`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Caps(u32);
@@ -4783,11 +5524,25 @@ pub mod raymarch {
             (self.0 & 0x7) as u8
         }
 
+        /// This value with another `lanes`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lanes(self, value: u8) -> Self {
+            Self(self.0 & !0x7 | value as u32 & 0x7)
+        }
+
         /// `levels`, bits 6 to 4: Largest depth of a sponge; 0 without sponges.
         #[inline]
         #[must_use]
         pub const fn levels(self) -> u8 {
             ((self.0 >> 4) & 0x7) as u8
+        }
+
+        /// This value with another `levels`: the low 3 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_levels(self, value: u8) -> Self {
+            Self(self.0 & !(0x7 << 4) | (value as u32 & 0x7) << 4)
         }
 
         /// `stereo`, bit 9: Two eyes.
@@ -4797,11 +5552,25 @@ pub mod raymarch {
             (self.0 >> 9) & 1 != 0
         }
 
+        /// This value with another `stereo`.
+        #[inline]
+        #[must_use]
+        pub const fn with_stereo(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 9) | (value as u32 & 0x1) << 9)
+        }
+
         /// `round`, bit 10: Spheres, alone and in unions.
         #[inline]
         #[must_use]
         pub const fn round(self) -> bool {
             (self.0 >> 10) & 1 != 0
+        }
+
+        /// This value with another `round`.
+        #[inline]
+        #[must_use]
+        pub const fn with_round(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 10) | (value as u32 & 0x1) << 10)
         }
 
         /// `blend`, bit 11: Fillets between spheres and flat fields.
@@ -4811,6 +5580,13 @@ pub mod raymarch {
             (self.0 >> 11) & 1 != 0
         }
 
+        /// This value with another `blend`.
+        #[inline]
+        #[must_use]
+        pub const fn with_blend(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 11) | (value as u32 & 0x1) << 11)
+        }
+
         /// `prepass`, bit 12: Prepass: cones before the rays.
         #[inline]
         #[must_use]
@@ -4818,11 +5594,25 @@ pub mod raymarch {
             (self.0 >> 12) & 1 != 0
         }
 
+        /// This value with another `prepass`.
+        #[inline]
+        #[must_use]
+        pub const fn with_prepass(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+
         /// `flat`, bits 23 to 16: Bit k is set if the flat field of kind k in `solid` is built.
         #[inline]
         #[must_use]
         pub const fn flat(self) -> u8 {
             ((self.0 >> 16) & 0xff) as u8
+        }
+
+        /// This value with another `flat`.
+        #[inline]
+        #[must_use]
+        pub const fn with_flat(self, value: u8) -> Self {
+            Self(self.0 & !(0xff << 16) | (value as u32 & 0xff) << 16)
         }
     }
 
@@ -4906,11 +5696,25 @@ pub mod raymarch {
             self.0 & 1 != 0
         }
 
+        /// This value with another `busy`.
+        #[inline]
+        #[must_use]
+        pub const fn with_busy(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `error`, bits 5 to 4: Feature that the registers request and this build lacks. Frames are then drawn without the field.
         #[inline]
         #[must_use]
         pub const fn error(self) -> Error {
             Error::from_bits(((self.0 >> 4) & 0x3) as u8)
+        }
+
+        /// This value with another `error`.
+        #[inline]
+        #[must_use]
+        pub const fn with_error(self, value: Error) -> Self {
+            Self(self.0 & !(0x3 << 4) | (value as u32 & 0x3) << 4)
         }
     }
 
@@ -4934,6 +5738,13 @@ pub mod raymarch {
         #[must_use]
         pub const fn field(self) -> bool {
             self.0 & 1 != 0
+        }
+
+        /// This value with another `field`.
+        #[inline]
+        #[must_use]
+        pub const fn with_field(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 
@@ -5845,6 +6656,72 @@ pub mod gesture {
         }
     }
 
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `ident`.
+        pub const IDENT: u32 = 0x0;
+        /// `caps`.
+        pub const CAPS: u32 = 0x4;
+        /// `control`.
+        pub const CONTROL: u32 = 0x8;
+        /// `camera`.
+        pub const CAMERA: u32 = 0xc;
+        /// `size`.
+        pub const SIZE: u32 = 0x10;
+        /// `window_a`.
+        pub const WINDOW_A: u32 = 0x14;
+        /// `window_b`.
+        pub const WINDOW_B: u32 = 0x18;
+        /// `region_x`.
+        pub const REGION_X: u32 = 0x1c;
+        /// `region_y`.
+        pub const REGION_Y: u32 = 0x20;
+        /// `least_run`.
+        pub const LEAST_RUN: u32 = 0x24;
+        /// `status`.
+        pub const STATUS: u32 = 0x28;
+        /// `seen`.
+        pub const SEEN: u32 = 0x2c;
+        /// `ev_status`.
+        pub const EV_STATUS: u32 = 0x30;
+        /// `ev_pending`.
+        pub const EV_PENDING: u32 = 0x34;
+        /// `ev_enable`.
+        pub const EV_ENABLE: u32 = 0x38;
+        /// `sequence`.
+        pub const SEQUENCE: u32 = 0x3c;
+        /// `count`.
+        pub const COUNT: u32 = 0x40;
+        /// `sum_x`.
+        pub const SUM_X: u32 = 0x44;
+        /// `sum_y`.
+        pub const SUM_Y: u32 = 0x48;
+        /// `box_x`.
+        pub const BOX_X: u32 = 0x4c;
+        /// `box_y`.
+        pub const BOX_Y: u32 = 0x50;
+        /// `sum_xx`.
+        pub const SUM_XX: u32 = 0x54;
+        /// `sum_xy`.
+        pub const SUM_XY: u32 = 0x5c;
+        /// `sum_yy`.
+        pub const SUM_YY: u32 = 0x64;
+        /// `snapshot`.
+        pub const SNAPSHOT: u32 = 0x6c;
+        /// `snapshot_state`.
+        pub const SNAPSHOT_STATE: u32 = 0x70;
+        /// `snapshot_place`.
+        pub const SNAPSHOT_PLACE: u32 = 0x74;
+        /// `snapshot_word`.
+        pub const SNAPSHOT_WORD: u32 = 0x78;
+        /// `frames`.
+        pub const FRAMES: u32 = 0x7c;
+        /// `frames_dropped`.
+        pub const FRAMES_DROPPED: u32 = 0x80;
+        /// `lines_malformed`.
+        pub const LINES_MALFORMED: u32 = 0x84;
+    }
+
     /// A value of `caps`.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
     pub struct Caps(u32);
@@ -5867,11 +6744,25 @@ pub mod gesture {
             (self.0 & 0x7ff) as u16
         }
 
+        /// This value with another `width`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_width(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
         /// `height`, bits 21 to 12: Most lines of a frame.
         #[inline]
         #[must_use]
         pub const fn height(self) -> u16 {
             ((self.0 >> 12) & 0x3ff) as u16
+        }
+
+        /// This value with another `height`: the low 10 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_height(self, value: u16) -> Self {
+            Self(self.0 & !(0x3ff << 12) | (value as u32 & 0x3ff) << 12)
         }
 
         /// `clock_divider`, bits 27 to 24: The sensor's input clock is the system clock divided by this.
@@ -5881,11 +6772,25 @@ pub mod gesture {
             ((self.0 >> 24) & 0xf) as u8
         }
 
+        /// This value with another `clock_divider`: the low 4 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_clock_divider(self, value: u8) -> Self {
+            Self(self.0 & !(0xf << 24) | (value as u32 & 0xf) << 24)
+        }
+
         /// `moments`, bit 28: The sums of products are built.
         #[inline]
         #[must_use]
         pub const fn moments(self) -> bool {
             (self.0 >> 28) & 1 != 0
+        }
+
+        /// This value with another `moments`.
+        #[inline]
+        #[must_use]
+        pub const fn with_moments(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 28) | (value as u32 & 0x1) << 28)
         }
     }
 
@@ -6331,11 +7236,25 @@ pub mod gesture {
             self.0 & 1 != 0
         }
 
+        /// This value with another `running`.
+        #[inline]
+        #[must_use]
+        pub const fn with_running(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
+        }
+
         /// `waiting`, bit 1: Enabled, and no frame has begun yet.
         #[inline]
         #[must_use]
         pub const fn waiting(self) -> bool {
             (self.0 >> 1) & 1 != 0
+        }
+
+        /// This value with another `waiting`.
+        #[inline]
+        #[must_use]
+        pub const fn with_waiting(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 1) | (value as u32 & 0x1) << 1)
         }
 
         /// `vsync`, bit 2: State of VSYNC.
@@ -6345,11 +7264,25 @@ pub mod gesture {
             (self.0 >> 2) & 1 != 0
         }
 
+        /// This value with another `vsync`.
+        #[inline]
+        #[must_use]
+        pub const fn with_vsync(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 2) | (value as u32 & 0x1) << 2)
+        }
+
         /// `href`, bit 3: State of HREF.
         #[inline]
         #[must_use]
         pub const fn href(self) -> bool {
             (self.0 >> 3) & 1 != 0
+        }
+
+        /// This value with another `href`.
+        #[inline]
+        #[must_use]
+        pub const fn with_href(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 3) | (value as u32 & 0x1) << 3)
         }
 
         /// `scl`, bit 4: State of the bus's SCL.
@@ -6359,6 +7292,13 @@ pub mod gesture {
             (self.0 >> 4) & 1 != 0
         }
 
+        /// This value with another `scl`.
+        #[inline]
+        #[must_use]
+        pub const fn with_scl(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
+        }
+
         /// `sda`, bit 5: State of the bus's SDA.
         #[inline]
         #[must_use]
@@ -6366,11 +7306,25 @@ pub mod gesture {
             (self.0 >> 5) & 1 != 0
         }
 
+        /// This value with another `sda`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sda(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
+        }
+
         /// `fault`, bits 10 to 8: First fault of the last frame.
         #[inline]
         #[must_use]
         pub const fn fault(self) -> Option<Fault> {
             Fault::from_bits(((self.0 >> 8) & 0x7) as u8)
+        }
+
+        /// This value with another `fault`.
+        #[inline]
+        #[must_use]
+        pub const fn with_fault(self, value: Fault) -> Self {
+            Self(self.0 & !(0x7 << 8) | (value as u32 & 0x7) << 8)
         }
     }
 
@@ -6396,11 +7350,25 @@ pub mod gesture {
             (self.0 & 0x7ff) as u16
         }
 
+        /// This value with another `pixels`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_pixels(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
         /// `lines`, bits 26 to 16: Lines of the last frame, whole or not.
         #[inline]
         #[must_use]
         pub const fn lines(self) -> u16 {
             ((self.0 >> 16) & 0x7ff) as u16
+        }
+
+        /// This value with another `lines`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_lines(self, value: u16) -> Self {
+            Self(self.0 & !(0x7ff << 16) | (value as u32 & 0x7ff) << 16)
         }
     }
 
@@ -6424,6 +7392,13 @@ pub mod gesture {
         #[must_use]
         pub const fn frame(self) -> bool {
             self.0 & 1 != 0
+        }
+
+        /// This value with another `frame`.
+        #[inline]
+        #[must_use]
+        pub const fn with_frame(self, value: bool) -> Self {
+            Self(self.0 & !0x1 | value as u32 & 0x1)
         }
     }
 
@@ -6509,11 +7484,25 @@ pub mod gesture {
             (self.0 & 0x7ff) as u16
         }
 
+        /// This value with another `first`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_first(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
         /// `last`, bits 26 to 16: Greatest column; 0 without a pixel.
         #[inline]
         #[must_use]
         pub const fn last(self) -> u16 {
             ((self.0 >> 16) & 0x7ff) as u16
+        }
+
+        /// This value with another `last`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last(self, value: u16) -> Self {
+            Self(self.0 & !(0x7ff << 16) | (value as u32 & 0x7ff) << 16)
         }
     }
 
@@ -6539,11 +7528,25 @@ pub mod gesture {
             (self.0 & 0x7ff) as u16
         }
 
+        /// This value with another `first`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_first(self, value: u16) -> Self {
+            Self(self.0 & !0x7ff | value as u32 & 0x7ff)
+        }
+
         /// `last`, bits 26 to 16: Greatest line; 0 without a pixel.
         #[inline]
         #[must_use]
         pub const fn last(self) -> u16 {
             ((self.0 >> 16) & 0x7ff) as u16
+        }
+
+        /// This value with another `last`: the low 11 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_last(self, value: u16) -> Self {
+            Self(self.0 & !(0x7ff << 16) | (value as u32 & 0x7ff) << 16)
         }
     }
 
@@ -6627,6 +7630,13 @@ pub mod gesture {
             (self.0 & 0xfff) as u16
         }
 
+        /// This value with another `words`: the low 12 bits of `value`.
+        #[inline]
+        #[must_use]
+        pub const fn with_words(self, value: u16) -> Self {
+            Self(self.0 & !0xfff | value as u32 & 0xfff)
+        }
+
         /// `ready`, bit 12: The picture is complete.
         #[inline]
         #[must_use]
@@ -6634,11 +7644,25 @@ pub mod gesture {
             (self.0 >> 12) & 1 != 0
         }
 
+        /// This value with another `ready`.
+        #[inline]
+        #[must_use]
+        pub const fn with_ready(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 12) | (value as u32 & 0x1) << 12)
+        }
+
         /// `sequence`, bits 31 to 16: `sequence` of its frame.
         #[inline]
         #[must_use]
         pub const fn sequence(self) -> u16 {
             ((self.0 >> 16) & 0xffff) as u16
+        }
+
+        /// This value with another `sequence`.
+        #[inline]
+        #[must_use]
+        pub const fn with_sequence(self, value: u16) -> Self {
+            Self(self.0 & !(0xffff << 16) | (value as u32 & 0xffff) << 16)
         }
     }
 

@@ -53,6 +53,7 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> Result<()> {
         write_accessor(out, peripheral.base, register)?;
     }
     writeln!(out, "    }}")?;
+    write_offsets(out, peripheral)?;
     for register in peripheral
         .registers
         .iter()
@@ -164,7 +165,29 @@ fn write_accessor(out: &mut String, base: u32, register: &Register) -> fmt::Resu
     writeln!(out, "        }}")
 }
 
-/// Prints the type for the value of a register with fields.
+/// Prints the offsets of the registers, for a model of the block.
+fn write_offsets(out: &mut String, peripheral: &Peripheral) -> fmt::Result {
+    write!(
+        out,
+        "
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {{
+"
+    )?;
+    for register in &peripheral.registers {
+        writeln!(out, "        /// `{}`.", register.name)?;
+        writeln!(
+            out,
+            "        pub const {}: u32 = {};",
+            register.name.to_uppercase(),
+            hex(register.offset)
+        )?;
+    }
+    writeln!(out, "    }}")
+}
+
+/// Prints the type for the value of a register with fields. A register that is read-only has setters too: a model of the block sets
+/// them.
 fn write_value(out: &mut String, register: &Register, enumerations: &[Enumeration]) -> fmt::Result {
     let kind = camel(&register.name);
     writeln!(out, "\n    /// A value of `{}`.", register.name)?;
@@ -188,9 +211,7 @@ fn write_value(out: &mut String, register: &Register, enumerations: &[Enumeratio
         }
         let enumeration = enumerations.iter().find(|e| e.is_of(field));
         write_getter(out, field, enumeration)?;
-        if register.access == Access::ReadWrite {
-            write_setter(out, field, enumeration)?;
-        }
+        write_setter(out, field, enumeration)?;
     }
     writeln!(out, "    }}")
 }
