@@ -17,7 +17,9 @@ pub enum TransferError {
     #[error("{0}")]
     Failed(Failure),
     /// A transfer through memory on a board that offers no direct access to its memory.
-    #[error("memory transfer: expected the virtual board, found a board with a serial line only")]
+    #[error(
+        "memory transfer: expected the emulated or the virtual board, found a board with a serial line only"
+    )]
     NoMemory,
 }
 
@@ -26,7 +28,7 @@ pub enum TransferError {
 pub enum Route {
     /// Over the serial line.
     Serial,
-    /// Directly through the simulated memory, which only the virtual board offers.
+    /// Directly through the simulated memory, which the emulated and the virtual board offer.
     Memory,
 }
 
@@ -34,7 +36,7 @@ impl Route {
     /// The fastest route of a board.
     pub const fn of(board: &BoardName) -> Self {
         match board {
-            BoardName::Virtual => Self::Memory,
+            BoardName::Emulated | BoardName::Virtual => Self::Memory,
             BoardName::Serial(_) => Self::Serial,
         }
     }

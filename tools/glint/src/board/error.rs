@@ -6,6 +6,20 @@ pub enum BoardError {
     /// An error of the virtual board.
     #[error(transparent)]
     Virtual(#[from] virtual_board::Error),
+    /// An error of the emulated board.
+    #[error(transparent)]
+    Emulated(#[from] emulated_board::Error),
+    /// The picture on the virtual board's monitor is not that of a frame.
+    #[error(transparent)]
+    Picture(#[from] virtual_board::PictureError),
+    /// The frame on the emulated board's monitor has another size.
+    #[error("frame on the monitor: expected {expected} pixels in a line, found {found}")]
+    FrameWidth {
+        /// Expected number of pixels in a line.
+        expected: usize,
+        /// Number of pixels in a line.
+        found: usize,
+    },
     /// The serial port cannot be opened.
     #[error("{port}: expected a serial port, found: {source}")]
     Open {
@@ -17,7 +31,15 @@ pub enum BoardError {
     /// Reading from or writing to the serial line failed.
     #[error("serial line: {0}")]
     Line(#[from] std::io::Error),
-    /// The firmware file of the virtual board cannot be read.
+    /// The BIOS of the virtual board, which the emulated board starts with, cannot be read.
+    #[error("the BIOS {path} cannot be read ({source}); run `cargo xtask gateware`")]
+    Bios {
+        /// Path of the file.
+        path: String,
+        /// Error of the operating system.
+        source: std::io::Error,
+    },
+    /// The firmware file of a simulated board cannot be read.
     #[error("the firmware {path} cannot be read ({source}); run `cargo xtask firmware`")]
     Firmware {
         /// Path of the file.

@@ -1,4 +1,4 @@
-//! Access to boards over their serial line: the virtual board simulated in this process, or a board on a serial port.
+//! Access to boards over their serial line: the emulated or the virtual board in this process, or a board on a serial port.
 
 mod error;
 mod line;
@@ -6,8 +6,9 @@ mod name;
 mod serial;
 mod simulated;
 
+pub use emulated_board::EmulatedBoard;
 pub use error::BoardError;
 pub use line::{Board, Memory};
 pub use name::{BoardName, ModelOrBoard};
 pub use serial::SerialBoard;
-pub use simulated::{SimulatedBoard, built_firmware};
+pub use simulated::{SimulatedBoard, Simulation, built_firmware};

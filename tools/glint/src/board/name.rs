@@ -7,10 +7,19 @@ use std::str::FromStr;
 /// A board as named on the command line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum BoardName {
+    /// `emulated`: the instruction set emulator with its devices, in this process.
+    Emulated,
     /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any name but `virtual`: a serial port, such as `/dev/ttyUSB1`.
+    /// Any other name: a serial port, such as `/dev/ttyUSB1`.
     Serial(String),
+}
+
+impl BoardName {
+    /// Whether the board is simulated in this process, with a monitor, pins and memory that the host reaches.
+    pub const fn is_simulated(&self) -> bool {
+        matches!(self, Self::Emulated | Self::Virtual)
+    }
 }
 
 impl FromStr for BoardName {
@@ -18,6 +27,7 @@ impl FromStr for BoardName {
 
     fn from_str(name: &str) -> Result<Self, Infallible> {
         Ok(match name {
+            "emulated" => Self::Emulated,
             "virtual" => Self::Virtual,
             port => Self::Serial(port.to_owned()),
         })
@@ -27,6 +37,7 @@ impl FromStr for BoardName {
 impl fmt::Display for BoardName {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
+            Self::Emulated => "emulated",
             Self::Virtual => "virtual",
             Self::Serial(port) => port,
         })
@@ -41,6 +52,13 @@ pub enum ModelOrBoard {
     Model,
     /// Any name but `model`: the name of a board.
     Board(BoardName),
+}
+
+impl ModelOrBoard {
+    /// Whether this is a board that is simulated in this process.
+    pub const fn is_simulated(&self) -> bool {
+        matches!(self, Self::Board(name) if name.is_simulated())
+    }
 }
 
 impl FromStr for ModelOrBoard {

@@ -1,24 +1,153 @@
-//! The virtual board, simulated in this process. A read from its serial line advances the simulation.
+//! Boards that are simulated in this process. A read from the serial line advances the simulation.
 
 use super::error::BoardError;
 use super::line::{Board, Memory};
+use emulated_board::EmulatedBoard;
 use std::path::{Path, PathBuf};
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::virtual_mpu6050::Wires;
+use virtual_board::{Start, VirtualBoard, WIDTH};
 
 /// Clock cycles to simulate between two checks for bytes from the board.
 const SLICE: u64 = 1000;
 
-/// A virtual board, simulated in this process.
-pub struct SimulatedBoard {
-    board: VirtualBoard,
+/// What the simulated boards have in common: the verilated [`VirtualBoard`] and the faster [`EmulatedBoard`].
+pub trait Simulation {
+    /// Runs `cycles` cycles of the system clock.
+    fn run(&mut self, cycles: u64);
+
+    /// Cycles of the system clock since the start.
+    fn cycles(&self) -> u64;
+
+    /// System clock frequency in Hz.
+    fn clock_hz(&self) -> u32;
+
+    /// Sends bytes to the UART.
+    fn uart_write(&mut self, bytes: &[u8]);
+
+    /// Moves the unread serial output to the end of `output`.
+    fn uart_read(&mut self, output: &mut Vec<u8>);
+
+    /// Fills `bytes` with main memory from `address` on.
+    ///
+    /// # Errors
+    /// The range is not in main memory.
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError>;
+
+    /// Writes `bytes` to main memory from `address` on.
+    ///
+    /// # Errors
+    /// The range is not in main memory.
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError>;
+
+    /// Connects a motion sensor to the I2C bus instead of the present one, if any.
+    fn plug(&mut self, sensor: Wires);
+
+    /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
+    ///
+    /// # Errors
+    /// There is no video, or the frame has another size.
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
 }
 
-impl SimulatedBoard {
-    /// Wraps a virtual board that the caller has built.
-    pub fn new(board: VirtualBoard) -> Self {
+impl Simulation for VirtualBoard {
+    fn run(&mut self, cycles: u64) {
+        self.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.clock_hz()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.uart_read(output);
+    }
+
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        Ok(self.ddr_read(address, bytes)?)
+    }
+
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        Ok(self.ddr_write(address, bytes)?)
+    }
+
+    fn plug(&mut self, sensor: Wires) {
+        self.plug(sensor);
+    }
+
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
+        Ok(self.capture()?.scaled_back(scale)?)
+    }
+}
+
+impl Simulation for EmulatedBoard {
+    fn run(&mut self, cycles: u64) {
+        self.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.clock_hz()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.uart_read(output);
+    }
+
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        Ok(EmulatedBoard::read_memory(self, address, bytes)?)
+    }
+
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        Ok(self.write_memory(address, bytes)?)
+    }
+
+    fn plug(&mut self, sensor: Wires) {
+        self.plug(sensor);
+    }
+
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
+        let frame = self.capture();
+        let (expected, found) = (WIDTH / scale.max(1), frame.width);
+        if found != expected {
+            return Err(BoardError::FrameWidth { expected, found });
+        }
+        Ok(frame.pixels)
+    }
+}
+
+/// A simulated board with a serial line and direct access to its memory.
+pub struct SimulatedBoard<S = VirtualBoard> {
+    board: S,
+}
+
+impl<S: Simulation> SimulatedBoard<S> {
+    /// Wraps a board that the caller has built.
+    pub fn new(board: S) -> Self {
         Self { board }
     }
 
+    /// The underlying board, for access to its pins, its monitor and its cycle counter.
+    pub fn inner(&mut self) -> &mut S {
+        &mut self.board
+    }
+}
+
+impl SimulatedBoard {
     /// Builds a virtual board that starts with `firmware` in its memory, without the BIOS.
     ///
     /// # Errors
@@ -40,10 +169,29 @@ impl SimulatedBoard {
             VirtualBoard::builder().start(Start::Full).build()?,
         ))
     }
+}
 
-    /// The underlying virtual board, for access to its pins, its monitor and its cycle counter.
-    pub fn inner(&mut self) -> &mut VirtualBoard {
-        &mut self.board
+impl SimulatedBoard<EmulatedBoard> {
+    /// Builds an emulated board that starts with `firmware` in its memory, without the BIOS.
+    ///
+    /// # Errors
+    /// The firmware exceeds main memory.
+    pub fn emulated(firmware: &[u8]) -> Result<Self, BoardError> {
+        Ok(Self::new(EmulatedBoard::fast(firmware)?))
+    }
+
+    /// Builds an emulated board that starts with the BIOS of the virtual board.
+    ///
+    /// # Errors
+    /// The gateware is not built.
+    pub fn emulated_bios() -> Result<Self, BoardError> {
+        let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual");
+        let path = built.join("software/bios/bios.bin");
+        let bios = std::fs::read(&path).map_err(|source| BoardError::Bios {
+            path: path.display().to_string(),
+            source,
+        })?;
+        Ok(Self::new(EmulatedBoard::full(&bios)))
     }
 }
 
@@ -60,7 +208,7 @@ pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, BoardError> {
     })
 }
 
-impl Board for SimulatedBoard {
+impl<S: Simulation> Board for SimulatedBoard<S> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
         self.board.uart_write(bytes);
         Ok(())
@@ -87,12 +235,12 @@ impl Board for SimulatedBoard {
     }
 }
 
-impl Memory for SimulatedBoard {
+impl<S: Simulation> Memory for SimulatedBoard<S> {
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
-        Ok(self.board.ddr_read(address, bytes)?)
+        self.board.read_memory(address, bytes)
     }
 
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
-        Ok(self.board.ddr_write(address, bytes)?)
+        self.board.write_memory(address, bytes)
     }
 }

@@ -2,7 +2,9 @@
 
 use anyhow::Context;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, built_firmware};
+use glint::board::{
+    Board, BoardName, EmulatedBoard, SerialBoard, SimulatedBoard, Simulation, built_firmware,
+};
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
 use glint::transfer::Route;
@@ -19,7 +21,7 @@ pub struct LineArguments {
     /// Baud rate of a serial port, in bits per second.
     #[arg(long, default_value_t = 115_200, value_name = "BITS")]
     pub baud: u32,
-    /// Firmware of the virtual board [default: the one built by `cargo xtask firmware`].
+    /// Firmware of the emulated or the virtual board [default: the one built by `cargo xtask firmware`].
     #[arg(long, value_name = "FILE")]
     pub firmware: Option<PathBuf>,
 }
@@ -28,11 +30,13 @@ impl LineArguments {
     /// Starts a virtual board and runs it to the firmware's first prompt.
     pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
         let firmware = built_firmware(self.firmware.as_deref())?;
-        let mut board = SimulatedBoard::fast(&firmware)?;
-        let spinner = spinner("the virtual board starts");
-        Console::new(&mut board).greet()?;
-        spinner.finish_and_clear();
-        Ok(board)
+        started(SimulatedBoard::fast(&firmware)?)
+    }
+
+    /// Starts an emulated board and runs it to the firmware's first prompt.
+    pub fn emulated_board(&self) -> anyhow::Result<SimulatedBoard<EmulatedBoard>> {
+        let firmware = built_firmware(self.firmware.as_deref())?;
+        started(SimulatedBoard::emulated(&firmware)?)
     }
 
     /// Opens a board on a serial port.
@@ -40,19 +44,28 @@ impl LineArguments {
         Ok(SerialBoard::open(port, self.baud)?)
     }
 
-    /// Opens the board that `name` selects. A virtual board is started and runs its firmware.
+    /// Opens the board that `name` selects. A simulated board is started and runs its firmware.
     pub fn board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         Ok(match name {
+            BoardName::Emulated => Box::new(self.emulated_board()?),
             BoardName::Virtual => Box::new(self.virtual_board()?),
             BoardName::Serial(port) => Box::new(self.serial_board(port)?),
         })
     }
 }
 
+/// Runs a board to the firmware's first prompt.
+fn started<S: Simulation>(mut board: SimulatedBoard<S>) -> anyhow::Result<SimulatedBoard<S>> {
+    let spinner = spinner("the board starts");
+    Console::new(&mut board).greet()?;
+    spinner.finish_and_clear();
+    Ok(board)
+}
+
 /// Options of a command that transfers data to and from a board, and prints a result.
 #[derive(clap::Args)]
 pub struct TransferArguments {
-    /// Route of the data to and from a board [default: memory for the virtual board, serial for a board on a serial port].
+    /// Route of the data to and from a board [default: memory for the emulated and the virtual board, serial for a board on a serial port].
     #[arg(long, value_enum)]
     pub transfer: Option<Route>,
     #[command(flatten)]

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 pub struct FlashArguments {
     /// Program to load, a flat binary.
     program: PathBuf,
-    /// Board: `virtual` or a serial port.
+    /// Board: `emulated`, `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
     board: BoardName,
     /// Address to load the program at, and to start it at.
@@ -45,7 +45,7 @@ pub struct UploadArguments {
     /// without its ending, or `model` for a generator].
     #[arg(long, value_parser = mesh_name)]
     name: Option<String>,
-    /// Board: `virtual` or a serial port.
+    /// Board: `emulated`, `virtual` or a serial port.
     #[arg(long)]
     board: BoardName,
     /// Keep the model's coordinates; those outside [-2, 2) are an error.
@@ -84,6 +84,7 @@ impl FlashArguments {
         let program = std::fs::read(&self.program)
             .with_context(|| format!("{}: cannot be read", self.program.display()))?;
         let mut board: Box<dyn Board> = match &self.board {
+            BoardName::Emulated => Box::new(SimulatedBoard::emulated_bios()?),
             BoardName::Virtual => Box::new(SimulatedBoard::full()?),
             BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud)?),
         };

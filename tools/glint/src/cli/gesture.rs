@@ -57,6 +57,11 @@ impl SensorArguments {
 
     fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         let port = match &self.board {
+            BoardName::Emulated => {
+                anyhow::bail!(
+                    "--board emulated: it has no image sensor, expected `virtual` or a serial port"
+                )
+            }
             BoardName::Serial(port) => port,
             BoardName::Virtual => {
                 let source: Box<dyn Source> = match &self.pictures {

@@ -8,7 +8,7 @@ use super::field::FieldArguments;
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard};
+use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
 use glint::model::Model;
 use glint::object::Description;
@@ -29,8 +29,6 @@ use glint_model::{Clip, MAX_EYE, Object, Placement, RenderError};
 use glint_scene::Scene;
 use serde::Serialize;
 use std::path::PathBuf;
-
-const VIRTUAL: ModelOrBoard = ModelOrBoard::Board(BoardName::Virtual);
 
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
@@ -82,7 +80,8 @@ pub struct RenderArguments {
     /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
     #[arg(long, value_name = "VIEW.json")]
     view: Option<PathBuf>,
-    /// The renderer: `model` (the bit-exact model, in this process), `virtual` (the verilated SoC) or a serial port.
+    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
+    /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
@@ -122,7 +121,7 @@ pub struct RenderArguments {
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
-    /// The source of a board's picture: its memory, or the virtual board's monitor.
+    /// The source of a board's picture: its memory, or the monitor of the emulated or the virtual board.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
     capture: Capture,
     #[command(flatten)]
@@ -133,7 +132,7 @@ pub struct RenderArguments {
 enum Capture {
     /// The frame buffer in the board's memory.
     Frame,
-    /// The virtual board's video pins, scaled back to the frame's size.
+    /// The monitor's picture, scaled back to the frame's size.
     Monitor,
 }
 
@@ -365,8 +364,8 @@ impl RenderArguments {
 
     fn render(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
-            self.board == VIRTUAL || self.capture == Capture::Frame,
-            "--capture monitor: expected the virtual board, found --board {}",
+            self.board.is_simulated() || self.capture == Capture::Frame,
+            "--capture monitor: expected the emulated or the virtual board, found --board {}",
             self.board
         );
         match &self.board {
@@ -376,18 +375,32 @@ impl RenderArguments {
                 spinner.finish_and_clear();
                 Ok(rendered)
             }
-            ModelOrBoard::Board(BoardName::Virtual) => {
-                let mut board = self.transfer.line.virtual_board()?;
-                let mut rendered = self.render_on(&mut board, &BoardName::Virtual, frame, scene)?;
-                if self.capture == Capture::Monitor {
-                    rendered.image.colour = from_monitor(&mut board, frame.size)?;
-                }
-                Ok(rendered)
+            ModelOrBoard::Board(name @ BoardName::Emulated) => {
+                let board = self.transfer.line.emulated_board()?;
+                self.render_simulated(board, name, frame, scene)
+            }
+            ModelOrBoard::Board(name @ BoardName::Virtual) => {
+                let board = self.transfer.line.virtual_board()?;
+                self.render_simulated(board, name, frame, scene)
             }
             ModelOrBoard::Board(name) => {
                 self.render_on(&mut *self.transfer.line.board(name)?, name, frame, scene)
             }
         }
+    }
+
+    fn render_simulated<S: Simulation>(
+        &self,
+        mut board: SimulatedBoard<S>,
+        name: &BoardName,
+        frame: &Frame,
+        scene: Option<&Scene>,
+    ) -> anyhow::Result<Rendered> {
+        let mut rendered = self.render_on(&mut board, name, frame, scene)?;
+        if self.capture == Capture::Monitor {
+            rendered.image.colour = from_monitor(&mut board, frame.size)?;
+        }
+        Ok(rendered)
     }
 
     fn render_on(
@@ -421,13 +434,16 @@ impl RenderArguments {
     }
 }
 
-/// Captures the frame on the virtual board's monitor, scaled back to the frame's own size.
-fn from_monitor(board: &mut SimulatedBoard, size: Size) -> anyhow::Result<Vec<u16>> {
+/// Captures the frame on a board's monitor, scaled back to the frame's own size.
+fn from_monitor<S: Simulation>(
+    board: &mut SimulatedBoard<S>,
+    size: Size,
+) -> anyhow::Result<Vec<u16>> {
     let spinner = spinner("capturing a frame of the monitor");
-    let picture = board.inner().capture()?;
-    spinner.finish_and_clear();
     let scale = virtual_board::WIDTH / size.width() as usize;
-    Ok(picture.scaled_back(scale)?)
+    let colours = board.inner().monitor_frame(scale)?;
+    spinner.finish_and_clear();
+    Ok(colours)
 }
 
 /// Prints the statistics of a frame as text.

@@ -17,7 +17,7 @@ const LOOK_MS: u64 = 10;
 /// Open a board's console. Ctrl-] ends the session.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// Board: `virtual` or a serial port.
+    /// Board: `emulated`, `virtual` or a serial port.
     board: BoardName,
     /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND")]

@@ -114,7 +114,8 @@ pub struct RenderArguments {
     /// The motion by the keys: `drift-free`, or `accumulated` as in the original design, which rounds the end points in place.
     #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
     motion: MotionForm,
-    /// The renderer: `model` (the bit-exact model, in this process), `virtual` (the verilated SoC) or a serial port.
+    /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
+    /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].

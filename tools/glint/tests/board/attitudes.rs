@@ -1,6 +1,6 @@
 //! Attitudes of logs by the board and by the model are equal, bit for bit.
 
-use crate::common::{console, mesh, running_board};
+use crate::common::{console, emulator, mesh, running_board};
 use glint::fuzz::Random;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Replayed, Stage};
@@ -76,7 +76,7 @@ const MOVING: Options = Options {
 /// Replays a log by the model and, over `route`, by the board; checks that the attitudes are equal.
 fn replayed_by_both(entries: &[Entry], options: &Options, route: Route) -> [Replayed; 2] {
     let prepared = replay::prepare(entries, options).unwrap();
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let mut reported = 0;
     let by_board = replay::on_board(&prepared, &mut console, route, &mut |stage, done, _| {

@@ -1,6 +1,6 @@
 //! A board with a console, and the queries that the tests share.
 
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::{Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
 use glint::console::{Console, value};
 use glint::convert::{self, Options};
 use glint::counters::Counters;
@@ -12,20 +12,27 @@ use glint_core::picture::Size;
 /// Milliseconds of board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
 
-/// A board that starts with the built firmware in its memory.
+/// A virtual board that starts with the built firmware in its memory.
 pub fn running_board() -> SimulatedBoard {
     SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
 }
 
+/// An emulated board that starts with the built firmware in its memory.
+pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
+    SimulatedBoard::emulated(&built_firmware(None).unwrap()).unwrap()
+}
+
 /// The console of a board that has just started.
-pub fn console(board: &mut SimulatedBoard) -> Console<'_, SimulatedBoard> {
+pub fn console<S: Simulation>(board: &mut SimulatedBoard<S>) -> Console<'_, SimulatedBoard<S>> {
     let mut console = Console::new(board).patience(PATIENCE_MS);
     console.greet().unwrap();
     console
 }
 
 /// A renderer on a board that has just started.
-pub fn renderer(board: &mut SimulatedBoard) -> BoardRenderer<'_, SimulatedBoard> {
+pub fn renderer<S: Simulation>(
+    board: &mut SimulatedBoard<S>,
+) -> BoardRenderer<'_, SimulatedBoard<S>> {
     BoardRenderer::new(console(board))
 }
 
@@ -54,7 +61,7 @@ pub fn timeless(stats: Stats) -> Stats {
 }
 
 /// The first word of the value that `info` prints for `key`.
-pub fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &str) -> T {
+pub fn info<T: std::str::FromStr>(console: &mut Console<impl Board>, key: &str) -> T {
     let lines = console.command(&format!("info {key}")).unwrap();
     let short: Vec<String> = lines
         .iter()
@@ -64,7 +71,7 @@ pub fn info<T: std::str::FromStr>(console: &mut Console<SimulatedBoard>, key: &s
 }
 
 /// The address that `info` prints for `key`.
-pub fn address(console: &mut Console<SimulatedBoard>, key: &str) -> u32 {
+pub fn address(console: &mut Console<impl Board>, key: &str) -> u32 {
     let word: String = info(console, key);
     u32::from_str_radix(word.trim_start_matches("0x"), 16).unwrap()
 }

@@ -1,7 +1,7 @@
 //! Pictures and depths of meshes on the monitor, in memory and over the line equal the model's, bit for bit.
 
-use crate::common::{mesh, mesh_frame, renderer, running_board, timeless};
-use glint::board::{Board, SimulatedBoard};
+use crate::common::{emulator, mesh, mesh_frame, renderer, running_board, timeless};
+use glint::board::{Board, SimulatedBoard, Simulation};
 use glint::picture::Image;
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Route, Subject};
 use glint::view;
@@ -185,7 +185,7 @@ fn the_monitor_shows_the_sponge() {
 #[test]
 fn the_monitor_shows_the_larger_sizes() {
     let mesh = mesh("cube");
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board).with_backend(Backend::Cpu);
     for (size, scale) in [(Size::W640, 2), (Size::W1280, 1)] {
         let frame = mesh_frame(&mesh, "2,30,60", size);
@@ -194,7 +194,7 @@ fn the_monitor_shows_the_larger_sizes() {
             .unwrap();
         let expected = render::on_model(&frame).unwrap().image;
         assert!(
-            captured(&mut renderer, scale) == expected.colour,
+            renderer.board().inner().monitor_frame(scale).unwrap() == expected.colour,
             "{size:?}"
         );
     }
@@ -236,7 +236,9 @@ fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u
 }
 
 /// Shows the cube on the board over the serial line only; returns the board's renderer, and the model's image of the same frame.
-fn shown_over_the_line(board: &mut SimulatedBoard) -> (BoardRenderer<'_, SimulatedBoard>, Image) {
+fn shown_over_the_line<S: Simulation>(
+    board: &mut SimulatedBoard<S>,
+) -> (BoardRenderer<'_, SimulatedBoard<S>>, Image) {
     let mesh = mesh("cube");
     let frame = mesh_frame(&mesh, "3,10,80", Size::W320);
     let mut renderer = renderer(board).with_backend(Backend::Cpu);
@@ -258,7 +260,7 @@ fn colours_come_over_the_line() {
 
 #[test]
 fn depths_come_over_the_line() {
-    let mut board = running_board();
+    let mut board = emulator();
     let (mut renderer, expected) = shown_over_the_line(&mut board);
     let depth = renderer
         .depth(Size::W320, Route::Serial, &mut |_, _| {})

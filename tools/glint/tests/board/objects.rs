@@ -1,7 +1,7 @@
 //! Objects on the board: meshes under names, side by side in memory, drawn as the model draws them.
 
-use crate::common::{address, console, info, mesh, renderer, running_board, timeless};
-use glint::board::{Board, SimulatedBoard};
+use crate::common::{address, console, emulator, info, mesh, renderer, running_board, timeless};
+use glint::board::{Board, EmulatedBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::object::Description;
 use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
@@ -55,7 +55,7 @@ fn objects_are_the_models() {
 }
 
 /// The bytes of the mesh `name` in the board's memory, at `address`.
-fn bytes(console: &mut Console<SimulatedBoard>, address: u32, length: usize) -> Vec<u8> {
+fn bytes(console: &mut Console<impl Board>, address: u32, length: usize) -> Vec<u8> {
     let mut bytes = vec![0; length];
     let memory = console.board().memory().unwrap();
     memory.read_memory(address, &mut bytes).unwrap();
@@ -66,7 +66,7 @@ fn bytes(console: &mut Console<SimulatedBoard>, address: u32, length: usize) -> 
 #[test]
 fn meshes_have_names_and_share_the_memory() {
     let [a, b, c] = ["cube", "icosphere:1", "icosphere:2"].map(mesh);
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let start = address(&mut console, "staging");
     let quiet: &mut transfer::Progress = &mut |_, _| {};
@@ -76,7 +76,8 @@ fn meshes_have_names_and_share_the_memory() {
     }
     assert_eq!(info::<String>(&mut console, "scene"), "c");
     let free = |bytes: usize| format!("free {} bytes", (64 << 20) - bytes);
-    let list = |console: &mut Console<SimulatedBoard>| console.command("models").unwrap();
+    let list =
+        |console: &mut Console<SimulatedBoard<EmulatedBoard>>| console.command("models").unwrap();
     let all = [
         "built-in cube sphere torus cylinder polygons".to_owned(),
         format!("mesh a vertices 24 triangles 12 bytes {}", a.len()),

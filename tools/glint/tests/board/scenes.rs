@@ -1,6 +1,6 @@
 //! Scenes: those in the firmware are the files of the folder `scenes`, and are drawn as the model draws them.
 
-use crate::common::{console, info, renderer, running_board};
+use crate::common::{console, emulator, info, renderer, running_board};
 use glint::render::{self, Parts, Renderer, Route, size_command, view_command};
 use glint::scene::{self, Changes};
 use glint_core::colour::Shading;
@@ -71,7 +71,7 @@ fn a_scene_file_is_the_models() {
 
 #[test]
 fn refused_scenes() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     for (command, expected) in [
         ("scene gear", "or objects or poor-mans-vr"),

@@ -1,12 +1,12 @@
 //! The sensor of a board, accessed through the board's console.
 
-use crate::common::{console, running_board};
+use crate::common::{console, emulator};
 use glint::imu::log::Entry;
 use glint::imu::sensor;
 
 #[test]
 fn a_sensor_is_found_calibrated_and_gives_samples() {
-    let mut board = running_board();
+    let mut board = emulator();
     board.inner().plug(sensor::virtual_sensor(None));
     let mut console = console(&mut board);
     assert_eq!(sensor::wait(&mut console).unwrap(), "MPU-6050");

@@ -1,7 +1,7 @@
 //! Uploads of meshes over a line with faults, and uploads of invalid meshes.
 
-use crate::common::{address, console, info, mesh, running_board};
-use glint::board::{Board, BoardError, SimulatedBoard};
+use crate::common::{address, console, emulator, info, mesh};
+use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
 use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
@@ -53,7 +53,7 @@ impl Board for BadLine<'_> {
 fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     let mesh = mesh("icosphere:4");
     let Manifest { length, crc32 } = Manifest::of(&mesh);
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let staging = address(&mut console, "staging");
     let command = format!("load {length} {crc32:08x}");
@@ -81,7 +81,7 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
 }
 
 /// Draws the scene, and reads the colours of its frame of 320×180 pixels from memory.
-fn frame(console: &mut Console<SimulatedBoard>) -> Vec<u8> {
+fn frame(console: &mut Console<impl Board>) -> Vec<u8> {
     console.command("render").unwrap();
     let address = address(console, "frame");
     let mut bytes = vec![0; 2 * 320 * 180];
@@ -93,7 +93,7 @@ fn frame(console: &mut Console<SimulatedBoard>) -> Vec<u8> {
 #[test]
 fn a_bad_upload_leaves_the_old_model() {
     let (good, other) = (mesh("cube"), mesh("icosphere:1"));
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let quiet: &mut transfer::Progress = &mut |_, _| {};
     transfer::upload(&mut console, &good, None, 1, quiet).unwrap();

@@ -310,7 +310,7 @@ fn failures_other_than_bad_input() {
         ),
         (
             &["render", "cube", "--out", "a.png", "--capture", "monitor"],
-            "error: --capture monitor: expected the virtual board, found --board model",
+            "error: --capture monitor: expected the emulated or the virtual board, found --board model",
         ),
     ] {
         let output = glint(&folder, arguments);

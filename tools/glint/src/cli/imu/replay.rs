@@ -32,8 +32,8 @@ pub struct ReplayArguments {
     /// Log to read.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Backend: `model` (the firmware's arithmetic on this host), `virtual` (the verilated SoC) or a serial port. All write the
-    /// same attitudes.
+    /// Backend: `model` (the firmware's arithmetic on this host), `emulated` (the firmware in an emulator), `virtual`
+    /// (the verilated SoC) or a serial port. All write the same attitudes.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
     /// File to write the attitudes to.

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 /// Options of a board with a sensor.
 #[derive(Args)]
 pub struct SensorArguments {
-    /// Board of the sensor: `virtual` (the verilated SoC with a virtual MPU-6050) or a serial port.
+    /// Board of the sensor: `emulated` or `virtual` (the verilated SoC), both with a virtual MPU-6050, or a serial port.
     #[arg(long)]
     board: BoardName,
     /// Motion of the virtual sensor: a log in raw counts, from the board's start [default: at rest, with noise and bias].
@@ -31,19 +31,23 @@ impl SensorArguments {
     /// Opens the board and waits for its sensor's first sample.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         anyhow::ensure!(
-            self.board == BoardName::Virtual || self.sensor.is_none(),
-            "--sensor: expected --board virtual"
+            self.board.is_simulated() || self.sensor.is_none(),
+            "--sensor: expected --board emulated or --board virtual"
         );
+        let entries = match &self.sensor {
+            None => None,
+            Some(path) => Some(read_log(path)?),
+        };
+        let wires = sensor::virtual_sensor(entries.as_deref());
         let mut board: Box<dyn Board> = match &self.board {
+            BoardName::Emulated => {
+                let mut board = self.line.emulated_board()?;
+                board.inner().plug(wires);
+                Box::new(board)
+            }
             BoardName::Virtual => {
-                let entries = match &self.sensor {
-                    None => None,
-                    Some(path) => Some(read_log(path)?),
-                };
                 let mut board = self.line.virtual_board()?;
-                board
-                    .inner()
-                    .plug(sensor::virtual_sensor(entries.as_deref()));
+                board.inner().plug(wires);
                 Box::new(board)
             }
             BoardName::Serial(port) => Box::new(self.line.serial_board(port)?),

@@ -1,0 +1,226 @@
+//! The board: CPU, bus and devices, and what a person connects to it.
+
+use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
+use litex_pac::memories::MAIN_RAM;
+use virtual_mpu6050::Wires;
+
+use crate::bus::Bus;
+use crate::cpu::{Cpu, Pause};
+use crate::devices::{Devices, Frame};
+use crate::error::Error;
+
+/// Longest time in cycles between two looks at a condition.
+const SLICE: u64 = 1000;
+
+/// An emulated board.
+pub struct EmulatedBoard {
+    cpu: Cpu,
+    bus: Bus,
+    cycles: u64,
+    /// Cycles in which the CPU slept.
+    idle: u64,
+}
+
+impl EmulatedBoard {
+    /// A board as the BIOS leaves it: `firmware` is at the start of main memory, where the CPU begins.
+    ///
+    /// # Errors
+    /// [`Error::Address`] for firmware that exceeds main memory.
+    pub fn fast(firmware: &[u8]) -> Result<Self, Error> {
+        let mut board = Self::full(&jump(MAIN_RAM.base));
+        board.write_memory(MAIN_RAM.base, firmware)?;
+        Ok(board)
+    }
+
+    /// A board whose CPU begins in the ROM with the content `rom`, of which as much counts as fits.
+    #[must_use]
+    pub fn full(rom: &[u8]) -> Self {
+        let mut bus = Bus::new(Devices::new());
+        bus.set_rom(rom);
+        Self {
+            cpu: Cpu::new(),
+            bus,
+            cycles: 0,
+            idle: 0,
+        }
+    }
+
+    /// Runs at least `cycles` cycles: the last instruction may end later.
+    pub fn run(&mut self, cycles: u64) {
+        let end = self.cycles.saturating_add(cycles);
+        while self.cycles < end {
+            let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
+            let lines = self.bus.devices.interrupts();
+            let limit = next.min(end);
+            let (now, pause) = self.cpu.run(&mut self.bus, self.cycles, limit, lines);
+            self.cycles = now;
+            if pause == Pause::Asleep && now < limit {
+                // Nothing happens before the next event.
+                self.idle += limit - now;
+                self.cycles = limit;
+            }
+            if std::mem::take(&mut self.bus.devices.controller.reset) {
+                self.bus.devices.reset();
+                self.cpu.reset();
+            }
+        }
+    }
+
+    /// Runs until `done` returns true, but at most about `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
+    /// returned true.
+    pub fn run_until(&mut self, limit: u64, mut done: impl FnMut(&mut Self) -> bool) -> bool {
+        let end = self.cycles.saturating_add(limit);
+        loop {
+            if done(self) {
+                return true;
+            }
+            let left = end.saturating_sub(self.cycles);
+            if left == 0 {
+                return false;
+            }
+            self.run(left.min(SLICE));
+        }
+    }
+
+    /// Clock cycles since the start.
+    #[must_use]
+    pub fn cycles(&self) -> u64 {
+        self.cycles
+    }
+
+    /// Clock cycles since the start in which the CPU slept.
+    #[must_use]
+    pub fn idle_cycles(&self) -> u64 {
+        self.idle
+    }
+
+    /// Instructions since the start.
+    #[must_use]
+    pub fn instructions(&self) -> u64 {
+        self.cpu.retired()
+    }
+
+    /// Frequency of the system clock in Hz.
+    #[must_use]
+    pub fn clock_hz(&self) -> u32 {
+        CONFIG_CLOCK_FREQUENCY
+    }
+
+    /// Sends bytes to the UART.
+    pub fn uart_write(&mut self, bytes: &[u8]) {
+        self.bus.devices.uart.push(bytes);
+    }
+
+    /// Number of bytes that the CPU has not taken from the UART yet.
+    #[must_use]
+    pub fn uart_queued(&self) -> usize {
+        self.bus.devices.uart.queued()
+    }
+
+    /// Moves the unread output of the UART to the end of `output`.
+    pub fn uart_read(&mut self, output: &mut Vec<u8>) {
+        output.append(self.bus.devices.uart.sent());
+    }
+
+    /// Runs until the board has sent `expected`, and returns the unread output up to the end of `expected`. Later output stays
+    /// unread.
+    ///
+    /// # Errors
+    /// [`Error::Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
+    pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
+        let wanted = expected.as_bytes();
+        let mut searched = 0;
+        let mut end = None;
+        self.run_until(limit, |board| {
+            let sent = board.bus.devices.uart.sent();
+            end = sent[searched..]
+                .windows(wanted.len().max(1))
+                .position(|window| window == wanted)
+                .map(|at| searched + at + wanted.len());
+            searched = sent.len().saturating_sub(wanted.len()).max(searched);
+            end.is_some()
+        });
+        let sent = self.bus.devices.uart.sent();
+        let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+        match end {
+            Some(end) => Ok(text(sent.drain(..end).collect())),
+            None => Err(Error::Timeout {
+                expected: format!("{expected:?}"),
+                cycles: limit,
+                got: text(std::mem::take(sent)),
+            }),
+        }
+    }
+
+    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
+    pub fn set_buttons(&mut self, pressed: u8) {
+        self.bus.devices.buttons.set(pressed.into());
+    }
+
+    /// Sets the 16 switches, one bit each.
+    pub fn set_switches(&mut self, on: u16) {
+        self.bus.devices.switches.set(on.into());
+    }
+
+    /// The 16 LEDs, one bit each.
+    #[must_use]
+    pub fn leds(&self) -> u16 {
+        self.bus.devices.leds.levels
+    }
+
+    /// Connects a sensor to the I2C bus instead of the present sensor, if any.
+    pub fn plug(&mut self, sensor: Wires) {
+        self.bus.devices.i2c.sensor = Some(sensor);
+    }
+
+    /// The sensor on the I2C bus, if there is one.
+    pub fn sensor(&mut self) -> Option<&mut Wires> {
+        self.bus.devices.i2c.sensor.as_mut()
+    }
+
+    /// Disconnects the sensor from the I2C bus, and returns it.
+    pub fn unplug(&mut self) -> Option<Wires> {
+        self.bus.devices.i2c.sensor.take()
+    }
+
+    /// Runs to the next vertical blanking, and returns the frame that is shown from then on; black at the last size while the
+    /// picture is switched off.
+    pub fn capture(&mut self) -> Frame {
+        let blanking = self.bus.devices.scanout.next_blanking();
+        self.run(blanking + 1 - self.cycles);
+        self.bus.devices.scanout.frame(&self.bus.ram)
+    }
+
+    /// Reads main memory from `address` on, an address of the CPU.
+    ///
+    /// # Errors
+    /// [`Error::Address`] if the range is not within main memory.
+    pub fn read_memory(&self, address: u32, bytes: &mut [u8]) -> Result<(), Error> {
+        let found = self.bus.ram.bytes(address, bytes.len());
+        bytes.copy_from_slice(found.ok_or(Error::Address {
+            address,
+            length: bytes.len(),
+        })?);
+        Ok(())
+    }
+
+    /// Writes main memory from `address` on, an address of the CPU.
+    ///
+    /// # Errors
+    /// [`Error::Address`] if the range is not within main memory.
+    pub fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
+        let place = self.bus.ram.bytes_mut(address, bytes.len());
+        let length = bytes.len();
+        place
+            .ok_or(Error::Address { address, length })?
+            .copy_from_slice(bytes);
+        self.cpu.forget_code();
+        Ok(())
+    }
+}
+
+/// A program that jumps to `address`, a multiple of 4096: `lui t0, …; jalr zero, t0`.
+fn jump(address: u32) -> Vec<u8> {
+    let program = [address | 5 << 7 | 0x37, 5 << 15 | 0x67_u32];
+    program.into_iter().flat_map(u32::to_le_bytes).collect()
+}

@@ -1,0 +1,151 @@
+//! The CPU's bus: memories and windows of registers.
+
+use litex_pac::Memory;
+use litex_pac::memories::{ROM, SRAM};
+
+use crate::MainMemory;
+use crate::devices::{Devices, REGISTERS};
+
+/// Clock cycles after which the bus answers an access to an address where nothing is.
+const TIMEOUT: u64 = 1_000_000;
+
+/// What such an access reads.
+const NOTHING: u32 = u32::MAX;
+
+/// Result of an access outside main memory.
+pub struct Access {
+    /// The word that contains the address, for a load.
+    pub value: u32,
+    /// Cycles that the CPU waits, beside those of the instruction.
+    pub cycles: u64,
+    /// Whether a device was accessed, which may change interrupts and the time of the next event.
+    pub device: bool,
+}
+
+impl Access {
+    fn memory(value: u32) -> Self {
+        Self {
+            value,
+            cycles: 0,
+            device: false,
+        }
+    }
+}
+
+/// Memories and devices.
+pub struct Bus {
+    /// Main memory.
+    pub ram: MainMemory,
+    /// The devices.
+    pub devices: Devices,
+    rom: Vec<u8>,
+    sram: Vec<u8>,
+}
+
+impl Bus {
+    /// Memories that are all 0, and `devices`.
+    pub fn new(devices: Devices) -> Self {
+        Self {
+            ram: MainMemory::new(),
+            devices,
+            rom: vec![0; ROM.size as usize],
+            sram: vec![0; SRAM.size as usize],
+        }
+    }
+
+    /// Replaces the ROM by `image`, as much of it as fits.
+    pub fn set_rom(&mut self, image: &[u8]) {
+        self.rom.fill(0);
+        for (place, byte) in self.rom.iter_mut().zip(image) {
+            *place = *byte;
+        }
+    }
+
+    /// The word at `address`, a multiple of 4, if a memory is there.
+    pub fn memory_word(&self, address: u32) -> Option<u32> {
+        let bytes = match place(address) {
+            Place::Rom(offset) => self.rom.get(offset..)?.first_chunk(),
+            Place::Sram(offset) => self.sram.get(offset..)?.first_chunk(),
+            _ => return self.ram.word(address),
+        };
+        bytes.copied().map(u32::from_le_bytes)
+    }
+
+    /// Loads the word that contains `address`, outside main memory or in it.
+    pub fn load(&mut self, address: u32, now: u64) -> Access {
+        let address = address & !3;
+        if let Some(word) = self.memory_word(address) {
+            return Access::memory(word);
+        }
+        match place(address) {
+            Place::Register(offset) => Access {
+                value: self.devices.read(offset, now, &mut self.ram),
+                cycles: 0,
+                device: true,
+            },
+            _ => self.time_out(),
+        }
+    }
+
+    /// Stores the low `size` bytes of `value` at `address`, a multiple of `size`, outside main memory.
+    pub fn store(&mut self, address: u32, value: u32, size: usize, now: u64) -> Access {
+        match place(address) {
+            // A write to the ROM has no effect.
+            Place::Rom(_) => Access::memory(0),
+            Place::Sram(offset) => {
+                if let Some(bytes) = self.sram.get_mut(offset..offset + size) {
+                    bytes.copy_from_slice(&value.to_le_bytes()[..size]);
+                }
+                Access::memory(0)
+            }
+            Place::Register(offset) => {
+                // The CPU repeats a byte or a half word in all lanes, and a register takes all of them.
+                let value = match size {
+                    1 => (value & 0xff) * 0x0101_0101,
+                    2 => (value & 0xffff) * 0x0001_0001,
+                    _ => value,
+                };
+                self.devices.write(offset & !3, value, now, &mut self.ram);
+                Access {
+                    value: 0,
+                    cycles: 0,
+                    device: true,
+                }
+            }
+            Place::Nothing => self.time_out(),
+        }
+    }
+
+    fn time_out(&mut self) -> Access {
+        self.devices.count_bus_error();
+        Access {
+            value: NOTHING,
+            cycles: TIMEOUT,
+            device: false,
+        }
+    }
+}
+
+/// What is at an address outside main memory: a byte of a memory, or of the registers.
+enum Place {
+    Rom(usize),
+    Sram(usize),
+    Register(u32),
+    Nothing,
+}
+
+fn place(address: u32) -> Place {
+    let within = |memory: Memory| {
+        let offset = address.wrapping_sub(memory.base);
+        (offset < memory.size).then_some(offset)
+    };
+    if let Some(offset) = within(ROM) {
+        Place::Rom(offset as usize)
+    } else if let Some(offset) = within(SRAM) {
+        Place::Sram(offset as usize)
+    } else if let Some(offset) = within(REGISTERS) {
+        Place::Register(offset)
+    } else {
+        Place::Nothing
+    }
+}

@@ -1,0 +1,70 @@
+//! Decoded instructions of the memories that programs run from.
+
+use litex_pac::Memory;
+use litex_pac::memories::{MAIN_RAM, ROM, SRAM};
+
+use crate::decode::Instruction;
+
+/// Bytes of a page.
+pub const PAGE: u32 = 4096;
+
+/// Decoded instructions of a page.
+pub type Page = [Instruction; PAGE as usize / 4];
+
+/// The pages of decoded instructions. As in the CPU's instruction cache, an instruction that is here stays what it was, whatever is
+/// written to memory, until [`clear`](Self::clear).
+pub struct Code {
+    /// Pages of the memories, one memory after another.
+    pages: Vec<Option<Box<Page>>>,
+    /// Numbers of the pages that are present.
+    present: Vec<usize>,
+    /// The page of an address without memory, never decoded.
+    nowhere: Box<Page>,
+}
+
+/// The memories, and the place of the first page of each.
+const MEMORIES: [Memory; 3] = [MAIN_RAM, ROM, SRAM];
+
+fn pages(memory: Memory) -> usize {
+    memory.size.div_ceil(PAGE) as usize
+}
+
+fn empty() -> Box<Page> {
+    Box::new([Instruction::UNKNOWN; PAGE as usize / 4])
+}
+
+impl Code {
+    /// Without decoded instructions.
+    pub fn new() -> Self {
+        let count = MEMORIES.into_iter().map(pages).sum();
+        Self {
+            pages: (0..count).map(|_| None).collect(),
+            present: Vec::new(),
+            nowhere: empty(),
+        }
+    }
+
+    /// The page `number`, counted from address 0.
+    pub fn page(&mut self, number: u32) -> &mut Page {
+        let mut first = 0;
+        for memory in MEMORIES {
+            let place = number.wrapping_sub(memory.base / PAGE) as usize;
+            if place < pages(memory) {
+                let page = &mut self.pages[first + place];
+                if page.is_none() {
+                    self.present.push(first + place);
+                }
+                return page.get_or_insert_with(empty);
+            }
+            first += pages(memory);
+        }
+        &mut self.nowhere
+    }
+
+    /// Forgets all instructions, as `fence.i` does.
+    pub fn clear(&mut self) {
+        for number in self.present.drain(..) {
+            self.pages[number] = None;
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! The interface between the bus and a block of the SoC.
+
+use crate::MainMemory;
+
+/// A block of the SoC behind its window of registers.
+///
+/// `now` is the number of clock cycles since the start; it never decreases. The module `offset` of a block in `litex_pac` has the
+/// offsets of its registers, and the types there have its fields. A read of an offset without a register gives 0, and a write
+/// there has no effect.
+pub trait Device {
+    /// Reads the register at `offset` bytes from the block's first register.
+    fn read(&mut self, offset: u32, now: u64) -> u32;
+
+    /// Writes the register at `offset`. An engine reads and writes main memory `ram`.
+    fn write(&mut self, offset: u32, value: u32, now: u64, ram: &mut MainMemory);
+
+    /// Does what is due at the cycle `now`, and returns the cycle of the next event, `u64::MAX` for none.
+    ///
+    /// The bus calls it after each access to the block, and in the cycle that the last call has returned.
+    fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;
+
+    /// Whether an enabled event is pending: the level of the block's interrupt line.
+    fn interrupt(&self) -> bool;
+}

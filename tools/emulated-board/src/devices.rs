@@ -1,0 +1,171 @@
+//! The blocks of the SoC, each behind its window of registers.
+
+mod i2c;
+mod pins;
+mod scanout;
+mod system;
+mod timer;
+mod uart;
+
+use litex_pac::{
+    Interrupt, Memory, buttons, ctrl, identity, leds, scanout as scanout_block, switches, timer0,
+    uart as uart_block,
+};
+
+use crate::{Device, MainMemory};
+use i2c::I2c;
+use pins::{Inputs, Outputs};
+pub use scanout::Frame;
+use scanout::Scanout;
+use system::{Controller, Identity};
+use timer::Timer;
+use uart::Uart;
+
+/// Addresses of all registers.
+pub const REGISTERS: Memory = Memory {
+    base: ctrl::Ctrl::BASE as u32,
+    size: 0x1_0000,
+};
+
+/// Bytes of the window of a block: blocks are as far apart as the first two.
+const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
+
+/// The bit of scan-out in `identity.blocks`.
+const SCANOUT: u32 = 1 << 0;
+
+/// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
+const BLOCKS: [(usize, Option<Interrupt>); 9] = [
+    (ctrl::Ctrl::BASE, None),
+    (identity::Identity::BASE, None),
+    (uart_block::Uart::BASE, Some(Interrupt::Uart)),
+    (timer0::Timer0::BASE, Some(Interrupt::Timer0)),
+    (litex_pac::i2c::I2c::BASE, Some(Interrupt::I2c)),
+    (buttons::Buttons::BASE, Some(Interrupt::Buttons)),
+    (switches::Switches::BASE, None),
+    (leds::Leds::BASE, None),
+    (scanout_block::Scanout::BASE, Some(Interrupt::Scanout)),
+];
+
+/// The blocks of the SoC.
+pub struct Devices {
+    /// Reset and bus errors.
+    pub controller: Controller,
+    identity: Identity,
+    /// The UART.
+    pub uart: Uart,
+    timer: Timer,
+    /// The I2C master with its sensor.
+    pub i2c: I2c,
+    /// The buttons.
+    pub buttons: Inputs,
+    /// The switches.
+    pub switches: Inputs,
+    /// The LEDs.
+    pub leds: Outputs,
+    /// The scan-out.
+    pub scanout: Scanout,
+    /// Cycle of the next event of each block.
+    next: [u64; BLOCKS.len()],
+}
+
+impl Devices {
+    /// The blocks after the start of the board.
+    pub fn new() -> Self {
+        Self {
+            controller: Controller::new(),
+            identity: Identity { blocks: SCANOUT },
+            uart: Uart::new(),
+            timer: Timer::new(),
+            i2c: I2c::new(),
+            buttons: Inputs::new(4, true),
+            switches: Inputs::new(16, false),
+            leds: Outputs::default(),
+            scanout: Scanout::new(),
+            // Each block states its next event when it is asked for the first time.
+            next: [0; BLOCKS.len()],
+        }
+    }
+
+    /// Resets the blocks, as the CPU has asked for: pins keep their levels, and the video timing goes on.
+    pub fn reset(&mut self) {
+        self.controller = Controller::new();
+        self.uart.reset();
+        self.timer = Timer::new();
+        self.i2c.reset();
+        self.buttons.reset();
+        self.leds = Outputs::default();
+        self.scanout.reset();
+        self.next = [0; BLOCKS.len()];
+    }
+
+    fn device(&mut self, number: usize) -> &mut dyn Device {
+        match number {
+            0 => &mut self.controller,
+            1 => &mut self.identity,
+            2 => &mut self.uart,
+            3 => &mut self.timer,
+            4 => &mut self.i2c,
+            5 => &mut self.buttons,
+            6 => &mut self.switches,
+            7 => &mut self.leds,
+            _ => &mut self.scanout,
+        }
+    }
+
+    /// The block at `offset` bytes from the first register of all, and the register's offset in it.
+    fn find(offset: u32) -> Option<(usize, u32)> {
+        let base = (REGISTERS.base + offset / WINDOW * WINDOW) as usize;
+        let number = BLOCKS.iter().position(|&(first, _)| first == base)?;
+        Some((number, offset % WINDOW))
+    }
+
+    fn update(&mut self, number: usize, now: u64, ram: &mut MainMemory) {
+        self.next[number] = self.device(number).advance(now, ram);
+    }
+
+    /// Reads the register at `offset` bytes from the first register of all.
+    pub fn read(&mut self, offset: u32, now: u64, ram: &mut MainMemory) -> u32 {
+        let Some((number, register)) = Self::find(offset) else {
+            return 0;
+        };
+        self.update(number, now, ram);
+        let value = self.device(number).read(register, now);
+        self.update(number, now, ram);
+        value
+    }
+
+    /// Writes the register at `offset` bytes from the first register of all.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64, ram: &mut MainMemory) {
+        let Some((number, register)) = Self::find(offset) else {
+            return;
+        };
+        self.update(number, now, ram);
+        self.device(number).write(register, value, now, ram);
+        self.update(number, now, ram);
+    }
+
+    /// Does what is due at `now`; returns the cycle of the next event.
+    pub fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64 {
+        for number in 0..BLOCKS.len() {
+            if self.next[number] <= now {
+                self.update(number, now, ram);
+            }
+        }
+        self.next.into_iter().min().unwrap_or(u64::MAX)
+    }
+
+    /// Levels of the interrupt lines.
+    pub fn interrupts(&mut self) -> u32 {
+        BLOCKS
+            .iter()
+            .enumerate()
+            .filter_map(|(number, &(_, interrupt))| Some((number, interrupt?)))
+            .filter(|&(number, _)| self.device(number).interrupt())
+            .fold(0, |lines, (_, interrupt)| lines | 1 << interrupt as u32)
+    }
+
+    /// Counts an access to an address where nothing is.
+    pub fn count_bus_error(&mut self) {
+        self.controller.count_bus_error();
+    }
+}

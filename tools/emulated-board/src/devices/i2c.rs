@@ -1,0 +1,414 @@
+//! The I2C master, which drives the wires of a virtual sensor edge by edge. It follows the states of
+//! gateware/rtl/i2c/i2c_engine.sv, whose phases are the steps here.
+
+use std::collections::VecDeque;
+
+use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
+use litex_pac::i2c::{
+    Answer, Command, Control, Error, I2c as Block, Operation, Rounds, Status, offset,
+};
+use litex_pac::register::Value;
+use virtual_mpu6050::Wires;
+
+use crate::{Device, Events, MainMemory, nanoseconds};
+
+/// The event, by its bit in the event registers.
+const ENDED: u32 = 1;
+
+/// Cycles of a phase, a third of a bit at 400 kHz.
+const PHASE: u64 = (CONFIG_CLOCK_FREQUENCY as u64).div_ceil(3 * 400_000);
+/// Cycles until a rise of SCL passes the spike filter.
+const FILTER: u64 = 7;
+/// Cycles between two looks at SCL while a device holds it low.
+const LOOK: u64 = 16;
+/// Most cycles that a device may hold SCL low.
+const STRETCH: u64 = 1 << 21;
+/// Number of the clock of the acknowledge, from 0.
+const LAST_CLOCK: u32 = 8;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum State {
+    Idle,
+    Held,
+    Set,
+    High,
+    Low,
+    Fall,
+    Rise,
+    Free,
+    Failed,
+}
+
+/// The I2C master.
+pub struct I2c {
+    /// The sensor on the bus, if there is one.
+    pub sensor: Option<Wires>,
+    commands: VecDeque<Command>,
+    answers: VecDeque<u8>,
+    rounds: Rounds,
+    state: State,
+    /// End of the phase; `u64::MAX` in a state that waits.
+    until: u64,
+    /// Cycle since which SCL should be high, in a phase with a high SCL.
+    released: u64,
+    /// Whether a device held SCL low when it was seen last.
+    stretched: bool,
+    /// Cycle in which the next round begins.
+    round: u64,
+    rounds_done: u8,
+    error: Error,
+    scl: bool,
+    sda: bool,
+    shift: u16,
+    clocks: u32,
+    bytes: u8,
+    addressing: bool,
+    events: Events,
+}
+
+impl I2c {
+    /// The master after a reset, without a sensor.
+    pub fn new() -> Self {
+        Self {
+            sensor: None,
+            commands: VecDeque::new(),
+            answers: VecDeque::new(),
+            rounds: Rounds::default(),
+            state: State::Idle,
+            until: u64::MAX,
+            released: 0,
+            stretched: false,
+            round: u64::MAX,
+            rounds_done: 0,
+            error: Error::None,
+            scl: true,
+            sda: true,
+            shift: 0,
+            clocks: 0,
+            bytes: 0,
+            addressing: false,
+            events: Events::default(),
+        }
+    }
+
+    /// Resets the master; the sensor stays.
+    pub fn reset(&mut self) {
+        let sensor = self.sensor.take();
+        *self = Self {
+            sensor,
+            ..Self::new()
+        };
+    }
+
+    /// Levels of SCL and SDA.
+    fn wires(&mut self, now: u64) -> (bool, bool) {
+        match &mut self.sensor {
+            Some(sensor) => sensor.update(nanoseconds(now), self.scl, self.sda),
+            None => (self.scl, self.sda),
+        }
+    }
+
+    fn clear(&mut self, now: u64) {
+        self.commands.clear();
+        self.answers.clear();
+        self.state = State::Idle;
+        self.until = u64::MAX;
+        self.error = Error::None;
+        self.bytes = 0;
+        (self.scl, self.sda) = (true, true);
+        self.wires(now);
+    }
+
+    fn fail(&mut self, error: Error) {
+        self.error = error;
+        (self.scl, self.sda) = (true, true);
+        self.state = State::Failed;
+        self.until = u64::MAX;
+        self.events.raise(ENDED);
+    }
+
+    fn enter(&mut self, state: State, now: u64) {
+        self.state = state;
+        self.until = now + PHASE;
+    }
+
+    /// The operation of the present command; a stop after an error.
+    fn operation(&self) -> Option<Operation> {
+        match self.error {
+            Error::None => self.commands.front().map(|command| command.operation()),
+            _ => Some(Operation::Stop),
+        }
+    }
+
+    fn is_last_byte(&self, command: Command) -> bool {
+        command.operation() != Operation::Read || self.bytes == command.argument()
+    }
+
+    /// Removes the present command, which goes to the end of the queue in a round.
+    fn take(&mut self) {
+        if let Some(command) = self.commands.pop_front()
+            && self.rounds.repeats()
+        {
+            self.commands.push_back(command);
+        }
+    }
+
+    /// Leaves a state that waits, if there is work.
+    fn begin(&mut self, now: u64, due: bool) {
+        let room = self.answers.len() < Block::ANSWER_PLACES as usize;
+        let Some(operation) = self.operation() else {
+            return;
+        };
+        let command = self.commands.front().copied().unwrap_or_default();
+        self.clocks = 0;
+        self.shift = if command.operation() == Operation::Write {
+            u16::from(command.argument()) << 1 | 1
+        } else {
+            0x1fe | u16::from(self.is_last_byte(command) && !command.more())
+        };
+        if self.state == State::Idle && operation == Operation::Start {
+            if due || !self.rounds.repeats() {
+                self.released = now;
+                self.enter(State::High, now);
+            }
+        } else if operation != Operation::Read || room {
+            self.scl = false;
+            self.sda = match operation {
+                Operation::Start => true,
+                Operation::Stop => false,
+                Operation::Read => true,
+                Operation::Write => command.argument() & 0x80 != 0,
+            };
+            self.enter(State::Set, now);
+        }
+    }
+
+    /// The end of a phase.
+    fn step(&mut self, now: u64) {
+        let (scl, sda) = self.wires(now);
+        if self.scl && !scl {
+            // A device stretches the clock; the phase begins when SCL is high.
+            if now - self.released > STRETCH {
+                self.fail(Error::Clock);
+            } else {
+                self.until = now + LOOK;
+                self.stretched = true;
+            }
+            return;
+        }
+        if std::mem::take(&mut self.stretched) {
+            self.until = now + FILTER + PHASE;
+            return;
+        }
+        let Some(operation) = self.operation() else {
+            // The queue was cleared.
+            self.state = State::Idle;
+            self.until = u64::MAX;
+            return;
+        };
+        let command = self.commands.front().copied().unwrap_or_default();
+        match self.state {
+            State::Idle | State::Held | State::Failed => {}
+            State::Set => {
+                self.scl = true;
+                self.released = now;
+                self.enter(State::High, now + FILTER);
+            }
+            State::High => self.sample(now, operation, command, sda),
+            State::Low => self.shift_out(now, operation, command),
+            State::Fall => {
+                self.scl = false;
+                self.enter(State::Low, now);
+            }
+            State::Rise => self.enter(State::Free, now),
+            State::Free => self.stop(sda),
+        }
+    }
+
+    /// The end of a high SCL.
+    fn sample(&mut self, now: u64, operation: Operation, command: Command, sda: bool) {
+        let ninth = self.clocks == LAST_CLOCK;
+        match operation {
+            Operation::Start => {
+                self.addressing = true;
+                if sda {
+                    self.sda = false;
+                    self.enter(State::Fall, now);
+                } else if self.clocks == LAST_CLOCK + 1 {
+                    self.fail(Error::Data);
+                } else {
+                    self.scl = false;
+                    self.enter(State::Low, now);
+                }
+            }
+            Operation::Stop => {
+                self.sda = true;
+                self.enter(State::Rise, now);
+            }
+            _ => {
+                let sent = self.shift >> 8 & 1 == 1;
+                self.shift = self.shift << 1 & 0x1ff | u16::from(sda);
+                if !ninth && command.operation() == Operation::Write && sda != sent {
+                    self.fail(Error::Data);
+                } else {
+                    self.scl = false;
+                    self.enter(State::Low, now);
+                }
+            }
+        }
+    }
+
+    /// The end of a low SCL: the next bit, or the end of a byte or of a start.
+    fn shift_out(&mut self, now: u64, operation: Operation, command: Command) {
+        let ninth = self.clocks == LAST_CLOCK;
+        let started = !self.sda;
+        let ended = if operation == Operation::Start {
+            started
+        } else {
+            ninth
+        };
+        self.clocks += 1;
+        if operation != Operation::Start && !ninth {
+            self.sda = self.shift >> 8 & 1 == 1;
+        }
+        if !ended {
+            self.enter(State::Set, now);
+            return;
+        }
+        if operation == Operation::Read {
+            self.answers.push_back((self.shift >> 1) as u8);
+        }
+        let last_byte = self.is_last_byte(command);
+        if operation == Operation::Start || last_byte {
+            self.take();
+        }
+        self.bytes = if last_byte {
+            0
+        } else {
+            self.bytes.wrapping_add(1)
+        };
+        if operation == Operation::Write {
+            if self.shift & 1 != 0 {
+                self.error = if self.addressing {
+                    Error::Address
+                } else {
+                    Error::Byte
+                };
+            }
+            self.addressing = false;
+        }
+        self.state = State::Held;
+        self.until = u64::MAX;
+        self.begin(now, false);
+    }
+
+    /// The end of the free time after a stop.
+    fn stop(&mut self, sda: bool) {
+        self.until = u64::MAX;
+        let last = self.rounds_done == self.rounds.batch();
+        if self.error == Error::None {
+            self.take();
+            if !sda {
+                self.error = Error::Data;
+            }
+        }
+        self.state = if self.error == Error::None {
+            State::Idle
+        } else {
+            State::Failed
+        };
+        if self.state == State::Failed || !self.rounds.repeats() || last {
+            self.events.raise(ENDED);
+        }
+        self.rounds_done = if last { 0 } else { self.rounds_done + 1 };
+        if !self.rounds.repeats() {
+            self.rounds_done = 0;
+        }
+    }
+
+    fn is_busy(&self) -> bool {
+        match self.state {
+            State::Failed => false,
+            State::Idle => !self.commands.is_empty(),
+            _ => true,
+        }
+    }
+}
+
+impl Device for I2c {
+    fn read(&mut self, offset: u32, now: u64) -> u32 {
+        match offset {
+            offset::ANSWER => match self.answers.pop_front() {
+                Some(byte) => Answer::default().with_byte(byte).with_valid(true).bits(),
+                None => 0,
+            },
+            offset::ROUNDS => self.rounds.bits(),
+            offset::STATUS => {
+                let (scl, sda) = self.wires(now);
+                Status::default()
+                    .with_scl(scl)
+                    .with_sda(sda)
+                    .with_room(self.commands.len() < Block::COMMAND_PLACES as usize)
+                    .with_busy(self.is_busy())
+                    .with_failed(self.state == State::Failed)
+                    .with_error(self.error)
+                    .bits()
+            }
+            offset::EV_STATUS => self.events.status(),
+            offset::EV_PENDING => self.events.pending(),
+            offset::EV_ENABLE => self.events.enabled(),
+            _ => 0,
+        }
+    }
+
+    fn write(&mut self, offset: u32, value: u32, now: u64, _ram: &mut MainMemory) {
+        match offset {
+            offset::COMMAND if self.commands.len() < Block::COMMAND_PLACES as usize => {
+                self.commands.push_back(Command::from_bits(value));
+            }
+            offset::CONTROL if Control::from_bits(value).clear() => {
+                self.clear(now);
+            }
+            offset::ROUNDS => {
+                let before = self.rounds.repeats();
+                self.rounds = Rounds::from_bits(value);
+                if !self.rounds.repeats() {
+                    self.round = u64::MAX;
+                    self.rounds_done = 0;
+                } else if !before {
+                    self.round = now + u64::from(self.rounds.period()) + 1;
+                }
+            }
+            offset::EV_PENDING => self.events.clear(value),
+            offset::EV_ENABLE => self.events.enable(value & ENDED),
+            _ => {}
+        }
+    }
+
+    fn advance(&mut self, now: u64, _ram: &mut MainMemory) -> u64 {
+        loop {
+            if matches!(self.state, State::Idle | State::Held) {
+                self.begin(now, false);
+            }
+            let due = self.until.min(self.round);
+            if due > now {
+                return due;
+            }
+            if self.until <= self.round {
+                self.step(self.until);
+            } else {
+                let round = self.round;
+                self.round += u64::from(self.rounds.period()) + 1;
+                match self.state {
+                    State::Idle => self.begin(round, true),
+                    State::Failed => {}
+                    _ => self.fail(Error::Late),
+                }
+            }
+        }
+    }
+
+    fn interrupt(&self) -> bool {
+        self.events.interrupt()
+    }
+}

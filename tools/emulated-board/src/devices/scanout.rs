@@ -1,0 +1,219 @@
+//! Scan-out: vertical blanking at the rate of the video mode, and the frame that is shown.
+
+use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
+use litex_pac::register::Value;
+use litex_pac::scanout::{Caps, Control, Error, Scanout as Block, Status, offset};
+
+use crate::{Device, Events, MainMemory};
+
+/// The event, by its bit in the event registers.
+const VBLANK: u32 = 1;
+
+/// The video mode: pixels of a line and lines of a frame that are visible, ticks of a whole frame, and ticks a second.
+const WIDTH: u16 = 1280;
+const HEIGHT: u16 = 720;
+const FRAME_TICKS: u64 = 1650 * 750;
+const TICK_RATE: u64 = 74_250_000;
+
+/// Cycle of the first vertical blanking. The video timing begins at the end of the last visible line.
+const FIRST: u64 = 130;
+
+/// Scales that the block supports, and the scale after a reset.
+const SCALES: [u32; 3] = [1, 2, 4];
+const DEFAULT_SCALE: u32 = 4;
+
+/// Bytes of a memory word.
+const WORD: u32 = 16;
+
+/// Cycles of the fetch of a line beside one for each word: an estimate.
+const FETCH_OVERHEAD: u32 = 30;
+
+/// A frame that scan-out shows.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Pixels of a line.
+    pub width: usize,
+    /// Number of lines.
+    pub height: usize,
+    /// RGB565 colours, line by line.
+    pub pixels: Vec<u16>,
+}
+
+/// The scan-out block.
+pub struct Scanout {
+    control: u32,
+    next: u32,
+    scale: u32,
+    /// Settings that the last vertical blanking has latched.
+    enabled: bool,
+    current: u32,
+    scale_current: u32,
+    error: Error,
+    frames: u32,
+    busy: u32,
+    items_in: u32,
+    items_out: u32,
+    /// Number of the next vertical blanking since the start of the board. A reset does not change the video timing.
+    blanking: u64,
+    events: Events,
+}
+
+impl Scanout {
+    /// Scan-out after the start of the board.
+    pub fn new() -> Self {
+        Self {
+            control: 0,
+            next: 0,
+            scale: DEFAULT_SCALE,
+            enabled: false,
+            current: 0,
+            scale_current: DEFAULT_SCALE,
+            error: Error::None,
+            frames: 0,
+            busy: 0,
+            items_in: 0,
+            items_out: 0,
+            blanking: 0,
+            events: Events::default(),
+        }
+    }
+
+    /// Resets the registers.
+    pub fn reset(&mut self) {
+        *self = Self {
+            blanking: self.blanking,
+            ..Self::new()
+        };
+    }
+
+    /// Cycle of the next vertical blanking.
+    pub fn next_blanking(&self) -> u64 {
+        let ticks = u128::from(self.blanking) * u128::from(FRAME_TICKS);
+        let clock = u128::from(CONFIG_CLOCK_FREQUENCY);
+        FIRST + (ticks * clock / u128::from(TICK_RATE)) as u64
+    }
+
+    fn blank(&mut self) {
+        if self.enabled {
+            let lines = u32::from(HEIGHT) / self.scale_current;
+            let words = u32::from(WIDTH) / self.scale_current * 2 / WORD * lines;
+            self.items_out = self.items_out.wrapping_add(lines);
+            self.items_in = self.items_in.wrapping_add(words);
+            self.busy = self.busy.wrapping_add(words + lines * FETCH_OVERHEAD);
+        }
+        self.enabled = Control::from_bits(self.control).enable();
+        self.current = self.next & !(WORD - 1);
+        self.error = Error::Scale;
+        if SCALES.contains(&self.scale) {
+            self.scale_current = self.scale;
+            self.error = Error::None;
+        }
+        self.frames = self.frames.wrapping_add(1);
+        self.blanking += 1;
+        self.events.raise(VBLANK);
+    }
+
+    /// The frame that is shown; black while the picture is switched off, like pixels outside main memory.
+    pub fn frame(&self, ram: &MainMemory) -> Frame {
+        let (width, height) = (
+            u32::from(WIDTH) / self.scale_current,
+            u32::from(HEIGHT) / self.scale_current,
+        );
+        let pixels = (0..width * height).map(|number| {
+            let address = self.current.wrapping_add(2 * number);
+            let colour = ram.array(address).filter(|_| self.enabled);
+            colour.map_or(0, u16::from_le_bytes)
+        });
+        Frame {
+            width: width as usize,
+            height: height as usize,
+            pixels: pixels.collect(),
+        }
+    }
+}
+
+impl Device for Scanout {
+    fn read(&mut self, offset: u32, _now: u64) -> u32 {
+        match offset {
+            offset::IDENT => Block::IDENT,
+            offset::CAPS => Caps::default()
+                .with_width(WIDTH)
+                .with_height(HEIGHT)
+                .with_scales(0b111)
+                .bits(),
+            offset::CONTROL => self.control,
+            offset::STATUS => Status::default()
+                .with_enabled(self.enabled)
+                .with_scale(self.scale_current as u8)
+                .with_error(self.error)
+                .bits(),
+            offset::EV_STATUS => self.events.status(),
+            offset::EV_PENDING => self.events.pending(),
+            offset::EV_ENABLE => self.events.enabled(),
+            offset::FB_NEXT => self.next,
+            offset::SCALE => self.scale,
+            offset::FB_CURRENT => self.current,
+            offset::FRAME_COUNT => self.frames,
+            offset::CYCLES_BUSY => self.busy,
+            offset::ITEMS_IN => self.items_in,
+            offset::ITEMS_OUT => self.items_out,
+            _ => 0,
+        }
+    }
+
+    fn write(&mut self, offset: u32, value: u32, _now: u64, _ram: &mut MainMemory) {
+        match offset {
+            offset::CONTROL => self.control = value & 1,
+            offset::FB_NEXT => self.next = value,
+            offset::SCALE => self.scale = value & 7,
+            offset::EV_PENDING => self.events.clear(value),
+            offset::EV_ENABLE => self.events.enable(value & VBLANK),
+            _ => {}
+        }
+    }
+
+    fn advance(&mut self, now: u64, _ram: &mut MainMemory) -> u64 {
+        while self.next_blanking() <= now {
+            self.blank();
+        }
+        self.next_blanking()
+    }
+
+    fn interrupt(&self) -> bool {
+        self.events.interrupt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blankings_come_sixty_times_a_second_and_latch_the_settings() {
+        let (mut scanout, mut ram) = (Scanout::new(), MainMemory::new());
+        let address = litex_pac::memories::MAIN_RAM.base + 0x100;
+        ram.bytes_mut(address, 4)
+            .unwrap()
+            .copy_from_slice(&[1, 2, 3, 4]);
+        for (offset, value) in [
+            (offset::FB_NEXT, address),
+            (offset::SCALE, 2),
+            (offset::CONTROL, 1),
+        ] {
+            scanout.write(offset, value, 0, &mut ram);
+        }
+        assert_eq!(scanout.advance(0, &mut ram), FIRST);
+        assert!(scanout.frame(&ram).pixels.iter().all(|&colour| colour == 0));
+        scanout.advance(FIRST, &mut ram);
+        let frame = scanout.frame(&ram);
+        assert_eq!((frame.width, frame.height), (640, 360));
+        assert_eq!(frame.pixels[..3], [0x0201, 0x0403, 0]);
+        scanout.advance(u64::from(CONFIG_CLOCK_FREQUENCY) + FIRST, &mut ram);
+        assert_eq!(scanout.read(offset::FRAME_COUNT, 0), 61);
+        assert_eq!(scanout.read(offset::ITEMS_OUT, 0), 60 * 360);
+        scanout.write(offset::SCALE, 3, 0, &mut ram);
+        scanout.advance(scanout.next_blanking(), &mut ram);
+        let status = Status::from_bits(scanout.read(offset::STATUS, 0));
+        assert_eq!((status.scale(), status.error()), (2, Some(Error::Scale)));
+    }
+}

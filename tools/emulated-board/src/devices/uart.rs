@@ -1,0 +1,95 @@
+//! The UART as a stream of bytes: it takes as many bytes as are there, without the time that a serial line needs.
+
+use std::collections::VecDeque;
+
+use litex_pac::register::Value;
+use litex_pac::uart::{EvPending, offset};
+
+use crate::{Device, Events, MainMemory};
+
+/// The events, by their bits in the event registers.
+const TX: u32 = 1;
+const RX: u32 = 2;
+
+/// The UART.
+pub struct Uart {
+    /// Bytes for the CPU.
+    received: VecDeque<u8>,
+    /// Bytes from the CPU that nobody has read yet.
+    sent: Vec<u8>,
+    events: Events,
+}
+
+impl Uart {
+    /// The UART after a reset. It has room for bytes to send from the start on, which is an event.
+    pub fn new() -> Self {
+        let mut events = Events::default();
+        events.set_level(TX, true);
+        Self {
+            received: VecDeque::new(),
+            sent: Vec::new(),
+            events,
+        }
+    }
+
+    /// Resets the UART. Bytes from the CPU are kept for their reader.
+    pub fn reset(&mut self) {
+        self.events = Self::new().events;
+        self.received.clear();
+    }
+
+    /// Sends bytes to the CPU.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.received.extend(bytes);
+        self.events.set_level(RX, !self.received.is_empty());
+    }
+
+    /// Number of bytes that the CPU has not taken yet.
+    pub fn queued(&self) -> usize {
+        self.received.len()
+    }
+
+    /// Bytes from the CPU; the reader removes those that it takes.
+    pub fn sent(&mut self) -> &mut Vec<u8> {
+        &mut self.sent
+    }
+}
+
+impl Device for Uart {
+    fn read(&mut self, offset: u32, _now: u64) -> u32 {
+        match offset {
+            offset::RXTX => self.received.front().copied().unwrap_or(0).into(),
+            offset::TXFULL | offset::RXFULL => 0,
+            offset::RXEMPTY => self.received.is_empty().into(),
+            offset::TXEMPTY => 1,
+            offset::EV_STATUS => self.events.status(),
+            offset::EV_PENDING => self.events.pending(),
+            offset::EV_ENABLE => self.events.enabled(),
+            _ => 0,
+        }
+    }
+
+    fn write(&mut self, offset: u32, value: u32, _now: u64, _ram: &mut MainMemory) {
+        match offset {
+            offset::RXTX => self.sent.push(value as u8),
+            offset::EV_PENDING => {
+                self.events.clear(value);
+                if EvPending::from_bits(value).rx() {
+                    // Clearing the event removes the byte that `rxtx` shows.
+                    self.received.pop_front();
+                    self.events.set_level(RX, !self.received.is_empty());
+                }
+            }
+            offset::EV_ENABLE => self.events.enable(value & (TX | RX)),
+            _ => {}
+        }
+    }
+
+    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
+        u64::MAX
+    }
+
+    fn interrupt(&self) -> bool {
+        self.events.interrupt()
+    }
+}

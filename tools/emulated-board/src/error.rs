@@ -1,0 +1,29 @@
+//! Errors of the emulated board.
+
+use litex_pac::memories::MAIN_RAM;
+
+/// An error of an emulated board.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// An access of the host outside main memory.
+    #[error(
+        "memory access of {length} bytes at {address:#010x}: expected a range within {:#010x}..{:#010x}",
+        MAIN_RAM.base, MAIN_RAM.base + MAIN_RAM.size
+    )]
+    Address {
+        /// Address of the first byte, as the CPU sees it.
+        address: u32,
+        /// Number of bytes.
+        length: usize,
+    },
+    /// The expected output did not come in time.
+    #[error("expected {expected} within {cycles} cycles, found {got:?}")]
+    Timeout {
+        /// What was expected.
+        expected: String,
+        /// Time-out in cycles.
+        cycles: u64,
+        /// Output of the board during the wait.
+        got: String,
+    },
+}

@@ -1,0 +1,41 @@
+//! The emulated board: runs the firmware of the real board at about its speed.
+//!
+//! ```
+//! use emulated_board::EmulatedBoard;
+//!
+//! // An endless loop as firmware.
+//! let mut board = EmulatedBoard::fast(&0x0000_006f_u32.to_le_bytes())?;
+//! board.run(1000);
+//! assert!(board.instructions() > 0);
+//! # Ok::<(), emulated_board::Error>(())
+//! ```
+//!
+//! docs/emulated-board.md states what is exact and what is an estimate.
+
+#![forbid(unsafe_code)]
+
+mod board;
+mod bus;
+mod code;
+mod cpu;
+mod csr;
+mod decode;
+mod device;
+mod devices;
+mod error;
+mod events;
+mod memory;
+
+pub use board::EmulatedBoard;
+pub use device::Device;
+pub use devices::Frame;
+pub use error::Error;
+pub use events::Events;
+pub use memory::MainMemory;
+pub use virtual_mpu6050;
+
+/// The time in ns at the cycle `now` of the system clock.
+fn nanoseconds(now: u64) -> u64 {
+    let clock = u128::from(litex_pac::constants::CONFIG_CLOCK_FREQUENCY);
+    (u128::from(now) * 1_000_000_000 / clock) as u64
+}
