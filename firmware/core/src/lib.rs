@@ -20,6 +20,7 @@ pub mod console;
 pub mod feature;
 pub mod field;
 pub mod fixed;
+pub mod flash;
 pub mod follow;
 pub mod hand;
 pub mod i2c;

@@ -38,7 +38,7 @@ mod sender;
 mod state;
 mod window;
 
-pub use format::{MAX_LENGTH, Manifest, crc32};
+pub use format::{CRC_32, MAX_LENGTH, Manifest, crc32};
 pub use frame::MAX_FRAME;
 pub use party::Party;
 pub use receiver::Receiver;

@@ -7,6 +7,7 @@
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
 //! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
 //! | [`render`], [`scene`] | renders a frame by the model or by a board; the built-in scenes |
+//! | [`image`] | images for a board's SPI flash |
 //! | [`board`] | boards: serial port, or simulation |
 //! | [`mod@flash`], [`console`], [`transfer`] | protocols of the serial line: serial boot, commands, uploads |
 //! | [`wireframe`] | programs of the wireframe simulator |
@@ -26,6 +27,7 @@ pub mod formats;
 pub mod fuzz;
 pub mod generate;
 pub mod gesture;
+pub mod image;
 pub mod imu;
 pub mod model;
 pub mod normals;

@@ -41,5 +41,6 @@ tests! {
     replay: Replay,
     wireframe_text: WireframeText,
     wireframe_words: WireframeWords,
-    scene: Scene
+    scene: Scene,
+    flash: Flash
 }

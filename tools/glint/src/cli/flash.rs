@@ -7,17 +7,26 @@ use clap::Args;
 use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::flash;
+use glint::formats::read_file;
+use glint::image;
 use glint::render::{BoardRenderer, Route};
+use glint_core::flash::FIRMWARE;
 use glint_core::mesh::{MAX_NAME, is_name};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-/// Load a program onto a board through its BIOS, and start it.
+/// Load a program onto a board through its BIOS, and start it; with --spi, write an image to the board's SPI flash.
 ///
-/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in shorter pieces.
+/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in shorter pieces. With --spi, openFPGALoader writes the parts of the
+/// image, over the Urbana's USB port: an image without a bitstream leaves that of the flash as it is.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// Program to load, a flat binary.
+    /// Program to load, a flat binary; with --spi, an image that `glint image make` has made.
     program: PathBuf,
+    /// Write an image to the SPI flash of an Urbana by openFPGALoader.
+    #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
+    spi: bool,
     /// Board: `emulated`, `virtual` or a serial port.
     #[arg(long, default_value = "virtual")]
     board: BoardName,
@@ -81,6 +90,9 @@ fn parse_address(text: &str) -> Result<u32, String> {
 
 impl FlashArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        if self.spi {
+            return write_flash(&self.program);
+        }
         let program = std::fs::read(&self.program)
             .with_context(|| format!("{}: cannot be read", self.program.display()))?;
         let mut board: Box<dyn Board> = match &self.board {
@@ -109,6 +121,41 @@ impl FlashArguments {
             report.bytes, report.milliseconds, report.frames, report.retries
         ))
     }
+}
+
+/// The board of openFPGALoader that has the Urbana's FPGA and USB bridge; it has no entry for the Urbana.
+const LOADER_BOARD: &str = "arty_s7_50";
+
+/// Checks an image, and writes it to the SPI flash from its first part on.
+fn write_flash(path: &Path) -> anyhow::Result<()> {
+    let bytes = read_file(path)?;
+    let image = image::check(&bytes).map_err(|error| error.in_path(path))?;
+    let offset = match image.bitstream {
+        Some(_) => 0,
+        None => FIRMWARE,
+    };
+    // The loader tells a raw file by its name.
+    let mut file = tempfile::Builder::new().suffix(".bin").tempfile()?;
+    file.write_all(bytes.get(offset..).unwrap_or_default())?;
+    let status = Command::new("openFPGALoader")
+        .args(["--board", LOADER_BOARD, "--write-flash", "--offset"])
+        .arg(offset.to_string())
+        .arg(file.path())
+        .status();
+    let status = match status {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => anyhow::bail!(
+            "openFPGALoader: expected the program in PATH, found none; `apt-get install openfpgaloader` installs it"
+        ),
+        status => status.context("openFPGALoader")?,
+    };
+    anyhow::ensure!(
+        status.success(),
+        "openFPGALoader: expected success, found {status}; its messages are above"
+    );
+    say(format_args!(
+        "{} bytes at {offset:#x} of the flash",
+        bytes.len() - offset
+    ))
 }
 
 impl UploadArguments {

@@ -6,6 +6,7 @@ mod demo;
 mod field;
 mod flash;
 mod gesture;
+mod image;
 mod imu;
 mod output;
 mod render;
@@ -41,6 +42,8 @@ enum Command {
     #[command(subcommand)]
     Gesture(gesture::GestureCommand),
     #[command(subcommand)]
+    Image(image::ImageCommand),
+    #[command(subcommand)]
     Scene(scene::SceneCommand),
     #[command(subcommand)]
     Wireframe(wireframe::WireframeCommand),
@@ -59,6 +62,7 @@ impl Arguments {
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
             Command::Gesture(command) => command.run(),
+            Command::Image(command) => command.run(),
             Command::Scene(command) => command.run(),
             Command::Wireframe(command) => command.run(),
         }

@@ -18,6 +18,8 @@ pub const STATISTICS: &[&str] = &["json"];
 pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
 /// Extensions of a program of the wireframe simulator.
 pub const PROGRAM: &[&str] = &["wft", "wfb"];
+/// Extensions of an image for a flash.
+pub const IMAGE: &[&str] = &["bin", "img"];
 /// Extensions of a table.
 pub const TABLE: &[&str] = &["csv"];
 

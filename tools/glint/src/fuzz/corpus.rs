@@ -6,12 +6,15 @@ use crate::convert::{self, Options};
 use crate::error::Place;
 use crate::formats::write;
 use crate::generate;
+use crate::image;
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::calibration::Units;
+use glint_core::flash::CONTENTS;
 use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 use glint_core::wireframe::text::assemble;
+use glint_scene::{NAMES, Scene, built_in};
 
 /// Returns the seeds of a target. None exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
@@ -30,6 +33,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
             .filter_map(|text| assemble(text).ok())
             .collect(),
         Target::Scene => texts(&glint_scene::TEXTS),
+        Target::Flash => contents(),
     };
     seeds
         .into_iter()
@@ -128,6 +132,22 @@ fn still_log() -> Vec<u8> {
         );
     }
     log.into_bytes()
+}
+
+/// Contents of flash images: of each built-in scene, and of one with a mesh of its own.
+fn contents() -> Vec<Vec<u8>> {
+    let small = Scene::parse(
+        "small",
+        "small.toml",
+        "title = \"x\"\nmodel = \"sponge:0\"\ncamera = \"2.5 40 65\"\n",
+    );
+    let scenes = NAMES.into_iter().filter_map(built_in);
+    let image = |scene: Scene| {
+        let pieces = image::pieces(&[scene]).ok()?;
+        let image = image::make(&[], &[0; 64], &pieces).ok()?;
+        image.get(CONTENTS..).map(<[u8]>::to_vec)
+    };
+    scenes.chain(small.ok()).filter_map(image).collect()
 }
 
 /// Logs of 200, 30 and 1 samples in a board's format, with different options. The longer two have rest, motion, repeated time

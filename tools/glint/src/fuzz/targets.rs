@@ -1,5 +1,6 @@
 //! Fuzz targets.
 
+use super::flash;
 use crate::convert::{self, Options};
 use crate::formats::{glm, obj, ply, stl};
 use crate::imu::{log, replay};
@@ -39,6 +40,8 @@ pub enum Target {
     WireframeWords,
     /// Scene files.
     Scene,
+    /// The contents of flash images, and a firmware with its header.
+    Flash,
 }
 
 /// Result of a target on an input.
@@ -52,7 +55,7 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -64,12 +67,14 @@ impl Target {
         Self::WireframeText,
         Self::WireframeWords,
         Self::Scene,
+        Self::Flash,
     ];
 
     /// Words with a meaning in the target's format, for the mutator to insert.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => &[],
+            Self::Flash => &["scene", "field", "menger:4", "torus", "lamp", "start", "\n"],
             Self::Console => &[
                 "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
                 "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
@@ -161,6 +166,7 @@ impl Target {
                     *last = Instruction::End.encode();
                 }
             }
+            Self::Flash => flash::repair(input),
             Self::Console
             | Self::Obj
             | Self::Ply
@@ -199,6 +205,8 @@ impl Target {
             Self::WireframeText => run_program(Form::Text, input),
             Self::WireframeWords => run_program(Form::Binary, input),
             Self::Scene => run_scene(input),
+            Self::Flash if flash::run(input) => Verdict::Accepted,
+            Self::Flash => Verdict::Rejected,
         }
     }
 }

@@ -4,6 +4,7 @@ mod attitudes;
 mod common;
 mod conversions;
 mod fields;
+mod images;
 mod input;
 mod meshes;
 mod output;

@@ -1,0 +1,211 @@
+//! Flash images: encoding, and every kind of damage.
+
+use glint_core::flash::{
+    CONTENTS, Contents, EncodeError, FIRMWARE, FlashError, Image, Kind, MAX_BYTES, MAX_FIRMWARE,
+    MAX_ITEMS, Piece, encode,
+};
+use glint_core::wire::crc32;
+
+fn piece(kind: Kind, name: &str, bytes: &[u8]) -> Piece {
+    Piece {
+        kind,
+        name: name.to_owned(),
+        bytes: bytes.to_vec(),
+    }
+}
+
+fn pieces() -> Vec<Piece> {
+    vec![
+        piece(Kind::Mesh, "ring", &[7; 40]),
+        piece(Kind::Scene, "lamp", b"size 640 360\nfield sphere:0.6\n"),
+        piece(Kind::List, "demo", b"lamp\n"),
+    ]
+}
+
+fn bitstream() -> Vec<u8> {
+    let mut bytes = vec![0xff; 64];
+    bytes.extend([0xaa, 0x99, 0x55, 0x66, 1, 2, 3]);
+    bytes
+}
+
+fn firmware() -> Vec<u8> {
+    (0..1000_u32).map(|byte| (byte * 31) as u8).collect()
+}
+
+fn image() -> Vec<u8> {
+    encode(&bitstream(), &firmware(), &pieces()).unwrap()
+}
+
+fn error(bytes: &[u8]) -> String {
+    Image::new_checked(bytes).unwrap_err().to_string()
+}
+
+#[test]
+fn an_image_has_its_parts_again() {
+    let bytes = image();
+    let image = Image::new_checked(&bytes).unwrap();
+    assert_eq!(image.bitstream, Some(&bitstream()[..]));
+    assert_eq!(image.firmware, firmware());
+    let items: Vec<Piece> = image
+        .contents
+        .items()
+        .map(|item| piece(item.kind, item.name, item.checked().unwrap()))
+        .collect();
+    assert_eq!(items, pieces());
+    let lamp = image.contents.find(Kind::Scene, "lamp").unwrap();
+    assert_eq!(lamp.text(), Ok("size 640 360\nfield sphere:0.6\n"));
+    assert_eq!(image.contents.find(Kind::List, "lamp"), None);
+    // A board sees the whole flash, with erased bytes behind the contents.
+    let mut flash = bytes.clone();
+    flash.resize(MAX_BYTES, 0xff);
+    let contents = Contents::new_checked(&flash[CONTENTS..]).unwrap();
+    assert_eq!(contents, image.contents);
+}
+
+/// The header before the firmware is what LiteX's BIOS reads: the length, and the CRC-32 that its `crc32.c` computes, which is zlib's.
+#[test]
+fn the_firmware_has_the_header_of_flash_boot() {
+    let bytes = image();
+    let word = |at: usize| u32::from_le_bytes(bytes[at..][..4].try_into().unwrap());
+    assert_eq!(word(FIRMWARE), 1000);
+    assert_eq!(word(FIRMWARE + 4), crc32(&firmware()));
+    assert_eq!(crc32(b"123456789"), 0xcbf4_3926);
+    assert_eq!(bytes[FIRMWARE + 8..][..1000], firmware());
+}
+
+#[test]
+fn an_image_without_bitstream_and_items_is_valid() {
+    let bytes = encode(&[], &firmware(), &[]).unwrap();
+    let image = Image::new_checked(&bytes).unwrap();
+    assert_eq!(image.bitstream, None);
+    assert_eq!(image.contents.items().count(), 0);
+}
+
+#[test]
+fn every_damaged_byte_outside_the_gaps_is_found() {
+    let good = image();
+    let length = good.len();
+    let starts = [0..3, 64..68, FIRMWARE..FIRMWARE + 1008, CONTENTS..length];
+    for place in starts.into_iter().flatten() {
+        let mut bytes = good.clone();
+        bytes[place] ^= 0x20;
+        // Bytes of a bitstream other than its word carry no checksum here; the FPGA checks its own.
+        let is_gap = place < 64 || bytes_between_items(&good, place);
+        assert_eq!(Image::new_checked(&bytes).is_ok(), is_gap, "{place:#x}");
+    }
+}
+
+/// Whether the byte fills the gap behind an item.
+fn bytes_between_items(good: &[u8], place: usize) -> bool {
+    let end = CONTENTS + 16 + 3 * 48;
+    (end + 40..end + 48).contains(&place) || {
+        let lamp = end + 48 + pieces()[1].bytes.len();
+        (lamp..lamp.next_multiple_of(16)).contains(&place) && place < good.len()
+    }
+}
+
+#[test]
+fn a_truncated_image_is_refused() {
+    let good = image();
+    for length in (0..good.len())
+        .step_by(100_003)
+        .chain(good.len() - 300..good.len())
+    {
+        assert!(Image::new_checked(&good[..length]).is_err(), "{length}");
+    }
+    assert_eq!(
+        error(&good[..good.len() - 1]),
+        "flash byte 0x400004: expected at most 244 bytes of contents, as there are, found 245"
+    );
+    assert_eq!(
+        error(&[]),
+        "flash byte 0x0: expected at least 4194320 bytes, found 0"
+    );
+}
+
+#[test]
+fn errors_name_place_and_expectation() {
+    let damaged = |place: usize, new: &[u8]| {
+        let mut bytes = image();
+        bytes[place..][..new.len()].copy_from_slice(new);
+        error(&bytes)
+    };
+    for (place, new, message) in [
+        (
+            66,
+            &[0][..],
+            "flash byte 0x0: expected an erased slot, or a bitstream with its word 0xaa995566, found 0xffffffff",
+        ),
+        (
+            FIRMWARE,
+            &[31, 0],
+            "flash byte 0x300000: expected at least 32 bytes of firmware, found 31",
+        ),
+        (
+            FIRMWARE,
+            &[0xff; 4],
+            "flash byte 0x300000: expected at most 1048568 bytes of firmware, found 4294967295",
+        ),
+        (
+            CONTENTS,
+            b"X",
+            "flash byte 0x400000: expected \"GFC1\", found \"XFC1\"",
+        ),
+        (
+            CONTENTS + 8,
+            &[65],
+            "flash byte 0x400008: expected at most 64 items, found 65",
+        ),
+    ] {
+        assert_eq!(damaged(place, new), message);
+    }
+    assert!(damaged(FIRMWARE + 8, &[1]).starts_with("flash byte 0x300004: expected the CRC-32 0x"));
+    assert!(
+        damaged(CONTENTS + 32, b"Z").starts_with("flash byte 0x40000c: expected the CRC-32 0x")
+    );
+}
+
+#[test]
+fn parts_that_the_format_refuses_are_not_encoded() {
+    let one = |piece: Piece| encode(&[], &firmware(), &[piece]).unwrap_err().to_string();
+    for name in [
+        "",
+        "a b",
+        "a-name-of-25-characters-x",
+        "a-name-of-more-than-32-characters-here",
+    ] {
+        let message = one(piece(Kind::List, name, b""));
+        assert!(message.contains("expected a name of 1 to 24"), "{message}");
+    }
+    let message = one(piece(Kind::Scene, "x", b"size 1\x07"));
+    assert!(
+        message.contains("expected ASCII text") && message.ends_with("found 0x07"),
+        "{message}"
+    );
+    let message = one(piece(Kind::Scene, "x", &[b'x'; 641]));
+    assert!(
+        message.contains("expected at most 640 bytes in a line, found 641"),
+        "{message}"
+    );
+    assert_eq!(
+        encode(&vec![0; FIRMWARE + 1], &firmware(), &[]),
+        Err(EncodeError::Long("bitstream", FIRMWARE, FIRMWARE + 1))
+    );
+    let long = vec![0; MAX_FIRMWARE as usize + 1];
+    assert_eq!(
+        encode(&[], &long, &[]),
+        Err(EncodeError::Long("firmware", long.len() - 1, long.len()))
+    );
+    assert!(encode(&[], &long[1..], &[]).is_ok());
+    assert!(matches!(
+        encode(&[], &[0; 31], &[]),
+        Err(EncodeError::Part(FlashError { found: 31, .. }))
+    ));
+    let many = vec![piece(Kind::Mesh, "x", &[]); MAX_ITEMS as usize + 1];
+    assert_eq!(
+        encode(&[], &firmware(), &many),
+        Err(EncodeError::Items(64, 65))
+    );
+    let large = piece(Kind::Mesh, "x", &vec![0; MAX_BYTES - CONTENTS]);
+    assert!(one(large).contains("expected at most 16777216 bytes"));
+}

@@ -1,0 +1,214 @@
+//! Images for a board's SPI flash: made of a bitstream, a firmware and scenes, and checked whole.
+
+use crate::error::{FormatError, InputError, Place, quote};
+use crate::formats::glm;
+use crate::scene;
+use glint_core::console::{Command, ObjectAction};
+use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
+use glint_core::mesh::is_name;
+use glint_scene::Scene;
+
+/// Name of the list of scenes in an image, the first of which the board shows after power-up.
+pub const START: &str = "start";
+/// Name of the mesh that every board has beside the shapes.
+const CUBE: &str = "cube";
+
+/// The bytes for the FPGA in a bitstream file: all of a raw file, those behind the header of a `.bit` file.
+///
+/// # Errors
+/// The header is damaged.
+pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
+    // A field of nine bytes, and one of a single byte, which is no part of a raw bitstream.
+    const HEADER: [u8; 13] = [
+        0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
+    ];
+    let Some(mut rest) = file.strip_prefix(&HEADER) else {
+        return Ok(file);
+    };
+    let damaged = |rest: &[u8], expected: &str| {
+        let place = Place::Byte(file.len() - rest.len());
+        FormatError::new(place, expected, quote(rest.get(..8).unwrap_or(rest)))
+    };
+    // Design, part, date and time.
+    for key in *b"abcd" {
+        let field = rest
+            .split_first_chunk()
+            .and_then(|(&[found, high, low], rest)| {
+                (found == key).then_some(())?;
+                rest.get(usize::from(u16::from_be_bytes([high, low]))..)
+            });
+        let expected = format!("the field {} of a bitstream's header", key.escape_ascii());
+        rest = field.ok_or_else(|| damaged(rest, &expected))?;
+    }
+    let data = rest
+        .split_first_chunk()
+        .and_then(|(&[key, length @ ..], data): (&[u8; 5], _)| {
+            let is_whole = data.len() == u32::from_be_bytes(length) as usize;
+            (key == b'e' && is_whole).then_some(data)
+        });
+    data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
+}
+
+/// The items for scenes: each mesh that boards have not built in, each scene, and the list of all of them.
+///
+/// # Errors
+/// A mesh cannot be read.
+pub fn pieces(scenes: &[Scene]) -> Result<Vec<Piece>, InputError> {
+    let of = |scene: &Scene| match scene.scenes() {
+        [] => vec![scene.clone()],
+        parts => parts.to_vec(),
+    };
+    let mut meshes: Vec<Piece> = Vec::new();
+    let (mut all, mut list): (Vec<Piece>, String) = Default::default();
+    for scene in scenes.iter().flat_map(of) {
+        for name in scene::meshes(&scene) {
+            if !is_built_in(name) && meshes.iter().all(|mesh| mesh.name != name) {
+                check_name(name)?;
+                meshes.push(piece(Kind::Mesh, name, scene::mesh(name)?));
+            }
+        }
+        list += &format!("{}\n", scene.name());
+        if all.iter().all(|known| known.name != scene.name()) {
+            check_name(scene.name())?;
+            let lines: String = scene.lines().map(|line| format!("{line}\n")).collect();
+            all.push(piece(Kind::Scene, scene.name(), lines.into_bytes()));
+        }
+    }
+    meshes.extend(all);
+    if !list.is_empty() {
+        meshes.push(piece(Kind::List, START, list.into_bytes()));
+    }
+    Ok(meshes)
+}
+
+fn piece(kind: Kind, name: &str, bytes: Vec<u8>) -> Piece {
+    Piece {
+        kind,
+        name: name.to_owned(),
+        bytes,
+    }
+}
+
+fn check_name(name: &str) -> Result<(), InputError> {
+    if is_name(name) {
+        return Ok(());
+    }
+    let expected = "a name of 1 to 24 visible characters of ASCII";
+    Err(FormatError::whole(expected, quote(name.as_bytes())).in_file("image"))
+}
+
+fn is_built_in(mesh: &str) -> bool {
+    mesh == CUBE || scene::is_shape(mesh)
+}
+
+/// Makes an image, whole and checked.
+///
+/// # Errors
+/// A part is too long, or has not its format.
+pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u8>, FormatError> {
+    let image = encode(bitstream, firmware, pieces).map_err(|error| match error {
+        EncodeError::Part(error) => format_error(error),
+        EncodeError::Long(part, limit, found) => FormatError::whole(
+            format!("at most {limit} bytes of {part}"),
+            found.to_string(),
+        ),
+        EncodeError::Items(limit, found) => {
+            FormatError::whole(format!("at most {limit} items"), found.to_string())
+        }
+    })?;
+    check(&image)?;
+    Ok(image)
+}
+
+/// Checks an image: its parts, its checksums, its meshes, the commands of its scenes, and the names in its lists.
+///
+/// # Errors
+/// The first violation.
+pub fn check(bytes: &[u8]) -> Result<Image<'_>, FormatError> {
+    let image = Image::new_checked(bytes).map_err(format_error)?;
+    check_contents(&image.contents)?;
+    Ok(image)
+}
+
+/// Checks the contents of an image.
+///
+/// # Errors
+/// The first violation.
+pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
+    for item in contents.items() {
+        match item.kind {
+            Kind::Mesh => {
+                let bytes = item.checked().map_err(format_error)?;
+                glm::check(bytes).map_err(|error| in_item(&item, error))?;
+            }
+            Kind::Scene => {
+                let lines = item.text().map_err(format_error)?.lines();
+                for (number, line) in lines.enumerate() {
+                    check_line(contents, line).map_err(|(expected, found)| {
+                        let place = Place::Line(number + 1);
+                        in_item(&item, FormatError::new(place, expected, found))
+                    })?;
+                }
+            }
+            Kind::List => {
+                let names = item.text().map_err(format_error)?.lines();
+                for (number, name) in names.enumerate() {
+                    if contents.find(Kind::Scene, name).is_none() {
+                        let (place, found) = (Place::Line(number + 1), quote(name.as_bytes()));
+                        let error = FormatError::new(place, "a scene of the image", found);
+                        return Err(in_item(&item, error));
+                    }
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks a command of a scene. Returns what was expected, and found.
+fn check_line(contents: &Contents, line: &str) -> Result<(), (String, String)> {
+    let found = || quote(line.as_bytes());
+    let command = Command::parse(line);
+    let command = command.map_err(|error| (format!("a command ({error})"), found()))?;
+    let mesh = match command {
+        Some(Command::Scene { name }) => name,
+        Some(Command::Object {
+            action: Some(ObjectAction::Add { mesh, .. }),
+        }) => Some(mesh),
+        Some(
+            Command::Load { .. } | Command::Program { upload: Some(_) } | Command::Replay { .. },
+        ) => {
+            return Err(("a command without an upload".to_owned(), found()));
+        }
+        Some(_) => None,
+        None => return Err(("a command".to_owned(), found())),
+    };
+    match mesh {
+        Some(name) if !is_built_in(name) && contents.find(Kind::Mesh, name).is_none() => {
+            Err(("a mesh of the image or a built-in one".to_owned(), found()))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Adds kind and name of the item to an error in it.
+fn in_item(item: &Item, error: FormatError) -> FormatError {
+    let Item { kind, name, .. } = item;
+    let FormatError {
+        place,
+        expected,
+        found,
+    } = error;
+    FormatError::whole(format!("{} {name}: {place}{expected}", kind.name()), found)
+}
+
+fn format_error(error: FlashError) -> FormatError {
+    let mut found = String::new();
+    // Writing to a `String` does not fail.
+    let _ = error.write_found(&mut found);
+    FormatError::new(
+        Place::Byte(error.offset as usize),
+        error.expected.to_string(),
+        found,
+    )
+}

@@ -1,0 +1,218 @@
+//! Images for SPI flash: making, listing, checking and writing them.
+
+use crate::common::{folder, glint, refused, succeed};
+use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::process::Command;
+
+/// Makes `board.bin` of a firmware and scenes.
+fn make(folder: &Path, scenes: &str) -> String {
+    fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
+    succeed(
+        folder,
+        &[
+            "image",
+            "make",
+            "--firmware",
+            "firmware.bin",
+            "--scene",
+            scenes,
+            "--out",
+            "board.bin",
+        ],
+    )
+}
+
+#[test]
+fn an_image_has_scenes_in_order_and_their_meshes() {
+    let folder = folder("image");
+    fs::write(
+        folder.join("gears.toml"),
+        "title = \"A gear\"\nmodel = \"gear\"\ncamera = \"2.5 40 65\"\n",
+    )
+    .unwrap();
+    assert!(make(&folder, "menger,gears.toml,demo").starts_with("board.bin: "));
+    assert_eq!(
+        succeed(&folder, &["image", "check", "board.bin"]),
+        "board.bin: valid\n"
+    );
+    let bytes = fs::read(folder.join("board.bin")).unwrap();
+    let image = Image::new_checked(&bytes).unwrap();
+    assert_eq!((image.bitstream, image.firmware), (None, &[0x13; 400][..]));
+    let text = |kind, name| image.contents.find(kind, name).unwrap().text().unwrap();
+    assert_eq!(
+        text(Kind::List, "start"),
+        "menger\ngears\nholoforge\nwireframe\nsimplegpu\npoor-mans-vr\ncubes\n"
+    );
+    assert_eq!(
+        text(Kind::Scene, "menger"),
+        "size 640 360\ncamera 4 30 60\nprepass on\nfield menger:4\n"
+    );
+    let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
+    assert_eq!(kinds.iter().filter(|kind| **kind == Kind::Mesh).count(), 1);
+    let list = succeed(&folder, &["image", "list", "board.bin"]);
+    assert!(
+        list.lines().next().unwrap().starts_with("firmware "),
+        "{list}"
+    );
+    assert!(list.contains("mesh      gear  "), "{list}");
+    let json = succeed(&folder, &["image", "list", "--json", "board.bin"]);
+    let parts: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(parts[0]["offset"], FIRMWARE);
+    assert_eq!(parts[1]["kind"], "mesh");
+}
+
+#[test]
+fn the_header_of_a_bit_file_is_left_out() {
+    let folder = folder("image-bitstream");
+    let data = [[0xff; 32].as_slice(), &[0xaa, 0x99, 0x55, 0x66], &[5; 20]].concat();
+    let mut file = vec![
+        0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
+    ];
+    for (key, text) in [
+        (b'a', "glint"),
+        (b'b', "7s50"),
+        (b'c', "date"),
+        (b'd', "time"),
+    ] {
+        file.extend([key, 0, text.len() as u8]);
+        file.extend(text.as_bytes());
+    }
+    file.extend([b'e', 0, 0, 0, data.len() as u8]);
+    file.extend(&data);
+    fs::write(folder.join("top.bit"), &file).unwrap();
+    fs::write(folder.join("top.bin"), &data).unwrap();
+    fs::write(folder.join("cut.bit"), &file[..file.len() - 1]).unwrap();
+    fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
+    let arguments = |bitstream| {
+        let start = ["image", "make", "--firmware", "firmware.bin", "--bitstream"];
+        let end = [bitstream, "--out", "board.bin"];
+        [&start[..], &end].concat()
+    };
+    for bitstream in ["top.bit", "top.bin"] {
+        succeed(&folder, &arguments(bitstream));
+        let bytes = fs::read(folder.join("board.bin")).unwrap();
+        assert!(bytes.starts_with(&data), "{bitstream}");
+        assert_eq!(
+            Image::new_checked(&bytes).unwrap().bitstream,
+            Some(&data[..])
+        );
+    }
+    let error = refused(&folder, &arguments("cut.bit"));
+    assert!(
+        error.contains("cut.bit: byte 42: expected the field e with all bytes"),
+        "{error}"
+    );
+    fs::write(folder.join("text.bin"), "no bitstream").unwrap();
+    let error = refused(&folder, &arguments("text.bin"));
+    assert!(
+        error.contains("expected an erased slot, or a bitstream"),
+        "{error}"
+    );
+}
+
+#[test]
+fn damaged_images_are_refused_with_the_place() {
+    let folder = folder("image-damaged");
+    make(&folder, "cubes");
+    let good = fs::read(folder.join("board.bin")).unwrap();
+    let check = |bytes: &[u8]| {
+        fs::write(folder.join("bad.bin"), bytes).unwrap();
+        refused(&folder, &["image", "check", "bad.bin"])
+    };
+    let cut = check(&good[..CONTENTS + 100]);
+    assert!(
+        cut.contains(
+            "bad.bin: byte 4194308: expected at most 100 bytes of contents, as there are, found"
+        ),
+        "{cut}"
+    );
+    let mut damaged = good.clone();
+    damaged[FIRMWARE + 20] ^= 1;
+    let error = check(&damaged);
+    assert!(
+        error.contains("byte 3145732: expected the CRC-32 0x"),
+        "{error}"
+    );
+    let mut damaged = good;
+    let last = damaged.len() - 1;
+    damaged[last] ^= 1;
+    let error = check(&damaged);
+    assert!(error.contains("expected the CRC-32 0x"), "{error}");
+    assert!(refused(&folder, &["image", "list", "bad.bin"]).contains("expected the CRC-32"));
+    // A damaged image is not written, whether there is a loader or not.
+    assert!(refused(&folder, &["flash", "--spi", "bad.bin"]).contains("expected the CRC-32"));
+}
+
+/// Runs `glint flash --spi board.bin` with `folder` as the only folder of programs.
+fn flash(folder: &Path) -> (bool, String) {
+    let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["flash", "--spi", "board.bin"])
+        .current_dir(folder)
+        .env("PATH", folder)
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.success(), String::from_utf8(text).unwrap())
+}
+
+/// Without openFPGALoader the error says how to install it. What it is asked to write is seen by a program in its place, because the
+/// loader itself needs a board.
+#[test]
+fn an_image_without_a_bitstream_is_written_behind_its_slot() {
+    let folder = folder("image-flash");
+    make(&folder, "cubes");
+    let (success, said) = flash(&folder);
+    assert!(!success);
+    assert_eq!(
+        said,
+        "error: openFPGALoader: expected the program in PATH, found none; `apt-get install openfpgaloader` installs it\n"
+    );
+    let loader = folder.join("openFPGALoader");
+    fs::write(
+        &loader,
+        "#!/bin/sh\nPATH=/bin:/usr/bin\necho \"$@\" > arguments\nfor file; do :; done\ncp \"$file\" written\n",
+    )
+    .unwrap();
+    fs::set_permissions(&loader, fs::Permissions::from_mode(0o755)).unwrap();
+    let (success, said) = flash(&folder);
+    assert!(success, "{said}");
+    let arguments = fs::read_to_string(folder.join("arguments")).unwrap();
+    assert!(
+        arguments.starts_with("--board arty_s7_50 --write-flash --offset 3145728 /")
+            && arguments.ends_with(".bin\n"),
+        "{arguments}"
+    );
+    let image = fs::read(folder.join("board.bin")).unwrap();
+    assert_eq!(fs::read(folder.join("written")).unwrap(), image[FIRMWARE..]);
+    fs::write(&loader, "#!/bin/sh\nexit 3\n").unwrap();
+    let (success, said) = flash(&folder);
+    assert!(!success && said.contains("found exit status: 3"), "{said}");
+}
+
+#[test]
+fn the_firmware_must_be_one_that_the_bios_boots() {
+    let folder = folder("image-firmware");
+    fs::write(folder.join("short.bin"), [0; 31]).unwrap();
+    fs::write(folder.join("long.bin"), vec![0; 1 << 20]).unwrap();
+    let make = |firmware: &str| {
+        let arguments = [
+            "image",
+            "make",
+            "--firmware",
+            firmware,
+            "--out",
+            "board.bin",
+        ];
+        refused(&folder, &arguments)
+    };
+    assert!(make("short.bin").contains("expected at least 32 bytes of firmware, found 31"));
+    assert!(make("long.bin").contains("expected at most 1048568 bytes of firmware, found 1048576"));
+    assert!(
+        !glint(&folder, &["image", "check", "board.bin"])
+            .status
+            .success()
+    );
+}
