@@ -270,7 +270,8 @@ pub struct Vertex {
 }
 
 impl Vertex {
-    fn from_bytes(bytes: &[u8; RECORD]) -> Self {
+    /// The vertex with this record in memory.
+    pub fn from_bytes(bytes: &[u8; RECORD]) -> Self {
         let [px, py, pz, nx, ny, nz, colour, _] = halves(bytes);
         Self {
             position: [px, py, pz].map(|x| x as i16),
@@ -294,7 +295,8 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    fn from_bytes(bytes: &[u8; RECORD]) -> Self {
+    /// The triangle with this record in memory.
+    pub fn from_bytes(bytes: &[u8; RECORD]) -> Self {
         let [a, b, c, colour, nx, ny, nz, flags] = halves(bytes);
         Self {
             indices: [a, b, c],

@@ -1,6 +1,8 @@
 //! Tests of distance fields in text form.
 
-use glint_core::field::{Field, FieldError, KINDS, MAX_SPHERES, Primitive, Sphere, Spheres};
+use glint_core::field::{
+    Field, FieldError, Flat, FlatConstants, KINDS, MAX_SPHERES, Primitive, Solid, Sphere, Spheres,
+};
 use glint_core::fixed::Q32_32;
 use proptest::prelude::*;
 
@@ -80,4 +82,30 @@ fn mistakes_say_what_was_expected() {
         let error = Field::parse(text).expect_err(text);
         assert_eq!(error.to_string(), expected);
     }
+}
+
+/// A flat solid is what its constants in the gateware's registers say.
+#[test]
+fn flat_solids_follow_from_their_constants() {
+    let mut kinds = vec![];
+    for example in Primitive::EXAMPLES
+        .into_iter()
+        .chain(["menger:1", "menger:6"])
+    {
+        let Ok(Field::Primitive(primitive)) = Field::parse(example) else {
+            panic!("{example}");
+        };
+        let Solid::Flat(flat) = primitive.placed().solid else {
+            continue;
+        };
+        assert_eq!(Flat::of(&flat.constants()), Some(flat), "{example}");
+        kinds.push(flat.constants().kind);
+    }
+    kinds.dedup();
+    assert_eq!(kinds, [0, 1, 2, 0]);
+    let unknown = FlatConstants {
+        kind: 3,
+        ..FlatConstants::default()
+    };
+    assert_eq!(Flat::of(&unknown), None);
 }

@@ -3,7 +3,10 @@
 //! A line has one pixel in each column if its end points are further apart horizontally than vertically, else one in each
 //! row. This axis is its *major* axis, the other one its *minor* axis. Which pixels belong to it is the diamond-exit rule:
 //! those whose diamond |x| + |y| < 1/2 pixel about the centre the way from the first end point to the second one leaves.
-//! [`Line::new`] is the set-up, [`Line::pixels`] walks the part in a rectangle, and [`draw`] writes its pixels.
+//! [`Line::new`] is the set-up, [`Line::pixels`] walks the part in a rectangle, and [`draw`] writes its pixels. The engine cuts lines into
+//! [`Piece`]s.
+
+mod piece;
 
 use glint_core::colour::Rgb565;
 
@@ -11,6 +14,8 @@ use crate::frame_buffer::FrameBuffer;
 use crate::triangle::ScreenVertex;
 use crate::triangle::rounding::nearest;
 use crate::triangle::setup::Bounds;
+
+pub use piece::{Piece, band_bounds};
 
 /// End points are in −2048 ≤ x, y < 2048 pixels: s12.8.
 const REACH: core::ops::Range<i32> = -(1 << 19)..1 << 19;
@@ -60,6 +65,27 @@ impl Segment {
             b.x as u32, b.y as u32, w[1], bias as u32,
         ];
         words
+    }
+
+    /// The segment with these [`words`](Self::words) in memory, of which bits beyond the fields have no effect. A segment over everything
+    /// has the depth test there, and the same pixels.
+    #[must_use]
+    pub fn from_words(words: [u32; Self::WORDS]) -> Self {
+        let [ax, ay, aw, colour, bx, by, bw, bias] = words;
+        let end = |x: u32, y: u32, w: u32| {
+            // s12.8 and u18.6.
+            let [x, y] = [x, y].map(|place| (place << 12) as i32 >> 12);
+            ScreenVertex {
+                x,
+                y,
+                w: w & 0xFF_FFFF,
+            }
+        };
+        Self {
+            ends: [end(ax, ay, aw), end(bx, by, bw)],
+            colour: Rgb565(colour as u16),
+            depth: LineDepth::Tested { bias: bias as u16 },
+        }
     }
 
     /// What precedes `segments` segments in memory, as long as a segment.
@@ -318,9 +344,10 @@ impl Iterator for LinePixels {
         let line = &mut self.line;
         line.count -= 1;
         line.start[0] += 1;
-        line.error += line.span[1];
+        // A line from damaged memory may wrap.
+        line.error = line.error.wrapping_add(line.span[1]);
         if line.error >= 0 {
-            line.error -= line.span[0];
+            line.error = line.error.wrapping_sub(line.span[0]);
             line.start[1] += 1;
         }
         line.depth += line.depth_step;
@@ -352,16 +379,25 @@ pub fn draw(
 ) -> u32 {
     let mut drawn = 0;
     for pixel in pixels(ends, target) {
-        // The pixel is in the picture, so both numbers are positive and both places exist.
-        let at = pixel.row as usize * target.width as usize + pixel.column as usize;
+        drawn += u32::from(target.draw_pixel(&pixel, depth, colour));
+    }
+    drawn
+}
+
+impl FrameBuffer<'_> {
+    /// Draws a pixel of a line, which is in the picture. Returns whether it passed the depth test.
+    #[inline]
+    fn draw_pixel(&mut self, pixel: &LinePixel, depth: LineDepth, colour: Rgb565) -> bool {
+        // Both numbers are positive and both places exist.
+        let at = pixel.row as usize * self.width as usize + pixel.column as usize;
         let code = pixel.code(depth);
-        if let (Some(stored), Some(place)) = (target.depth.get_mut(at), target.colour.get_mut(at))
+        if let (Some(stored), Some(place)) = (self.depth.get_mut(at), self.colour.get_mut(at))
             && code >= *stored
         {
             *stored = code;
             *place = colour.0;
-            drawn += 1;
+            return true;
         }
+        false
     }
-    drawn
 }

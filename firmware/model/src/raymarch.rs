@@ -31,7 +31,7 @@ pub use lights::{Light, Lights};
 pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
 pub use paint::paint;
 pub use palette::Palette;
-pub use prepass::Cones;
+pub use prepass::{Cones, block_for};
 pub use ray::{Ray, RayResult, State};
 pub use render::{FieldStats, compose, render_field, rgb565};
 pub use setup::{Eye, FieldSetup};

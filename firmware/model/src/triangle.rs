@@ -4,6 +4,7 @@
 //! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles
 //! that the engine keeps in memory, [`vertex_cache`] tells which vertices it fetches.
 
+mod classify;
 pub mod clip;
 pub mod descriptor;
 mod exceptions;
@@ -23,11 +24,12 @@ pub mod vertex;
 pub mod vertex_cache;
 pub mod volume;
 
+pub use classify::Path;
 pub use exceptions::clip_exceptions;
 pub use mesh_light::MeshLight;
 pub use mesh_setup::MeshSetup;
 pub use object::Placement;
-pub use primitive::Options;
+pub use primitive::{Options, Placed};
 pub use render::{
     DrawnTriangle, Part, Stats, draw_parts, project_chunk, render, set_up_parts, trace, trace_frame,
 };

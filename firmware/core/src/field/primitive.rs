@@ -135,6 +135,14 @@ macro_rules! flat_solids {
                     $(Self::$solid(solid) => solid.constants(),)*
                 }
             }
+
+            /// The solid with these constants; `None` for an unknown kind.
+            pub fn of(constants: &FlatConstants) -> Option<Self> {
+                match constants.kind {
+                    $($solid::CODE => Some(Self::$solid($solid::of(constants))),)*
+                    _ => None,
+                }
+            }
         }
 
         $(impl From<$solid> for Flat {

@@ -94,7 +94,7 @@ impl<S> Placed<S> {
 }
 
 /// A solid with flat faces, which one module of the gateware evaluates.
-pub trait FlatSolid {
+pub trait FlatSolid: Sized {
     /// The solid's number in the raymarcher's register field `solid.kind`, and the number of its bit in `caps.flat`.
     const CODE: u8;
 
@@ -104,6 +104,9 @@ pub trait FlatSolid {
 
     /// Returns the solid's constants in the form of the gateware's registers.
     fn constants(&self) -> FlatConstants;
+
+    /// Returns the solid with these constants, as the gateware takes them from its registers; constants of other solids have no effect.
+    fn of(constants: &FlatConstants) -> Self;
 }
 
 /// The constants of a flat solid. Each constant has the name of its register or register field in the raymarcher, and is 0 if the

@@ -55,7 +55,7 @@ impl Cones {
 
 /// Exponent of the block size of a picture, 2 to 4: blocks have 2^exponent pixels each way, and this is the smallest size
 /// for which the cones of all eyes fit the table.
-pub(super) const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
+pub const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;
     while block < 4 && eyes * (width >> block) * (height >> block) > CONES {
         block += 1;

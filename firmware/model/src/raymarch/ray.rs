@@ -258,7 +258,8 @@ impl FieldSetup {
     pub fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
-            self.eyes[ray.eye].origin[i] + (way >> 17) as i32
+            // The sum wraps only for constants that are not those of a frame.
+            self.eyes[ray.eye].origin[i].wrapping_add((way >> 17) as i32)
         })
     }
 

@@ -30,7 +30,6 @@ pub struct Eye {
 
 /// The constants of a frame (formats.md, "Distance fields").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub struct FieldSetup {
     /// Width of the picture in pixels.
     pub width: u32,

@@ -1,15 +1,22 @@
 //! Descriptors and band lists, the input of the raster pass (docs/formats.md).
 
+mod contents;
+
+use core::ops::RangeInclusive;
+
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::machine::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
 use glint_core::picture::Size;
 
+use crate::line::Piece;
 use crate::triangle::setup::{Plane, Setup};
+
+pub use contents::Contents;
 
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
-/// A triangle after its setup, packed into words of 32 bits. The words for smooth shading, with the planes of light, come
+/// A triangle after its setup, or a piece of a line, packed into words of 32 bits. The words for smooth shading, with the planes of light, come
 /// last: gateware without smooth shading reads only the words before them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
@@ -28,6 +35,11 @@ pub const fn words(capability: Shading) -> usize {
         Shading::Smooth => SMOOTH_WORDS,
     }
 }
+
+/// The bits of a descriptor that mark a piece of a line.
+const PIECE: i64 = 3;
+/// Half a depth code, 14 fraction bits, which the depth of a piece includes.
+const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
     /// Packs a triangle; `colour` is its colour under flat shading.
@@ -56,6 +68,44 @@ impl Descriptor {
             bits.put(1, 1);
         }
         Self { words: bits.words }
+    }
+
+    /// Packs a piece of a line, whose first pixel is in the picture.
+    pub fn of_piece(piece: &Piece) -> Self {
+        let line = &piece.line;
+        let [major, minor] = line.span;
+        let [left, up] = if line.x_major {
+            line.backward
+        } else {
+            [line.backward[1], line.backward[0]]
+        };
+        let [column, row] = piece.first();
+        let mut bits = Packer {
+            used: 128,
+            ..Packer::default()
+        };
+        bits.put(line.x_major.into(), 1);
+        bits.put(left.into(), 1);
+        bits.put(up.into(), 1);
+        bits.put(column.into(), 11);
+        bits.put(row.into(), 10);
+        bits.put(line.count.into(), 12);
+        bits.put((line.error + minor).into(), 21);
+        bits.put(minor.into(), 20);
+        bits.put((minor - major).into(), 21);
+        // The depth has its lowest 30 bits here, and the others behind the repeated words.
+        let depth = line.depth + HALF_A_CODE;
+        bits.put(depth, 30);
+        bits.used = 320;
+        bits.put(depth >> 30, 4);
+        bits.put(line.depth_step, 34);
+        bits.used = 366;
+        bits.put(PIECE, 2);
+        bits.put(piece.colour.0.into(), 16);
+        let mut words = bits.words;
+        words.copy_within(4..8, 0);
+        words.copy_within(4..6, 8);
+        Self { words }
     }
 
     /// The words that gateware reads whose best shading is `capability`, the word with the lowest bits first.
@@ -149,6 +199,21 @@ impl ListCounts {
         is_full: false,
     };
 
+    /// Length of each list.
+    pub const fn lengths(&self) -> &[u32; LENGTHS] {
+        &self.lengths
+    }
+
+    /// Number of descriptors.
+    pub const fn descriptors(&self) -> u32 {
+        self.descriptors
+    }
+
+    /// Whether a descriptor or an entry of a list had no room.
+    pub const fn is_full(&self) -> bool {
+        self.is_full
+    }
+
     /// The counts of a set of `descriptors` descriptors and its lists, which a geometry pass has written.
     pub fn of(lists: &[u32], descriptors: u32) -> Self {
         Self {
@@ -196,7 +261,21 @@ impl<'a> ListWriter<'a> {
 
     /// Appends a triangle to the lists of all bands within its bounds; `colour` is its colour under flat shading.
     pub fn put(&mut self, setup: &Setup, colour: Rgb565) {
-        let descriptor = Descriptor::new(setup, colour);
+        // The bounds are in the picture and not empty.
+        let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
+        let bands = top / self.band_rows..=(bottom - 1) / self.band_rows;
+        self.append(&Descriptor::new(setup, colour), bands);
+    }
+
+    /// Appends a piece of a line to the list of its band.
+    pub fn put_piece(&mut self, piece: &Piece) {
+        // The first pixel is in the picture.
+        let band = piece.first()[1] as u32 / self.band_rows;
+        self.append(&Descriptor::of_piece(piece), band..=band);
+    }
+
+    #[inline(always)]
+    fn append(&mut self, descriptor: &Descriptor, bands: RangeInclusive<u32>) {
         let words = descriptor.words(self.capability);
         let counts = &mut *self.counts;
         let at = counts.descriptors as usize * words.len();
@@ -205,10 +284,8 @@ impl<'a> ListWriter<'a> {
             return;
         };
         to.copy_from_slice(words);
-        let (rows, shift) = (self.band_rows, self.list_shift);
-        // The bounds are in the picture and not empty.
-        let (top, bottom) = (setup.bounds.top as u32, setup.bounds.bottom as u32);
-        for band in top / rows..=(bottom - 1) / rows {
+        let shift = self.list_shift;
+        for band in bands {
             let Some(length) = counts.lengths.get_mut(band as usize) else {
                 continue;
             };

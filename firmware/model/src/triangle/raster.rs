@@ -10,6 +10,7 @@ use core::ops::{Add, BitOr, Sub};
 use glint_core::colour::Rgb565;
 
 use crate::frame_buffer::FrameBuffer;
+use crate::triangle::descriptor::GROUP;
 use crate::triangle::quotient;
 use crate::triangle::setup::{Edge, Plane, Setup};
 
@@ -43,6 +44,22 @@ fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> C
     draw_with(setup, brush, target)
 }
 
+/// Draws a triangle with flat shading as [`draw`] does. Calls `visit` with each row that has a covered pixel, and the first and the last
+/// group of eight columns with one, all of which the engine's lanes take.
+pub fn draw_groups(
+    setup: &Setup,
+    colour: Rgb565,
+    target: &mut FrameBuffer,
+    visit: &mut dyn FnMut(i32, [i32; 2]),
+) -> Coverage {
+    let brush = Grouped {
+        colour,
+        row: setup.bounds.top,
+        visit,
+    };
+    draw_with(setup, brush, target)
+}
+
 fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Coverage {
     if setup.narrow {
         walk::<i32>(setup, brush, target)
@@ -53,8 +70,9 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
 
 /// The source of pixel colours. The walker moves it over the triangle together with the depth.
 trait Brush {
-    /// Moves to the column that is `offset` columns right of the start column, in the same row.
-    fn go_to(&mut self, offset: u32);
+    /// Begins the covered columns of a row, of which the first is `offset` columns right of the start column;
+    /// `columns` are the first and the last one.
+    fn go_to(&mut self, offset: u32, columns: [i32; 2]);
     /// Moves one pixel to the right.
     fn go_right(&mut self);
     /// Moves to the next row. The column is unspecified until the next `go_to`.
@@ -65,11 +83,31 @@ trait Brush {
 
 /// Flat shading: every pixel has the triangle's colour.
 impl Brush for Rgb565 {
-    fn go_to(&mut self, _: u32) {}
+    fn go_to(&mut self, _: u32, _: [i32; 2]) {}
     fn go_right(&mut self) {}
     fn go_down(&mut self) {}
     fn colour(&self, _: u32) -> Rgb565 {
         *self
+    }
+}
+
+/// Flat shading that tells the groups of columns.
+struct Grouped<'a> {
+    colour: Rgb565,
+    row: i32,
+    visit: &'a mut dyn FnMut(i32, [i32; 2]),
+}
+
+impl Brush for Grouped<'_> {
+    fn go_to(&mut self, _: u32, columns: [i32; 2]) {
+        (self.visit)(self.row, columns.map(|column| column / GROUP));
+    }
+    fn go_right(&mut self) {}
+    fn go_down(&mut self) {
+        self.row += 1;
+    }
+    fn colour(&self, _: u32) -> Rgb565 {
+        self.colour
     }
 }
 
@@ -99,7 +137,7 @@ struct Smooth {
 }
 
 impl Brush for Smooth {
-    fn go_to(&mut self, offset: u32) {
+    fn go_to(&mut self, offset: u32, _: [i32; 2]) {
         for light in &mut self.light {
             light.value = light
                 .row
@@ -162,7 +200,7 @@ fn walk<A: Accumulator>(
         if left.column <= right.column {
             let offset = (left.column - setup.start_column) as u32;
             let depth = row_depth.wrapping_add(setup.depth.step_x.wrapping_mul(offset));
-            brush.go_to(offset);
+            brush.go_to(offset, [left.column, right.column]);
             coverage.drawn += fill(
                 target,
                 row,

@@ -6,6 +6,7 @@ use glint_core::mesh::{Chunk, Mesh, Rgb565, Triangle};
 
 use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
+use crate::triangle::classify::Path;
 use crate::triangle::clip::contains;
 use crate::triangle::facing::Facing;
 use crate::triangle::mesh_setup::MeshSetup;
@@ -272,16 +273,6 @@ fn mark_outside(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
     }
 }
 
-/// The path of a triangle after the vertex stage.
-enum Path<'a> {
-    /// Not drawn, because the triangle lies wholly beyond one side of the picture or behind the near plane.
-    Unseen,
-    /// Drawn as a whole: goes to the triangle setup.
-    Regular([&'a ScreenVertex; 3]),
-    /// Clipped first, because the triangle crosses the near plane or leaves the guard band.
-    Exception,
-}
-
 /// Makes the triangles of one mesh.
 struct Renderer<'a, 'b> {
     frame: MeshSetup,
@@ -354,24 +345,7 @@ impl Renderer<'_, '_> {
         else {
             return Path::Unseen;
         };
-        match [a, b, c].map(Projected::place) {
-            [None, None, None] => Path::Unseen,
-            [Some(a), Some(b), Some(c)] if self.off_screen([a, b, c]) => Path::Unseen,
-            [Some(p), Some(q), Some(r)] if ![a, b, c].iter().any(|v| v.is_beyond_guard()) => {
-                Path::Regular([p, q, r])
-            }
-            _ => Path::Exception,
-        }
-    }
-
-    /// Whether all vertices are off the same side of the picture.
-    fn off_screen(&self, [a, b, c]: [&ScreenVertex; 3]) -> bool {
-        // The bitwise and is negative if all values are negative.
-        let off = |[a, b, c]: [i32; 3], size: u32| {
-            let last = (size << 8) as i32 - 1;
-            a & b & c < 0 || (last - a) & (last - b) & (last - c) < 0
-        };
-        off([a.x, b.x, c.x], self.frame.width) || off([a.y, b.y, c.y], self.frame.height)
+        Path::of(&self.frame, [a, b, c])
     }
 
     /// Clips a triangle and sets up its parts. Returns whether a part reached the walker.

@@ -41,7 +41,7 @@ impl Bench {
         self.module.drive("first_row", band.top);
         let mut expected = vec![];
         for segment in segments {
-            let Some(piece) = piece(segment, &self.piece, band) else {
+            let Some(piece) = piece(segment, &self.piece, size, band) else {
                 continue;
             };
             self.source.push(vec![piece]);

@@ -1,34 +1,18 @@
 //! The pieces into which the bands of a picture cut lines.
 
-use glint_model::line::{Line, LineDepth, LinePixel, Segment};
-use glint_model::triangle::descriptor::band_rows;
+use glint_core::picture::Size;
+use glint_model::ScreenVertex;
+use glint_model::line::{Line, LineDepth, LinePixel, Piece, Segment, band_bounds};
 use glint_model::triangle::setup::Bounds;
-use glint_model::{SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout};
 use glint_vectors::segments::NEAREST;
 
-/// Pictures by their size codes.
-pub fn picture(size: usize) -> Bounds {
-    let (width, height) = SIZES[size];
-    Bounds {
-        left: 0,
-        right: width as i32,
-        top: 0,
-        bottom: height as i32,
-    }
-}
-
 /// The bands of a picture, from the top.
 pub fn bands(size: usize) -> Vec<Bounds> {
-    let picture = picture(size);
-    let rows = band_rows(SIZES[size].0) as i32;
-    let tops = (0..picture.bottom).step_by(rows as usize);
-    tops.map(|top| Bounds {
-        top,
-        bottom: top + rows,
-        ..picture
-    })
-    .collect()
+    let size = Size::ALL[size];
+    (0..size.bands())
+        .map(|band| band_bounds(size, band))
+        .collect()
 }
 
 /// The end points of a segment as the set-up gets them, and the bias of their depths.
@@ -49,42 +33,40 @@ pub fn pixels(segment: &Segment, band: &Bounds) -> Vec<LinePixel> {
 }
 
 /// The piece of a line in a band, as `line_pkg::piece_t`.
-pub fn piece(segment: &Segment, layout: &Layout, band: &Bounds) -> Option<Bits> {
-    let (ends, bias) = placed(segment);
-    let pixels = Line::new(&ends)?.pixels(band);
-    let rest = *pixels.rest()?;
-    let first = pixels.clone().next()?;
+pub fn piece(segment: &Segment, layout: &Layout, size: usize, band: &Bounds) -> Option<Bits> {
+    let is_inside = |piece: &Piece| (band.top..band.bottom).contains(&piece.first()[1]);
+    let mut pieces = segment.pieces(Size::ALL[size]).filter(is_inside);
+    pieces.next().map(|piece| packed(&piece, layout))
+}
+
+/// The pieces of a line in the order in which it meets the bands.
+pub fn pieces(segment: &Segment, layout: &Layout, size: usize) -> Vec<Bits> {
+    let pieces = segment.pieces(Size::ALL[size]);
+    pieces.map(|piece| packed(&piece, layout)).collect()
+}
+
+fn packed(piece: &Piece, layout: &Layout) -> Bits {
+    let rest = &piece.line;
     let [major, minor] = rest.span;
     let [left, up] = if rest.x_major {
         rest.backward
     } else {
         [rest.backward[1], rest.backward[0]]
     };
-    let piece = layout
+    let [column, row] = piece.first();
+    let record = layout
         .record()
-        .with("colour", segment.colour.0)
+        .with("colour", piece.colour.0)
         .with("x_major", u8::from(rest.x_major))
         .with("left", u8::from(left))
         .with("up", u8::from(up))
-        .with("column", first.column)
-        .with("row", first.row)
+        .with("column", column)
+        .with("row", row)
         .with("count", rest.count)
         .with("error", rest.error + minor)
         .with("minor", minor)
         .with("fall", minor - major)
-        .with("depth", rest.depth + (i64::from(bias) << 14) + (1 << 13))
+        .with("depth", rest.depth + (1 << 13))
         .with("depth_step", rest.depth_step);
-    Some(piece.bits())
-}
-
-/// The pieces of a line in the order in which it meets the bands.
-pub fn pieces(segment: &Segment, layout: &Layout, size: usize) -> Vec<Bits> {
-    let mut bands = bands(size);
-    if segment.ends[1].y < segment.ends[0].y {
-        bands.reverse();
-    }
-    bands
-        .iter()
-        .filter_map(|band| piece(segment, layout, band))
-        .collect()
+    record.bits()
 }

@@ -172,4 +172,13 @@ impl FlatSolid for FixedBox {
             ..FlatConstants::default()
         }
     }
+
+    fn of(constants: &FlatConstants) -> Self {
+        let has = |axis: usize| constants.has >> axis & 1 == 1;
+        Self {
+            half: [0, 1, 2].map(|axis: usize| has(axis).then_some(constants.half[axis] as i32)),
+            room: constants.room,
+            repeated: constants.repeated,
+        }
+    }
 }

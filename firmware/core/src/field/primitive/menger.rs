@@ -38,19 +38,23 @@ impl Shape for Menger {
     }
 
     fn placed(&self) -> Placed<FixedSponge> {
-        // The side S of the cubes of each level: 81/3^i for level i from 1, rounded to an even multiple of 2^−12.
-        let one = 1 << FRACTION;
-        let [third, ninth] = [3, 9].map(|parts| (one / 2 + parts / 2) / parts * 2);
-        let levels = [27 * one, 9 * one, 3 * one, one, third, ninth];
-        let last = levels[usize::from(self.depth.clamp(1, MAX_DEPTH)) - 1];
+        let last = LEVELS[usize::from(self.depth.clamp(1, MAX_DEPTH)) - 1];
         let sponge = FixedSponge {
-            levels,
+            levels: LEVELS,
             depth: self.depth,
             half: last / 2,
         };
         Placed::bounded(sponge, [Q32_32::ONE; 3])
     }
 }
+
+/// The side S of the cubes of each level: 81/3^i for level i from 1, rounded to an even multiple of 2^−12.
+const LEVELS: [i32; MAX_DEPTH as usize] = {
+    let one = 1 << FRACTION;
+    let third = (one / 2 + 1) / 3 * 2;
+    let ninth = (one / 2 + 4) / 9 * 2;
+    [27 * one, 9 * one, 3 * one, one, third, ninth]
+};
 
 /// The sponge with lengths in field units, in which half its side is 40.5.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +100,14 @@ impl FlatSolid for FixedSponge {
             levels: ((1_u32 << self.depth) - 1) as u8,
             cube_half: self.half as u32,
             ..FlatConstants::default()
+        }
+    }
+
+    fn of(constants: &FlatConstants) -> Self {
+        Self {
+            levels: LEVELS,
+            depth: (constants.levels.trailing_ones() as u8).min(MAX_DEPTH),
+            half: constants.cube_half as i32,
         }
     }
 }

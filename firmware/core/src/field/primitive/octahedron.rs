@@ -73,4 +73,9 @@ impl FlatSolid for FixedOctahedron {
             ..FlatConstants::default()
         }
     }
+
+    fn of(constants: &FlatConstants) -> Self {
+        let [size, ..] = constants.half;
+        Self { size: size as i32 }
+    }
 }

@@ -1,0 +1,203 @@
+//! Pictures from descriptors in memory, drawn band by band as the raster pass does, equal those of the triangles and lines.
+
+use glint_core::colour::{Rgb565, Shading};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::line::{Segment, band_bounds};
+use glint_model::triangle::descriptor::{Contents, Descriptor};
+use glint_model::triangle::raster::{draw, draw_groups};
+use glint_model::triangle::setup::Bounds;
+use glint_model::{FrameBuffer, MeshOptions, Projected, SIZES};
+use glint_vectors::segments;
+use glint_vectors::triangles::{random_triangle, set_up};
+use glint_vectors::{Camera, Model, Picture, Random};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+/// Draws the contents of descriptors into all bands of a picture, and returns the numbers of covered and drawn pixels.
+fn in_bands(descriptors: &[Vec<u32>], size: Size, target: &mut FrameBuffer) -> [u32; 2] {
+    let mut counts = [0; 2];
+    for band in 0..size.bands() {
+        let band = band_bounds(size, band);
+        for words in descriptors {
+            let descriptor = Descriptor::from_words(words.iter().copied());
+            let [covered, drawn] = match descriptor.contents(size.width()) {
+                Contents::Triangle(setup, colour) => {
+                    let rows = setup.in_rows(band.top..band.bottom);
+                    let coverage = rows.map(|setup| draw(&setup, colour, target));
+                    let coverage = coverage.unwrap_or_default();
+                    [coverage.covered, coverage.drawn]
+                }
+                Contents::Piece(piece) => {
+                    let mut covered = 0;
+                    let drawn = piece.draw(&band, target, &mut |_| covered += 1);
+                    [covered, drawn]
+                }
+                Contents::Stray => [0; 2],
+            };
+            counts = [counts[0] + covered, counts[1] + drawn];
+        }
+    }
+    counts
+}
+
+#[test]
+fn triangles_keep_their_pixels() {
+    let mut random = Random(3);
+    for size in Size::ALL {
+        let [width, height] = size.pixels();
+        let mut expected = Picture::blank((width, height));
+        let mut found = expected.clone();
+        let (mut descriptors, mut counts) = (vec![], [0; 2]);
+        while descriptors.len() < 100 {
+            let Some((_, setup)) = set_up(random_triangle(&mut random), (width, height)) else {
+                continue;
+            };
+            let colour = Rgb565((descriptors.len() as u16).wrapping_mul(0x1357));
+            let coverage = draw(&setup, colour, &mut expected.target());
+            counts = [counts[0] + coverage.covered, counts[1] + coverage.drawn];
+            let words = Descriptor::new(&setup, colour)
+                .words(Shading::Flat)
+                .to_vec();
+            descriptors.push(words);
+        }
+        assert_eq!(in_bands(&descriptors, size, &mut found.target()), counts);
+        assert!(found == expected, "{size}");
+    }
+}
+
+#[test]
+fn smooth_triangles_keep_their_pixels() {
+    let size = Size::W320;
+    let bytes = Model::sphere(0.6, 8).encoded();
+    let mesh = Mesh::new_checked(&bytes).unwrap();
+    let options = MeshOptions {
+        shading: Shading::Smooth,
+        ..MeshOptions::default()
+    };
+    let view = Camera::looking([0.0, -2.0, 0.3], [0.0; 3], 0.5, 0.1).rounded();
+    let frame = glint_model::Frame::new(
+        glint_model::Subject::Mesh(options.subject(mesh)),
+        view,
+        size,
+    );
+    let constants = frame.constants().unwrap();
+    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
+    let mut expected = Picture::blank(SIZES[0]);
+    let mut found = expected.clone();
+    let mut descriptors = vec![];
+    let mut put = |triangle: &glint_model::DrawnTriangle, setup: &_| {
+        draw(setup, triangle.colour, &mut expected.target());
+        let descriptor = Descriptor::new(setup, triangle.colour);
+        descriptors.push(descriptor.words(Shading::Smooth).to_vec());
+    };
+    frame
+        .set_up_meshes(&constants, &mut scratch, &mut put)
+        .unwrap();
+    let [covered, _] = in_bands(&descriptors, size, &mut found.target());
+    assert!(covered > 10_000, "{covered} pixels");
+    assert!(found == expected);
+}
+
+#[test]
+fn lines_keep_their_pixels() {
+    let mut random = Pcg64Mcg::new(5);
+    for (code, size) in Size::ALL.into_iter().enumerate() {
+        let random = (0..300).map(|_| segments::random(&mut random, code));
+        let all: Vec<Segment> = random.chain(segments::difficult(code)).collect();
+        let mut expected = Picture::blank(SIZES[code]);
+        let mut found = expected.clone();
+        let (mut descriptors, mut counts) = (vec![], [0; 2]);
+        for segment in &all {
+            let covered = segment.covered(&expected.target()) as u32;
+            let drawn = segment.draw(&mut expected.target());
+            counts = [counts[0] + covered, counts[1] + drawn];
+            let stored = Segment::from_words(segment.words());
+            let pieces: Vec<_> = stored.pieces(size).collect();
+            assert_eq!(pieces, segment.pieces(size).collect::<Vec<_>>());
+            descriptors.extend(pieces.iter().map(|piece| {
+                let descriptor = Descriptor::of_piece(piece);
+                descriptor.words(Shading::Flat).to_vec()
+            }));
+        }
+        assert_eq!(in_bands(&descriptors, size, &mut found.target()), counts);
+        assert!(found == expected, "{size}");
+    }
+}
+
+/// Every row and group in which a triangle has covered pixels is told.
+#[test]
+fn groups_are_told() {
+    let mut random = Random(11);
+    let mut most = 0;
+    for _ in 0..200 {
+        let mut picture = Picture::blank(SIZES[0]);
+        let Some((_, setup)) = set_up(random_triangle(&mut random), SIZES[0]) else {
+            continue;
+        };
+        let mut found = vec![];
+        let visit = &mut |row, [first, last]: [i32; 2]| {
+            found.extend((first..=last).map(|group| (row, group)));
+        };
+        draw_groups(&setup, Rgb565::WHITE, &mut picture.target(), visit);
+        let covered = picture.coverage();
+        let groups = (0..).zip(covered.chunks(8));
+        let expected: Vec<(i32, i32)> = groups
+            .filter(|(_, group)| group.contains(&true))
+            .map(|(number, _)| (number / 40, number % 40))
+            .collect();
+        assert_eq!(found, expected);
+        most = most.max(found.len());
+    }
+    assert!(most > 100, "{most}");
+}
+
+/// Damaged descriptors draw within their band, or nothing.
+#[test]
+fn random_descriptors_stay_in_their_band() {
+    let mut random = Pcg64Mcg::new(9);
+    let mut kinds = [0; 3];
+    for number in 0..3000 {
+        let mut words: [u32; 24] = random.random();
+        let groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..40));
+        if number % 3 > 0 {
+            // Columns in the picture, or the mark of a piece.
+            let [left, start, right] = match number % 3 {
+                1 => {
+                    let mut groups = groups;
+                    groups.sort_unstable();
+                    groups
+                }
+                _ => [groups[0], 0xC0, groups[2]],
+            };
+            let rows = words[10] & 0x00FF_FFFF;
+            words[10] = rows | u32::from(left) << 24;
+            words[11] = words[11] & 0xFFFF_0000 | u32::from(start) << 8 | u32::from(right);
+        }
+        let band = Bounds {
+            left: 0,
+            right: 320,
+            top: 45,
+            bottom: 90,
+        };
+        let mut picture = Picture::blank(SIZES[0]);
+        match Descriptor::from_words(words).contents(320) {
+            Contents::Triangle(setup, colour) => {
+                kinds[0] += 1;
+                if let Some(setup) = setup.in_rows(band.top..band.bottom) {
+                    draw(&setup, colour, &mut picture.target());
+                }
+            }
+            Contents::Piece(piece) => {
+                kinds[1] += 1;
+                piece.draw(&band, &mut picture.target(), &mut |_| {});
+            }
+            Contents::Stray => kinds[2] += 1,
+        }
+        let blank = Picture::blank(SIZES[0]);
+        let rows = 320 * 45..320 * 90;
+        assert!(picture.depth[..rows.start] == blank.depth[..rows.start]);
+        assert!(picture.depth[rows.end..] == blank.depth[rows.end..]);
+    }
+    assert!(kinds.iter().all(|&kind| kind > 100), "{kinds:?}");
+}
