@@ -8,11 +8,11 @@ mod timer;
 mod uart;
 
 use litex_pac::{
-    Interrupt, Memory, buttons, ctrl, identity, leds, scanout as scanout_block, switches, timer0,
-    uart as uart_block,
+    Interrupt, Memory, buttons, ctrl, identity, leds, raymarch as raymarch_block,
+    scanout as scanout_block, switches, timer0, triangle as triangle_block, uart as uart_block,
 };
 
-use crate::{Device, MainMemory};
+use crate::{Device, MainMemory, TriangleEngine};
 use i2c::I2c;
 use pins::{Inputs, Outputs};
 pub use scanout::Frame;
@@ -30,11 +30,11 @@ pub const REGISTERS: Memory = Memory {
 /// Bytes of the window of a block: blocks are as far apart as the first two.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 
-/// The bit of scan-out in `identity.blocks`.
-const SCANOUT: u32 = 1 << 0;
+/// The bits of scan-out, triangle engine, raymarcher and line engine in `identity.blocks`.
+const PRESENT: u32 = 0b1111;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
-const BLOCKS: [(usize, Option<Interrupt>); 9] = [
+const BLOCKS: [(usize, Option<Interrupt>); 11] = [
     (ctrl::Ctrl::BASE, None),
     (identity::Identity::BASE, None),
     (uart_block::Uart::BASE, Some(Interrupt::Uart)),
@@ -44,6 +44,8 @@ const BLOCKS: [(usize, Option<Interrupt>); 9] = [
     (switches::Switches::BASE, None),
     (leds::Leds::BASE, None),
     (scanout_block::Scanout::BASE, Some(Interrupt::Scanout)),
+    (triangle_block::Triangle::BASE, Some(Interrupt::Triangle)),
+    (raymarch_block::Raymarch::BASE, Some(Interrupt::Raymarch)),
 ];
 
 /// The blocks of the SoC.
@@ -64,6 +66,8 @@ pub struct Devices {
     pub leds: Outputs,
     /// The scan-out.
     pub scanout: Scanout,
+    /// The triangle engine with the raymarcher.
+    triangle: TriangleEngine,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
 }
@@ -73,7 +77,7 @@ impl Devices {
     pub fn new() -> Self {
         Self {
             controller: Controller::new(),
-            identity: Identity { blocks: SCANOUT },
+            identity: Identity { blocks: PRESENT },
             uart: Uart::new(),
             timer: Timer::new(),
             i2c: I2c::new(),
@@ -81,6 +85,7 @@ impl Devices {
             switches: Inputs::new(16, false),
             leds: Outputs::default(),
             scanout: Scanout::new(),
+            triangle: TriangleEngine::new(),
             // Each block states its next event when it is asked for the first time.
             next: [0; BLOCKS.len()],
         }
@@ -95,6 +100,7 @@ impl Devices {
         self.buttons.reset();
         self.leds = Outputs::default();
         self.scanout.reset();
+        self.triangle = TriangleEngine::new();
         self.next = [0; BLOCKS.len()];
     }
 
@@ -108,7 +114,9 @@ impl Devices {
             5 => &mut self.buttons,
             6 => &mut self.switches,
             7 => &mut self.leds,
-            _ => &mut self.scanout,
+            8 => &mut self.scanout,
+            9 => &mut self.triangle,
+            _ => &mut self.triangle.raymarcher,
         }
     }
 

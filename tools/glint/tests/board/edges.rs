@@ -1,6 +1,6 @@
-//! The edges of meshes on the virtual board: segments by the soft core, lines by the line engine, drawn as the model draws them.
+//! The edges of meshes on the emulated board: segments by the soft core, lines by the line engine, drawn as the model draws them.
 
-use crate::common::{console, mesh, renderer, running_board};
+use crate::common::{console, emulator, mesh, renderer};
 use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
 use glint::view;
 use glint_core::colour::Winding;
@@ -49,7 +49,7 @@ fn edges_are_the_models() {
         (clipped, outside, hidden, gateware),
         (both_sides, outside, over, cpu),
     ];
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board).with_route(Route::Memory);
     let parts = Parts {
         colour: true,
@@ -83,7 +83,7 @@ fn edges_are_the_models() {
 /// A mesh that is shown alone has edges. All else refuses them, and sets them off.
 #[test]
 fn a_mesh_alone_has_edges() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     for other in ["scene menger", "scene wireframe", "object add cube"] {
         for command in ["scene cube", "edges over"] {

@@ -1,7 +1,7 @@
 //! Pictures of distance fields, alone and with a mesh, by the raymarcher and by the soft core.
 
-use crate::common::{address, mesh, renderer, running_board, timeless};
-use glint::board::{Board, SimulatedBoard};
+use crate::common::{address, emulator, mesh, renderer, timeless};
+use glint::board::Board;
 use glint::console::Console;
 use glint::picture::Image;
 use glint::render::{self, FieldSubject, Frame, MeshSubject, Route, Subject};
@@ -18,7 +18,6 @@ fn a_field_is_the_models() {
 }
 
 #[test]
-#[ignore = "takes minutes: the soft core takes nearly a thousand clocks for a ray, and no picture has fewer than 57,600"]
 fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
@@ -58,7 +57,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     let colours: Vec<u8> = colour.iter().flat_map(|c| c.to_le_bytes()).collect();
     let depths: Vec<u8> = depth.iter().flat_map(|d| d.to_le_bytes()).collect();
 
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board);
     renderer
         .upload(&mesh, None, Route::Memory, &mut |_, _| {})
@@ -102,7 +101,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     assert!(read(console, depth, 4 * before) == depths[..4 * before]);
 }
 
-fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<u8> {
+fn read(console: &mut Console<impl Board>, place: u32, bytes: usize) -> Vec<u8> {
     let mut found = vec![0; bytes];
     let memory = console.board().memory().unwrap();
     memory.read_memory(place, &mut found).unwrap();
@@ -111,7 +110,7 @@ fn read(console: &mut Console<SimulatedBoard>, place: u32, bytes: usize) -> Vec<
 
 /// Draws a small, distant box by `backend`, and compares colours, depths and counts with the model's.
 fn a_field_by(backend: Backend, name: &str) {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board).with_backend(backend);
     let eye =
         r#"{"eye":[0,-20,0],"u":[1,0,0],"v":[0,0,-1],"n":[0,1,0],"half_width":0.3,"near":0.1}"#;

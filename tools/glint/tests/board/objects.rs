@@ -1,6 +1,6 @@
 //! Objects on the board: meshes under names, side by side in memory, drawn as the model draws them.
 
-use crate::common::{address, console, emulator, info, mesh, renderer, running_board, timeless};
+use crate::common::{address, console, emulator, info, mesh, renderer, timeless};
 use glint::board::{Board, EmulatedBoard, SimulatedBoard};
 use glint::console::Console;
 use glint::object::Description;
@@ -35,7 +35,7 @@ fn objects_are_the_models() {
             colour: place.colour,
         }
     });
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board).with_route(Route::Memory);
     let subject = Subject::Objects(&objects);
     let frame = Frame::new(subject, view::spherical("2.5,30,60").unwrap(), Size::W320);

@@ -1,0 +1,12 @@
+//! The engines: blocks that compute, by the functions of `glint_model`.
+//!
+//! An engine takes its parameters from its registers and its input from main memory, as the gateware does. Its results, the counts that
+//! have an exact meaning, its errors and its interrupts are those of the gateware; its time is an estimate.
+
+mod parameters;
+mod pass;
+mod raymarch;
+mod triangle;
+
+pub use raymarch::Raymarcher;
+pub use triangle::TriangleEngine;

@@ -1,0 +1,35 @@
+//! A pass of an engine: its work is done when it starts, and it ends after the time that the work takes.
+
+/// The growth of each counter of a block, in the order of its registers.
+pub type Growth<const N: usize> = [u32; N];
+
+/// A running pass.
+#[derive(Clone, Copy, Debug)]
+pub struct Pass<const N: usize> {
+    /// The cycle in which it started.
+    pub start: u64,
+    /// The cycle in which it ends.
+    pub end: u64,
+    /// Growth of the counters of the block.
+    pub growth: Growth<N>,
+}
+
+impl<const N: usize> Pass<N> {
+    /// The growth of the counters until the cycle `now`, as if the work were spread evenly.
+    pub fn grown(&self, now: u64) -> Growth<N> {
+        let (done, whole) = (now.saturating_sub(self.start), self.end - self.start);
+        if done >= whole {
+            return self.growth;
+        }
+        // A growth has 32 bits, and a pass less than 2^32 cycles.
+        self.growth
+            .map(|growth| (u64::from(growth) * done / whole) as u32)
+    }
+}
+
+/// Adds a growth to counters, modulo 2^32.
+pub fn add<const N: usize>(counters: &mut Growth<N>, growth: &Growth<N>) {
+    for (counter, growth) in counters.iter_mut().zip(growth) {
+        *counter = counter.wrapping_add(*growth);
+    }
+}

@@ -1,0 +1,219 @@
+//! The raymarcher: distance fields in the frames of the triangle engine (docs/raymarch.md), with all features.
+
+mod setup;
+mod spheres;
+
+use glint_core::picture::Size;
+use glint_model::FrameBuffer;
+use glint_model::raymarch::{RayResult, State, render_field};
+use litex_pac::raymarch::{
+    Caps, Control, Counters, Error, EvPending, Kind, Raymarch, Solid, Status, Table, offset,
+};
+use litex_pac::register::Value;
+
+use crate::engines::parameters::Parameters;
+use crate::engines::pass::{Growth, Pass, add};
+use crate::{Device, Events, MainMemory};
+
+use setup::{Tables, field_setup, palette};
+use spheres::Spheres;
+
+/// Evaluations of the field in a clock.
+const LANES: u64 = 2;
+
+/// Number of counters.
+const COUNTERS: usize = ((offset::UNDECIDED - offset::CYCLES_BUSY) / 4 + 1) as usize;
+
+/// Largest depth of a sponge.
+const LEVELS: u8 = 6;
+
+/// Cycles in which a field is drawn, besides those of its rays.
+const LATENCY: u64 = 300;
+
+/// What drawing a field has done.
+pub struct Field {
+    /// Cycles that it takes.
+    pub cycles: u64,
+    /// Pixels, counted for each eye, and those of them that passed the depth test.
+    pub pixels: u32,
+    pub drawn: u32,
+}
+
+/// The raymarcher. The triangle engine starts it.
+pub struct Raymarcher {
+    parameters: Parameters,
+    control: Control,
+    spheres: Spheres,
+    tables: Box<Tables>,
+    events: Events,
+    running: Option<Pass<COUNTERS>>,
+    counters: Growth<COUNTERS>,
+}
+
+impl Raymarcher {
+    /// The raymarcher after a reset.
+    pub(crate) fn new() -> Self {
+        Self {
+            parameters: Parameters::new(),
+            control: Control::default(),
+            spheres: Spheres::new(),
+            tables: Box::new([[0; 256]; 2]),
+            events: Events::default(),
+            running: None,
+            counters: [0; COUNTERS],
+        }
+    }
+
+    /// Whether the next frame has the field.
+    pub(crate) fn draws(&self) -> bool {
+        self.control.enable() && self.error() == Error::None
+    }
+
+    /// Draws the field into a picture that has its triangles, from the cycle `now` on.
+    pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
+        let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
+        let palette = palette(&self.parameters, &self.spheres, &self.tables);
+        // Where there are triangles, the test of a ray's depth is repeated, because the counts of the model lack its result.
+        let before = target.depth.to_vec();
+        let width = target.width;
+        let mut hidden = 0;
+        let mut show = |x, y, ray: &_, outcome: &RayResult| {
+            let stored = before.get((y * width + x) as usize);
+            let stored = stored.copied().unwrap_or(0);
+            if stored > 0 && setup.stereo.is_none() {
+                let code = match outcome.state {
+                    State::Hit(_) => setup.depth_code(ray, outcome.reached()),
+                    _ => 0,
+                };
+                hidden += u32::from(code < stored);
+            }
+        };
+        // The picture has the size of the constants.
+        let stats = render_field(&setup, &palette, target, &mut show).unwrap_or_default();
+        let eyes = 1 + u32::from(setup.stereo.is_some());
+        let work = (stats.evaluations / LANES).max(stats.rays.into());
+        let cycles = work + LATENCY;
+        let counters = Counters {
+            cycles_busy: cycles as u32,
+            items_in: stats.rays,
+            items_out: stats.rays,
+            evaluations: stats.evaluations as u32,
+            hits: stats.hits,
+            misses: stats.misses,
+            undecided: stats.undecided,
+            ..Counters::default()
+        };
+        let mut values = counters.iter();
+        self.running = Some(Pass {
+            start: now,
+            end: now + cycles,
+            growth: std::array::from_fn(|_| values.next().map_or(0, |(_, value)| value)),
+        });
+        let pixels = eyes * size.pixel_count() as u32;
+        Field {
+            cycles,
+            pixels,
+            drawn: pixels - hidden,
+        }
+    }
+
+    /// Ends the field of a frame that is cancelled.
+    pub(crate) fn cancel(&mut self, now: u64) {
+        if let Some(pass) = self.running.take() {
+            add(&mut self.counters, &pass.grown(now));
+            self.events.raise(field_event());
+        }
+    }
+
+    /// Ends the field whose time is over, and returns the cycle in which it ends otherwise.
+    pub(crate) fn settle(&mut self, now: u64) -> u64 {
+        match self.running {
+            Some(pass) if pass.end <= now => {
+                self.running = None;
+                add(&mut self.counters, &pass.growth);
+                self.events.raise(field_event());
+                u64::MAX
+            }
+            Some(pass) => pass.end,
+            None => u64::MAX,
+        }
+    }
+
+    /// The feature that the registers request and that is not built. All are, but there is no fourth kind of a flat field.
+    fn error(&self) -> Error {
+        let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
+        match solid.kind() {
+            Some(_) => Error::None,
+            None => Error::Field,
+        }
+    }
+
+    fn counter(&self, number: usize, now: u64) -> u32 {
+        let mut counters = self.counters;
+        if let Some(pass) = &self.running {
+            add(&mut counters, &pass.grown(now));
+        }
+        counters.get(number).copied().unwrap_or(0)
+    }
+}
+
+/// The bit of the event at the end of a field.
+fn field_event() -> u32 {
+    EvPending::default().with_field(true).bits()
+}
+
+impl Device for Raymarcher {
+    fn read(&mut self, offset: u32, now: u64) -> u32 {
+        self.settle(now);
+        match offset {
+            offset::IDENT => Raymarch::IDENT,
+            offset::CAPS => Caps::default()
+                .with_lanes(LANES as u8)
+                .with_levels(LEVELS)
+                .with_stereo(true)
+                .with_round(true)
+                .with_blend(true)
+                .with_prepass(true)
+                .with_flat((1 << Kind::ALL.len()) - 1)
+                .bits(),
+            offset::CONTROL => self.control.bits(),
+            offset::STATUS => Status::default()
+                .with_busy(self.running.is_some())
+                .with_error(self.error())
+                .bits(),
+            offset::EV_STATUS => self.events.status(),
+            offset::EV_PENDING => self.events.pending(),
+            offset::EV_ENABLE => self.events.enabled(),
+            offset::CYCLES_BUSY..=offset::UNDECIDED => {
+                self.counter(((offset - offset::CYCLES_BUSY) / 4) as usize, now)
+            }
+            _ => 0,
+        }
+    }
+
+    fn write(&mut self, offset: u32, value: u32, now: u64, _: &mut MainMemory) {
+        self.settle(now);
+        match offset {
+            offset::CONTROL => self.control = Control::from_bits(value),
+            offset::EV_PENDING => self.events.clear(value),
+            offset::EV_ENABLE => self.events.enable(value & field_event()),
+            offset::TABLE => {
+                let table = Table::from_bits(value);
+                let entries = self.tables.as_flattened_mut();
+                if let Some(entry) = entries.get_mut(usize::from(table.entry())) {
+                    *entry = table.part();
+                }
+            }
+            offset::SPHERE => self.spheres.set(value),
+            _ => self.parameters.set(offset, value),
+        }
+    }
+
+    fn advance(&mut self, now: u64, _: &mut MainMemory) -> u64 {
+        self.settle(now)
+    }
+
+    fn interrupt(&self) -> bool {
+        self.events.interrupt()
+    }
+}

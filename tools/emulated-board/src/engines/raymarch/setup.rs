@@ -1,0 +1,143 @@
+//! The constants of a field's frame, from the registers.
+
+use glint_core::field::{FixedSpheres, Flat, FlatConstants, Solid};
+use glint_core::fixed::Q32_32;
+use glint_core::picture::Size;
+use glint_core::stereo::Tint;
+use glint_model::DepthScale;
+use glint_model::raymarch::{Beside, Cones, Eye, FieldSetup, Palette, Tuning, block_for};
+use litex_pac::raymarch::{
+    Control, DepthScale as DepthScaleRegister, Kind, Solid as SolidRegister, Stereo,
+    Tuning as TuningRegister, offset,
+};
+use litex_pac::register::Value;
+
+use super::spheres::{Spheres, colour};
+use crate::engines::parameters::Parameters;
+
+/// Shares by depth (fog) and by evaluations (occlusion).
+pub type Tables = [[u8; 256]; 2];
+
+/// The smallest exponent of the depth scale for which a shift by it fits 64 bits. That of a frame is larger.
+const LEAST_EXPONENT: i32 = -20;
+
+/// The constants of the rays and of the solid.
+pub fn field_setup(
+    parameters: &Parameters,
+    control: Control,
+    spheres: &Spheres,
+    size: Size,
+) -> FieldSetup {
+    let [width, height] = size.pixels();
+    let stereo = match control.stereo() {
+        Some(Stereo::Mono) => None,
+        Some(Stereo::RedBlue) => Some(Tint::RedBlue),
+        Some(Stereo::RedCyan) | None => Some(Tint::RedCyan),
+    };
+    let (solid, beside) = solid(parameters, spheres);
+    let steps = [offset::ACROSS_X, offset::DOWN_X].map(|first| parameters.row(first, 32));
+    let eyes = if stereo.is_some() { 2 } else { 1 };
+    let cones = control.prepass().then(|| Cones {
+        block: block_for((width, height), eyes),
+        offset: parameters.row(offset::CONE_OFFSET_X, 32),
+        spread: parameters.unsigned(offset::CONE_SPREAD, 14),
+    });
+    let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
+    let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));
+    // Six bits in two's complement.
+    let exponent = i32::from((scale.exponent() << 2) as i8 >> 2);
+    let depth = DepthScale {
+        mantissa: scale.mantissa(),
+        exponent: exponent.max(LEAST_EXPONENT),
+        origin: None,
+    };
+    FieldSetup {
+        width,
+        height,
+        solid,
+        beside,
+        // The rays need neither the scale of the world nor the exponent of their directions.
+        scale: Q32_32::ONE,
+        exponent: 0,
+        world_depth: depth,
+        bounds: [offset::BOUNDS_X, offset::BOUNDS_Y, offset::BOUNDS_Z]
+            .map(|at| parameters.unsigned(at, 24)),
+        eyes: [offset::ORIGIN_LEFT_X, offset::ORIGIN_RIGHT_X].map(|first| eye(parameters, first)),
+        steps,
+        near: parameters.unsigned(offset::NEAR, 23),
+        cones,
+        depth,
+        tuning: Tuning {
+            threshold: tuning.threshold().into(),
+            footprint: tuning.footprint().into(),
+            cap: tuning.cap().into(),
+            far: parameters.unsigned(offset::FAR, 23),
+        },
+        stereo,
+    }
+}
+
+/// The eye whose registers begin at `first`: for each axis origin, distance outside of the box, and first ray.
+fn eye(parameters: &Parameters, first: u32) -> Eye {
+    const AXIS: u32 = offset::ORIGIN_LEFT_Y - offset::ORIGIN_LEFT_X;
+    const OUTSIDE: u32 = offset::OUTSIDE_LEFT_X - offset::ORIGIN_LEFT_X;
+    const RAY: u32 = offset::FIRST_LEFT_X - offset::ORIGIN_LEFT_X;
+    let axes = [0, AXIS, 2 * AXIS].map(|axis| first + axis);
+    Eye {
+        origin: axes.map(|at| parameters.signed(at, 25)),
+        outside: axes.map(|at| parameters.unsigned(at + OUTSIDE, 24)),
+        first: axes.map(|at| parameters.signed(at + RAY, 32)),
+    }
+}
+
+/// The solid, or the flat one of a union, and the spheres beside it.
+fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) {
+    let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
+    let round = FixedSpheres {
+        list: spheres.list,
+        count: usize::from(register.last_sphere()) + 1,
+        repeated: register.spheres_repeated(),
+    };
+    if register.is_round() && !register.flat_too() {
+        return (Solid::Spheres(round), None);
+    }
+    let lengths = [offset::HALF_X, offset::HALF_Y, offset::HALF_Z];
+    let constants = FlatConstants {
+        // A field of an unknown kind is not drawn.
+        kind: register.kind().unwrap_or(Kind::Menger) as u8,
+        levels: register.levels(),
+        has: register.has(),
+        room: register.room(),
+        repeated: register.repeated(),
+        cube_half: parameters.unsigned(offset::CUBE_HALF, 22),
+        half: lengths.map(|at| parameters.unsigned(at, 22)),
+    };
+    let flat = Flat::of(&constants).map_or(Solid::Spheres(round), Solid::Flat);
+    let beside = register.is_round().then_some(Beside {
+        spheres: round,
+        blend: spheres.blend,
+    });
+    (flat, beside)
+}
+
+/// The colours.
+pub fn palette(parameters: &Parameters, spheres: &Spheres, tables: &Tables) -> Palette {
+    let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
+    let colours: [[u8; 3]; 8] =
+        std::array::from_fn(|number| colour(parameters.word(offset::COLOUR_0 + 4 * number as u32)));
+    let [a, b, c, d, e, f, undecided, zenith] = colours;
+    let [g, h] = spheres.faces;
+    let [fog, occlusion] = *tables;
+    let mut lights = spheres.lights;
+    lights.count = usize::from(register.last_light()) + 1;
+    Palette {
+        faces: [a, b, c, d, e, f, g, h],
+        lights,
+        undecided,
+        zenith,
+        horizon: colour(parameters.word(offset::HORIZON)),
+        fog,
+        fog_shift: parameters.unsigned(offset::FOG_SHIFT, 3),
+        occlusion,
+    }
+}

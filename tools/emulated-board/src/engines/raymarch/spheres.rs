@@ -1,0 +1,72 @@
+//! The register `sphere`: constants of spheres, of the light on them, and of the faces 6 and 7.
+
+use glint_core::field::{FixedSphere, MAX_SPHERES};
+use glint_core::light::MAX_LIGHTS;
+use glint_model::raymarch::{Blend, Light, Lights};
+use litex_pac::raymarch::Sphere;
+use litex_pac::register::Value;
+
+/// The constants that the register has set.
+pub struct Spheres {
+    pub list: [FixedSphere; MAX_SPHERES],
+    pub lights: Lights,
+    pub blend: Blend,
+    /// Colours of the faces 6 and 7.
+    pub faces: [[u8; 3]; 2],
+    /// The sphere that the next write to one of them stores.
+    next: FixedSphere,
+}
+
+impl Spheres {
+    pub fn new() -> Self {
+        Self {
+            list: [FixedSphere::default(); MAX_SPHERES],
+            lights: Lights {
+                ambient: [0; 3],
+                list: [Light::default(); MAX_LIGHTS],
+                count: 1,
+                materials: [[0; 3]; MAX_SPHERES],
+            },
+            blend: Blend::default(),
+            faces: [[0; 3]; 2],
+            next: FixedSphere::default(),
+        }
+    }
+
+    /// Takes a write to the register. Entries without a constant have no effect.
+    pub fn set(&mut self, value: u32) {
+        let register = Sphere::from_bits(value);
+        let (entry, value) = (usize::from(register.entry()), register.value());
+        let signed = |bits: u32| (value << (32 - bits)) as i32 >> (32 - bits);
+        match entry {
+            0..=2 => self.next.centre[entry] = signed(22),
+            3 => self.next.radius = (value & 0x1F_FFFF) as i32,
+            4 => {
+                self.next.inverse = value & 0x1_FFFF;
+                self.next.shift = value >> 17 & 0x1F;
+            }
+            5 => self.lights.ambient = colour(value),
+            6 => self.blend.width = value & 0x1_FFFF,
+            7 => self.blend.inverse = value & 0x1_FFFF,
+            8..=15 => {
+                self.list[entry - 8] = self.next;
+                self.lights.materials[entry - 8] = colour(value);
+            }
+            16..=31 => {
+                let light = &mut self.lights.list[(entry - 16) / 4];
+                match entry % 4 {
+                    axis @ 0..=2 => light.direction[axis] = signed(18),
+                    _ => light.colour = colour(value),
+                }
+            }
+            32 | 33 => self.faces[entry - 32] = colour(value),
+            _ => {}
+        }
+    }
+}
+
+/// A colour: red in bits 0 to 7, then green, then blue.
+pub const fn colour(value: u32) -> [u8; 3] {
+    let [red, green, blue, _] = value.to_le_bytes();
+    [red, green, blue]
+}

@@ -1,0 +1,184 @@
+//! The geometry pass: from a mesh or segments in memory to descriptors, band lists and exceptions in memory.
+
+use glint_core::mesh::{Triangle, Vertex};
+use glint_core::picture::Size;
+use glint_model::line::Segment;
+use glint_model::triangle::vertex::{project, transform};
+use glint_model::triangle::vertex_cache::{SLOTS, VertexCache};
+use glint_model::triangle::{Path, Placed};
+use glint_model::{Options, Projected};
+use litex_pac::triangle::{Counters, Error, Geometry, offset};
+
+use super::output::{Output, Room};
+use super::region::{Regions, WORD, picture_size, record};
+use super::setup::Setup;
+use super::time::{GeometryTime, Work};
+use super::walk::Walk;
+use crate::MainMemory;
+use crate::engines::parameters::Parameters;
+
+/// Results of the last pass, by the names of their registers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Results {
+    pub triangles: u32,
+    pub unseen: u32,
+    pub culled: u32,
+    pub descriptor_count: u32,
+    pub exception_count: u32,
+}
+
+/// The geometry unit.
+pub struct GeometryUnit {
+    output: Output,
+    /// Whether the output is that of a frame that was not cancelled.
+    has_output: bool,
+    pub results: Results,
+}
+
+impl GeometryUnit {
+    pub fn new() -> Self {
+        Self {
+            output: Output::new(),
+            has_output: false,
+            results: Results::default(),
+        }
+    }
+
+    /// Forgets the output: the next pass has nothing to continue.
+    pub const fn cancel(&mut self) {
+        self.has_output = false;
+    }
+
+    /// Does the work of a pass.
+    ///
+    /// # Errors
+    /// The reason why the pass is refused; memory is then unchanged.
+    pub fn run(
+        &mut self,
+        flags: Geometry,
+        parameters: &Parameters,
+        ram: &mut MainMemory,
+    ) -> Result<Work, Error> {
+        let size = picture_size(flags.size()).ok_or(Error::Size)?;
+        let room = Room::new(parameters, size);
+        let mesh = parameters.word(offset::MESH);
+        let words = parameters.word(offset::MESH_BYTES) / WORD;
+        let mut regions = Regions::default();
+        regions.check(mesh, words.into());
+        room.check(&mut regions);
+        regions.result()?;
+
+        let continues = flags.append() && self.has_output;
+        self.output.open(room, continues);
+        self.has_output = true;
+        self.results = Results::default();
+        let first = mesh / WORD;
+        let mut walk = Walk::new(first, u64::from(first) + u64::from(words));
+        let time = if flags.lines() {
+            self.draw_lines(&mut walk, size, ram)
+        } else {
+            let setup = Setup::new(flags, parameters, size);
+            self.draw_mesh(&mut walk, &setup, size, ram)
+        };
+        let written = self.output.write(ram);
+        self.results.descriptor_count = self.output.descriptors();
+        self.results.exception_count = self.output.exceptions();
+        let error = if walk.is_damaged {
+            Error::Mesh
+        } else if self.output.is_full() {
+            Error::Full
+        } else {
+            Error::None
+        };
+        Ok(Work {
+            error,
+            cycles: time.cycles(),
+            counters: Counters {
+                vertices: time.vertices,
+                items_in: walk.words.wrapping_add(time.vertices),
+                items_out: written,
+                ..Counters::default()
+            },
+        })
+    }
+
+    fn draw_mesh(
+        &mut self,
+        walk: &mut Walk,
+        setup: &Setup,
+        size: Size,
+        ram: &MainMemory,
+    ) -> GeometryTime {
+        let mut time = GeometryTime::default();
+        let frame = &setup.frame;
+        let options = Options {
+            cull: setup.cull,
+            light: Some(&setup.light),
+            colour: setup.colour,
+            ..Options::default()
+        };
+        let (mut lists, exceptions) = self.output.parts(size);
+        let results = &mut self.results;
+        let mut vertices = [Projected::Behind; SLOTS];
+        while let Some(chunk) = walk.chunk(ram) {
+            let mut cache = VertexCache::empty();
+            for number in chunk.triangles {
+                let triangle = Triangle::from_bytes(&record(ram, number));
+                // Each corner is taken from the cache before the next one may replace it there.
+                let corners = triangle.indices.map(|index| {
+                    let slot = &mut vertices[usize::from(index) % SLOTS];
+                    if cache.misses(index) {
+                        let place = chunk.vertices.wrapping_add(index.into());
+                        let vertex = Vertex::from_bytes(&record(ram, place));
+                        *slot = project(frame, &transform(frame, vertex.position));
+                        time.vertices += 1;
+                    }
+                    *slot
+                });
+                match Path::of(frame, corners.each_ref()) {
+                    Path::Unseen => results.unseen += 1,
+                    Path::Exception => exceptions.put(results.triangles),
+                    Path::Regular(places) => {
+                        match Placed::new(frame, &options, &triangle, places, None) {
+                            Some(placed) => {
+                                lists.put(&placed.setup(), placed.colour);
+                                time.drawn += 1;
+                            }
+                            None => results.culled += 1,
+                        }
+                    }
+                }
+                results.triangles += 1;
+            }
+        }
+        time.triangles = results.triangles;
+        time
+    }
+
+    fn draw_lines(&mut self, walk: &mut Walk, size: Size, ram: &MainMemory) -> GeometryTime {
+        let mut time = GeometryTime::default();
+        let (mut lists, _) = self.output.parts(size);
+        let mut first = None;
+        while let Some(chunk) = walk.chunk(ram) {
+            for number in chunk.triangles {
+                let half = record(ram, number);
+                let Some(begin) = first.take() else {
+                    first = Some(half);
+                    continue;
+                };
+                let halves = [begin, half];
+                let mut words = halves.as_flattened().as_chunks().0.iter();
+                let segment = Segment::from_words(std::array::from_fn(|_| {
+                    words.next().map_or(0, |word| u32::from_le_bytes(*word))
+                }));
+                let mut pieces = 0;
+                for piece in segment.pieces(size) {
+                    lists.put_piece(&piece);
+                    pieces += 1;
+                }
+                time.add_line(&segment, pieces);
+            }
+        }
+        time
+    }
+}

@@ -1,0 +1,186 @@
+//! The output of the geometry passes of a frame: descriptors, band lists, and the list of exceptions.
+
+use std::mem;
+
+use glint_core::colour::Shading;
+use glint_core::picture::Size;
+use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word, words};
+use litex_pac::triangle::offset;
+
+use super::region::{COUNT_BITS, Regions, list_words};
+use crate::MainMemory;
+use crate::engines::parameters::Parameters;
+
+/// Words of 32 bits of a descriptor: the engine has flat shading.
+const DESCRIPTOR: usize = words(Shading::Flat);
+
+/// The room for the output in memory.
+#[derive(Clone, Copy, Default)]
+pub struct Room {
+    /// Addresses of descriptors, lists and exceptions.
+    places: [u32; 3],
+    descriptor_limit: u32,
+    list_shift: u32,
+    /// Words of 16 bytes of the table of lengths and all lists.
+    list_words: u64,
+    exception_limit: u32,
+}
+
+impl Room {
+    /// Reads the parameters of a pass.
+    pub fn new(parameters: &Parameters, size: Size) -> Self {
+        let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
+        let count = |register| parameters.unsigned(register, COUNT_BITS);
+        Self {
+            places: [
+                offset::GEOMETRY_DESCRIPTORS,
+                offset::GEOMETRY_LISTS,
+                offset::EXCEPTIONS,
+            ]
+            .map(|register| parameters.word(register)),
+            descriptor_limit: count(offset::DESCRIPTOR_LIMIT),
+            list_shift,
+            list_words: list_words(size, list_shift),
+            exception_limit: count(offset::EXCEPTION_LIMIT),
+        }
+    }
+
+    pub fn check(&self, regions: &mut Regions) {
+        let [descriptors, lists, exceptions] = self.places;
+        let descriptor_words = u64::from(self.descriptor_limit) * DESCRIPTOR as u64 / 4;
+        regions.check(descriptors, descriptor_words);
+        regions.check(lists, self.list_words);
+        regions.check(exceptions, self.exception_limit.div_ceil(4).into());
+    }
+}
+
+/// The exceptions: numbers of triangles in their meshes.
+#[derive(Default)]
+pub struct Exceptions {
+    numbers: Vec<u32>,
+    limit: usize,
+    is_full: bool,
+}
+
+impl Exceptions {
+    /// Appends a number, if there is room.
+    pub fn put(&mut self, number: u32) {
+        if self.numbers.len() < self.limit {
+            self.numbers.push(number);
+        } else {
+            self.is_full = true;
+        }
+    }
+}
+
+/// The output of the passes of a frame so far.
+pub struct Output {
+    room: Room,
+    descriptors: Vec<u32>,
+    lists: Vec<u32>,
+    counts: ListCounts,
+    exceptions: Exceptions,
+    /// Counts of descriptors and list entries, and number of exceptions, that are in memory.
+    written: (ListCounts, usize),
+}
+
+impl Output {
+    pub const fn new() -> Self {
+        Self {
+            room: Room {
+                places: [0; 3],
+                descriptor_limit: 0,
+                list_shift: 0,
+                list_words: 0,
+                exception_limit: 0,
+            },
+            descriptors: Vec::new(),
+            lists: Vec::new(),
+            counts: ListCounts::EMPTY,
+            exceptions: Exceptions {
+                numbers: Vec::new(),
+                limit: 0,
+                is_full: false,
+            },
+            written: (ListCounts::EMPTY, 0),
+        }
+    }
+
+    /// Prepares for a pass, which continues the output of the pass before, or begins with empty lists.
+    pub fn open(&mut self, room: Room, continues: bool) {
+        if !continues {
+            let Self {
+                descriptors, lists, ..
+            } = mem::replace(self, Self::new());
+            (self.descriptors, self.lists) = (descriptors, lists);
+        }
+        self.room = room;
+        let descriptor_words = room.descriptor_limit as usize * DESCRIPTOR;
+        self.descriptors.resize(descriptor_words, 0);
+        self.lists.resize(4 * room.list_words as usize, 0);
+        self.exceptions.limit = room.exception_limit as usize;
+    }
+
+    /// The lists, to which a pass for a picture of this size appends.
+    pub fn parts(&mut self, size: Size) -> (ListWriter<'_>, &mut Exceptions) {
+        let lists = ListWriter::new(
+            &mut self.descriptors,
+            &mut self.lists,
+            &mut self.counts,
+            size.width(),
+            self.room.list_shift,
+            Shading::Flat,
+        );
+        (lists, &mut self.exceptions)
+    }
+
+    /// Number of descriptors.
+    pub const fn descriptors(&self) -> u32 {
+        self.counts.descriptors()
+    }
+
+    /// Number of exceptions.
+    pub const fn exceptions(&self) -> u32 {
+        self.exceptions.numbers.len() as u32
+    }
+
+    /// Whether a descriptor, a list entry or an exception had no room.
+    pub const fn is_full(&self) -> bool {
+        self.counts.is_full() || self.exceptions.is_full
+    }
+
+    /// Writes to memory what is new. Returns the number of words of 16 bytes.
+    pub fn write(&mut self, ram: &mut MainMemory) -> u32 {
+        let [descriptors, lists, exceptions] = self.room.places;
+        let (before, listed) = mem::replace(
+            &mut self.written,
+            (self.counts.clone(), self.exceptions.numbers.len()),
+        );
+        let mut written = 0;
+        let mut put = |place: u32, first: usize, words: Option<&[u32]>| {
+            let words = words.unwrap_or_default();
+            let start = place.wrapping_add(4 * first as u32);
+            if let Some(bytes) = ram.bytes_mut(start, 4 * words.len()) {
+                for (bytes, word) in bytes.as_chunks_mut().0.iter_mut().zip(words) {
+                    *bytes = word.to_le_bytes();
+                }
+            }
+            written += words.len().div_ceil(4) as u32;
+        };
+        let ends = [&before, &self.counts].map(|counts| counts.descriptors() as usize);
+        let [first, end] = ends.map(|number| number * DESCRIPTOR);
+        put(descriptors, first, self.descriptors.get(first..end));
+        let lengths = before.lengths().iter().zip(self.counts.lengths());
+        for (band, (&from, &to)) in (0..).zip(lengths) {
+            let list = 4 * list_word(band, self.room.list_shift) as usize;
+            let (first, end) = (list + from as usize, list + to as usize);
+            put(lists, first, self.lists.get(first..end));
+        }
+        put(lists, 0, Some(self.counts.lengths()));
+        // Each exception is written alone.
+        for (place, number) in self.exceptions.numbers.iter().enumerate().skip(listed) {
+            put(exceptions, place, Some(&[*number]));
+        }
+        written
+    }
+}

@@ -1,0 +1,343 @@
+//! The raster pass: from descriptors and band lists in memory to a frame in memory.
+
+use glint_core::picture::Size;
+use glint_model::FrameBuffer;
+use glint_model::line::band_bounds;
+use glint_model::triangle::descriptor::{Contents, Descriptor, GROUP, LENGTHS, list_word};
+use glint_model::triangle::raster::draw_groups;
+use glint_model::triangle::setup::Bounds;
+use litex_pac::triangle::{Counters, Error, Raster, offset};
+
+use super::region::{COUNT_BITS, Regions, WORD, entry, list_words, picture_size, record};
+use super::time::{RasterTime, Work};
+use crate::MainMemory;
+use crate::engines::parameters::Parameters;
+use crate::engines::raymarch::Raymarcher;
+
+/// Words of 16 bytes of a descriptor.
+const DESCRIPTOR: u32 = 3;
+
+/// The first and the last word of a line that was drawn; without one, the first is behind the last.
+type Extent = [i32; 2];
+
+const EMPTY: Extent = [i32::MAX, 0];
+
+const fn united(a: Extent, b: Extent) -> Extent {
+    let first = if a[0] < b[0] { a[0] } else { b[0] };
+    let last = if a[1] > b[1] { a[1] } else { b[1] };
+    [first, last]
+}
+
+/// A set of lists and descriptors.
+struct Set {
+    /// Numbers of the first words.
+    lists: u32,
+    descriptors: u32,
+    /// Number of descriptors.
+    count: u32,
+}
+
+/// The raster unit.
+pub struct RasterUnit {
+    colour: Vec<u16>,
+    depth: Vec<u32>,
+    /// The words drawn in each line of this frame, and in the last frame of each slot.
+    now: Vec<Extent>,
+    last: [Vec<Extent>; 2],
+    /// For each slot, whether its frame buffer holds a complete frame.
+    known: [bool; 2],
+}
+
+impl RasterUnit {
+    pub fn new() -> Self {
+        let [pixels, lines] = [Size::W1280.pixel_count(), Size::W1280.height() as usize];
+        Self {
+            colour: vec![0; pixels],
+            depth: vec![0; pixels],
+            now: vec![EMPTY; lines],
+            last: [vec![EMPTY; lines], vec![EMPTY; lines]],
+            known: [false; 2],
+        }
+    }
+
+    /// The frame in a slot has not been completed.
+    pub fn cancel(&mut self, slot: bool) {
+        self.known[usize::from(slot)] = false;
+    }
+
+    /// Does the work of a pass.
+    ///
+    /// # Errors
+    /// The reason why the pass is refused; memory is then unchanged.
+    pub fn run(
+        &mut self,
+        flags: Raster,
+        parameters: &Parameters,
+        raymarcher: &mut Raymarcher,
+        now: u64,
+        ram: &mut MainMemory,
+    ) -> Result<Work, Error> {
+        let size = picture_size(flags.size()).ok_or(Error::Size)?;
+        let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
+        let frame = parameters.word(offset::FRAME);
+        let depth = flags.depth().then(|| parameters.word(offset::DEPTH));
+        let frame_words = (size.pixel_count() / GROUP as usize) as u64;
+        let mut regions = Regions::default();
+        regions.check(frame, frame_words);
+        if let Some(depth) = depth {
+            regions.check(depth, 2 * frame_words);
+        }
+        let sets = [
+            (
+                flags.first(),
+                [offset::LISTS_0, offset::DESCRIPTORS_0, offset::COUNT_0],
+            ),
+            (
+                flags.second(),
+                [offset::LISTS_1, offset::DESCRIPTORS_1, offset::COUNT_1],
+            ),
+        ]
+        .map(|(is_present, [lists, descriptors, count])| {
+            is_present.then(|| {
+                let [lists, descriptors] = [lists, descriptors].map(|at| parameters.word(at));
+                let count = parameters.unsigned(count, COUNT_BITS);
+                regions.check(lists, list_words(size, list_shift));
+                regions.check(descriptors, u64::from(count) * u64::from(DESCRIPTOR));
+                Set {
+                    lists: lists / WORD,
+                    descriptors: descriptors / WORD,
+                    count,
+                }
+            })
+        });
+        regions.result()?;
+
+        let clear = parameters.unsigned(offset::CLEAR, 16) as u16;
+        let slot = usize::from(flags.slot());
+        let is_whole = flags.whole() || flags.depth() || !self.known[slot];
+        let mut drawing = self.begin(size, clear);
+        for band in 0..size.bands() {
+            for set in sets.iter().flatten() {
+                drawing.draw_list(set, band, list_shift, ram);
+            }
+            drawing.end_band(band, is_whole);
+        }
+        if raymarcher.draws() {
+            drawing.draw_field(raymarcher, now);
+        }
+        let Drawing {
+            counts,
+            time,
+            is_damaged,
+            ..
+        } = drawing;
+        let mut written = self.flush(size, slot, is_whole, frame, ram);
+        if let Some(depth) = depth {
+            written += self.flush_depth(size, depth, ram);
+        }
+        self.known[slot] = true;
+        // Counters are modulo 2^32.
+        let counters = Counters {
+            items_in: counts.read as u32,
+            items_out: written,
+            cycles_walking: time.walking as u32,
+            groups: counts.groups as u32,
+            pixels_covered: counts.covered as u32,
+            pixels_drawn: counts.drawn as u32,
+            ..Counters::default()
+        };
+        Ok(Work {
+            error: if is_damaged { Error::List } else { Error::None },
+            cycles: time.cycles(),
+            counters,
+        })
+    }
+
+    fn begin(&mut self, size: Size, clear: u16) -> Drawing<'_> {
+        let [width, height] = size.pixels();
+        let pixels = size.pixel_count();
+        // A picture is at most as large as these.
+        let colour = self.colour.get_mut(..pixels).unwrap_or_default();
+        let depth = self.depth.get_mut(..pixels).unwrap_or_default();
+        colour.fill(clear);
+        depth.fill(0);
+        self.now.fill(EMPTY);
+        Drawing {
+            size,
+            target: FrameBuffer {
+                width,
+                height,
+                colour,
+                depth,
+            },
+            extents: &mut self.now,
+            counts: Counts::default(),
+            time: RasterTime::default(),
+            is_damaged: false,
+        }
+    }
+
+    /// Writes the words of a frame that can differ from those in memory. Returns their number.
+    fn flush(
+        &mut self,
+        size: Size,
+        slot: usize,
+        is_whole: bool,
+        frame: u32,
+        ram: &mut MainMemory,
+    ) -> u32 {
+        let (width, words) = (size.width() as usize, (size.width() as i32) / GROUP);
+        let lines = self.colour.chunks_exact(width).zip(&self.now);
+        let lines = lines.zip(&mut self.last[slot]).take(size.height() as usize);
+        let mut written = 0;
+        for (number, ((line, now), last)) in (0..).zip(lines) {
+            let [first, end] = match united(*now, *last) {
+                _ if is_whole => [0, words],
+                [first, last] => [first, last + 1],
+            };
+            *last = *now;
+            if first >= end {
+                continue;
+            }
+            let pixels = (first * GROUP) as usize..(end * GROUP) as usize;
+            let place = frame + 2 * (number * size.width() + pixels.start as u32);
+            let line = line.get(pixels).unwrap_or_default();
+            if let Some(bytes) = ram.bytes_mut(place, 2 * line.len()) {
+                for (bytes, pixel) in bytes.as_chunks_mut().0.iter_mut().zip(line) {
+                    *bytes = pixel.to_le_bytes();
+                }
+            }
+            written += (end - first) as u32;
+        }
+        written
+    }
+
+    /// Writes the depths of a frame. Returns the number of words.
+    fn flush_depth(&self, size: Size, place: u32, ram: &mut MainMemory) -> u32 {
+        let depth = self.depth.get(..size.pixel_count()).unwrap_or_default();
+        if let Some(bytes) = ram.bytes_mut(place, 4 * depth.len()) {
+            for (bytes, code) in bytes.as_chunks_mut().0.iter_mut().zip(depth) {
+                *bytes = code.to_le_bytes();
+            }
+        }
+        (depth.len() / 4) as u32
+    }
+}
+
+/// Counts of a frame.
+#[derive(Default)]
+struct Counts {
+    /// Words read from memory.
+    read: u64,
+    groups: u64,
+    covered: u64,
+    drawn: u64,
+}
+
+/// A frame that is being drawn.
+struct Drawing<'a> {
+    size: Size,
+    target: FrameBuffer<'a>,
+    extents: &'a mut [Extent],
+    counts: Counts,
+    time: RasterTime,
+    /// Whether a list was too long, or named a number that is no descriptor, or a descriptor was damaged.
+    is_damaged: bool,
+}
+
+impl Drawing<'_> {
+    /// Draws the list of a band in a set.
+    fn draw_list(&mut self, set: &Set, band: u32, list_shift: u32, ram: &MainMemory) {
+        let length = entry(ram, set.lists, band);
+        self.counts.read += 1;
+        if length > 4 << list_shift {
+            self.is_damaged = true;
+            return;
+        }
+        self.counts.read += u64::from(length.div_ceil(4));
+        let list = set.lists + list_word(band, list_shift);
+        let bounds = band_bounds(self.size, band);
+        for place in 0..length {
+            let number = entry(ram, list, place);
+            self.is_damaged |= number >= set.count;
+            let number = number & ((1 << COUNT_BITS) - 1);
+            let first = set.descriptors + DESCRIPTOR * number;
+            let words = [0, 1, 2].map(|word| record(ram, first.wrapping_add(word)));
+            let words = words.as_flattened().as_chunks().0.iter();
+            let descriptor = Descriptor::from_words(words.map(|word| u32::from_le_bytes(*word)));
+            // A descriptor stays in the engine for the bands after the first one.
+            self.draw(&descriptor, &bounds);
+        }
+    }
+
+    /// Draws the part of a descriptor's contents in a band.
+    fn draw(&mut self, descriptor: &Descriptor, band: &Bounds) {
+        let Self {
+            target, extents, ..
+        } = self;
+        let mut groups = 0;
+        let mut visit = |row: i32, columns: Extent| {
+            groups += (columns[1] - columns[0] + 1) as u32;
+            if let Some(extent) = extents.get_mut(row as usize) {
+                *extent = united(*extent, columns);
+            }
+        };
+        let [covered, drawn] = match descriptor.contents(target.width) {
+            Contents::Triangle(setup, colour) => {
+                let Some(part) = setup.in_rows(band.top..band.bottom) else {
+                    return;
+                };
+                if part.bounds.top == setup.bounds.top {
+                    self.counts.read += u64::from(DESCRIPTOR);
+                }
+                let coverage = draw_groups(&part, colour, target, &mut visit);
+                [coverage.covered, coverage.drawn]
+            }
+            Contents::Piece(piece) => {
+                self.counts.read += u64::from(DESCRIPTOR);
+                let mut covered = 0;
+                let drawn = piece.draw(band, target, &mut |pixel| {
+                    covered += 1;
+                    visit(pixel.row, [pixel.column / GROUP; 2]);
+                });
+                [covered, drawn]
+            }
+            Contents::Stray => {
+                self.is_damaged = true;
+                return;
+            }
+        };
+        self.time.add(groups);
+        self.counts.groups += u64::from(groups);
+        self.counts.covered += u64::from(covered);
+        self.counts.drawn += u64::from(drawn);
+    }
+
+    /// Draws the field, which the gateware does in each band after the triangles there.
+    fn draw_field(&mut self, raymarcher: &mut Raymarcher, now: u64) {
+        let field = raymarcher.draw(self.size, &mut self.target, now);
+        let last = self.size.width() as i32 / GROUP - 1;
+        let lines = self.extents.iter_mut().take(self.size.height() as usize);
+        lines.for_each(|extent| *extent = [0, last]);
+        self.time.add_field(field.cycles);
+        self.counts.groups += u64::from(field.pixels);
+        self.counts.covered += u64::from(field.pixels);
+        self.counts.drawn += u64::from(field.drawn);
+    }
+
+    fn end_band(&mut self, band: u32, is_whole: bool) {
+        let bounds = band_bounds(self.size, band);
+        let lines = self
+            .extents
+            .get(bounds.top as usize..bounds.bottom as usize);
+        let words = if is_whole {
+            self.size.band_lines() * self.size.width() / GROUP as u32
+        } else {
+            let words = |[first, last]: &Extent| (last - first + 1).max(0) as u32;
+            lines.unwrap_or_default().iter().map(words).sum()
+        };
+        self.time.end_band(self.size, words);
+    }
+}
+
+const _: () = assert!(Size::W1280.bands() as usize <= LENGTHS);

@@ -1,0 +1,278 @@
+//! Frames of meshes.
+
+use glint_core::camera::{Projection, View};
+use glint_core::colour::Rgb565;
+use glint_core::fixed::{Q8_24, Turns};
+use glint_core::matrix::{Axis, Matrix};
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::triangle::vertex_cache;
+use glint_model::triangle::{Part, draw_parts};
+use glint_model::{MeshLight, MeshSetup, Placement, Projected, Stats};
+use glint_vectors::meshes::{self, ahead, at};
+use glint_vectors::picture::CLEAR;
+use glint_vectors::scenes::{inside, scenes};
+use glint_vectors::{Model, Picture};
+use litex_pac::register::Value;
+use litex_pac::triangle::{Error, offset};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+
+use crate::bench::{Bench, Kind, UNTOUCHED, alone};
+
+/// In place of the models that `glint` generates.
+fn shape(name: &str) -> Vec<u8> {
+    let model = match name {
+        "sponge:1" => Model::cube(8192),
+        _ => Model::sphere(0.5, 16),
+    };
+    model.encoded()
+}
+
+fn by_model(size: Size, parts: &[Part]) -> Picture {
+    let mut picture = Picture::blank(size.pixels().into());
+    let vertices = parts.iter().map(|part| part.mesh.largest_chunk()).max();
+    let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
+    let mut part = |number: usize| parts.get(number).copied();
+    picture.stats = draw_parts(
+        &mut part,
+        CLEAR,
+        &mut picture.target(),
+        &mut scratch,
+        &mut |_| {},
+    )
+    .unwrap();
+    picture
+}
+
+/// Draws parts by the engine and by the model, and compares pictures and counts.
+fn check(bench: &mut Bench, name: &str, size: Size, parts: &[Part]) -> Stats {
+    let expected = by_model(size, parts);
+    let counters = [
+        offset::VERTICES,
+        offset::PIXELS_COVERED,
+        offset::PIXELS_DRAWN,
+    ];
+    let before = counters.map(|counter| bench.read(counter));
+    let left_out = bench.draw(size, false, parts);
+    bench.compare(name, size, false, &expected);
+    let stats = expected.stats;
+    let grown = [0, 1, 2].map(|i| bench.read(counters[i]).wrapping_sub(before[i]));
+    let fetches = parts.iter().map(|part| vertex_cache::fetches(&part.mesh));
+    let expected = [
+        fetches.sum(),
+        stats.pixels_covered as u32,
+        stats.pixels_drawn as u32,
+    ];
+    assert_eq!(
+        grown, expected,
+        "{name}: vertices, pixels covered and drawn"
+    );
+    let [drawn, listed] =
+        [offset::DESCRIPTOR_COUNT, offset::EXCEPTION_COUNT].map(|at| bench.read(at));
+    assert_eq!(listed, stats.clipped, "{name}: exceptions");
+    let whole: u32 = left_out.iter().sum::<u32>() + drawn + listed;
+    assert_eq!(whole, stats.triangles_in, "{name}: triangles");
+    stats
+}
+
+#[test]
+fn scenes_of_all_sizes() {
+    let mut bench = Bench::new();
+    let (mut pixels, mut clipped) = (0, 0);
+    for size in Size::ALL {
+        let [width, height] = size.pixels();
+        for (name, mesh, view, cull) in scenes(shape) {
+            for projection in Projection::ALL {
+                let view = view.with_projection(projection);
+                let radius = Mesh::new_checked(&mesh).unwrap().radius();
+                let frame = MeshSetup::new(&view, width, height, radius).unwrap();
+                let name = format!("{name}, {size}, {projection}");
+                let stats = check(&mut bench, &name, size, &[alone(&mesh, frame, cull)]);
+                pixels += stats.pixels_covered;
+                clipped += stats.clipped;
+            }
+        }
+    }
+    println!("{pixels} pixels, {clipped} clipped");
+    assert!(pixels > 1_000_000 && clipped > 100);
+}
+
+/// Objects: turned, scaled, mirrored, of other colours, in a light.
+#[test]
+fn frames_of_several_objects() {
+    let mut random = Pcg64Mcg::new(21);
+    let mut bench = Bench::new();
+    let mut counts = [0; 3];
+    for number in 0..40 {
+        let meshes: Vec<Vec<u8>> = (0..random.random_range(1..6))
+            .map(|_| match random.random_range(0..3) {
+                0 => shape("icosphere:4"),
+                1 => meshes::mesh(&[], 100),
+                _ => meshes::mesh(&meshes::random(&mut random, 40, 0.7), 65_535),
+            })
+            .collect();
+        let size = Size::ALL[number % 2];
+        let [width, height] = size.pixels();
+        let view = [inside(), ahead(1.0, 0.1)][number / 2 % 2];
+        let camera = MeshSetup::new(&view, width, height, 0).unwrap();
+        let light = random
+            .random::<bool>()
+            .then(|| some_light(&mut random, &view));
+        let parts: Vec<Part> = meshes
+            .iter()
+            .map(|mesh| {
+                let radius = Mesh::new_checked(mesh).unwrap().radius();
+                let placement = some_place(&mut random);
+                let mut frame = placement.setup(&view, &camera, radius).unwrap();
+                if let Some(light) = &light {
+                    frame.light = light.row;
+                }
+                let mut part = alone(mesh, frame, random.random());
+                part.options.colour = random.random::<bool>().then(|| Rgb565(random.random()));
+                part.options.light = light.as_ref();
+                part
+            })
+            .collect();
+        let stats = check(&mut bench, &format!("frame {number}"), size, &parts);
+        counts[0] += stats.drawn;
+        counts[1] += stats.clipped;
+        counts[2] += parts.iter().filter(|part| part.frame.mirrors).count() as u32;
+    }
+    println!("{counts:?} drawn, clipped, mirrored");
+    assert!(counts.iter().all(|&count| count > 20), "{counts:?}");
+}
+
+fn some_place(random: &mut Pcg64Mcg) -> Placement {
+    let number = |x: f64| Q8_24::from_num(x);
+    let sign = [1.0, -1.0][random.random_range(0..2)];
+    let scale = number(sign * random.random_range(0.1..1.5));
+    let place = [0; 3].map(|_| number(random.random_range(-0.5..0.5)));
+    let matrix = Matrix::scale([scale; 3])
+        .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, Turns(random.random()))))
+        .and_then(|matrix| matrix.then(&Matrix::translation(place)?));
+    Placement::new(matrix.unwrap())
+}
+
+fn some_light(random: &mut Pcg64Mcg, view: &View) -> MeshLight {
+    let mut part = || random.random_range(0..=256);
+    MeshLight {
+        row: [3 << 20, -5 << 20, 4 << 20],
+        forward: view.n().map(|part| part.to_bits()),
+        colour: [part(), part(), part()],
+        ambient: [part(), part(), part()],
+    }
+}
+
+/// After a frame, the frame buffer holds it, and only words that can differ have been written.
+#[test]
+fn nothing_new_is_not_written() {
+    let mut bench = Bench::new();
+    let nothing = meshes::mesh(&[], 100);
+    // At 1280x720, a square covers 160 pixels (20 or 21 words) of each of about 90 lines.
+    let square = |x: f64| {
+        let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
+        let corner = |x, z| at(x, 0.0, z);
+        let corners = [
+            [corner(left, top), corner(right, top), corner(right, bottom)],
+            [
+                corner(left, top),
+                corner(right, bottom),
+                corner(left, bottom),
+            ],
+        ];
+        meshes::mesh(&corners.map(|corners| (corners, 0xf800)), 100)
+    };
+    let size = Size::W1280;
+    let [width, height] = size.pixels();
+    for (name, mesh, slot, words) in [
+        ("fresh", &nothing, false, 115_200..=115_200),
+        ("nothing again", &nothing, false, 0..=0),
+        ("a square", &square(0.0), false, 1600..=1932),
+        ("the other slot", &square(0.0), true, 115_200..=115_200),
+        ("the same square", &square(0.0), false, 1600..=1932),
+        ("the next square", &square(0.5), false, 3200..=3864),
+        ("nothing left", &nothing, false, 1600..=1932),
+        ("and nothing new", &nothing, false, 0..=0),
+    ] {
+        let radius = Mesh::new_checked(mesh).unwrap().radius();
+        let frame = MeshSetup::new(&ahead(1.0, 0.1), width, height, radius).unwrap();
+        let part = alone(mesh, frame, false);
+        let flags = bench.prepare(&part);
+        assert_eq!(bench.pass(Kind::Geometry, flags.bits()), Error::None);
+        let flags = bench.prepare_raster(size, slot, &[]).with_depth(false);
+        let before = bench.read(offset::ITEMS_OUT);
+        assert_eq!(bench.pass(Kind::Raster, flags.bits()), Error::None);
+        let written = bench.read(offset::ITEMS_OUT) - before;
+        assert!(words.contains(&written), "{name}: {written} words");
+        let expected = by_model(size, &[part]);
+        assert!(bench.picture(size, slot).0 == expected.colour, "{name}");
+    }
+}
+
+/// A frame that was cancelled, or one in a buffer whose contents are unknown, is written as a whole.
+#[test]
+fn a_frame_is_whole_after_a_cancelled_one() {
+    let mut bench = Bench::new();
+    let mesh = shape("icosphere:4");
+    let radius = Mesh::new_checked(&mesh).unwrap().radius();
+    let frame = MeshSetup::new(&ahead(1.0, 0.1), 320, 180, radius).unwrap();
+    let part = alone(&mesh, frame, true);
+    let expected = by_model(Size::W320, &[part]);
+    let untouched = UNTOUCHED.to_le_bytes().repeat(320 * 180);
+    for is_cancelled in [true, false] {
+        bench.draw(Size::W320, false, &[part]);
+        bench.write(crate::bench::FRAMES[0], &untouched);
+        let flags = bench
+            .prepare_raster(Size::W320, false, &[])
+            .with_depth(false);
+        if is_cancelled {
+            bench.set(offset::RASTER, flags.bits());
+            bench.now += 50;
+            bench.cancel();
+            assert_eq!(bench.finish(Kind::Raster), Error::Cancelled);
+            bench.pass(Kind::Raster, flags.bits());
+        } else {
+            bench.pass(Kind::Raster, flags.with_whole(true).bits());
+        }
+        let (colour, _) = bench.picture(Size::W320, false);
+        assert!(colour == expected.colour, "cancelled {is_cancelled}");
+    }
+}
+
+/// A pass takes about the clocks of the gateware, alone with a memory (docs/triangle.md): 4,200 and 7,517 for icosphere:6, which this
+/// sphere resembles. Counters grow meanwhile.
+#[test]
+fn passes_take_about_the_time_of_the_gateware() {
+    let mut bench = Bench::new();
+    let mesh = Model::sphere(0.5, 14).encoded();
+    let radius = Mesh::new_checked(&mesh).unwrap().radius();
+    let frame = MeshSetup::new(&ahead(0.4781, 0.5), 320, 180, radius).unwrap();
+    let part = alone(&mesh, frame, true);
+    bench.draw(Size::W320, false, &[part]);
+    let flags = bench.prepare(&part);
+    bench.set(offset::GEOMETRY, flags.bits());
+    let start = bench.now;
+    bench.now += 1000;
+    let half = bench.read(offset::ITEMS_IN);
+    bench.finish(Kind::Geometry);
+    let geometry = bench.now - start;
+    assert!(half < bench.read(offset::ITEMS_IN));
+    let flags = bench
+        .prepare_raster(Size::W320, false, &[])
+        .with_depth(false);
+    let counters = [
+        offset::CYCLES_RASTER,
+        offset::CYCLES_BUSY,
+        offset::CYCLES_GEOMETRY,
+    ];
+    let before = counters.map(|counter| bench.read(counter));
+    let start = bench.now;
+    bench.pass(Kind::Raster, flags.bits());
+    let raster = bench.now - start;
+    let grown = [0, 1, 2].map(|i| u64::from(bench.read(counters[i]) - before[i]));
+    assert_eq!(grown, [raster, raster, 0]);
+    println!("{geometry} and {raster} cycles");
+    assert!((3_500..5_500).contains(&geometry), "{geometry} cycles");
+    assert!((6_500..9_500).contains(&raster), "{raster} cycles");
+}
