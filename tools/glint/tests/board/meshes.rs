@@ -254,7 +254,7 @@ fn shown_over_the_line<S: Simulation>(
 
 #[test]
 fn colours_come_over_the_line() {
-    let mut board = running_board();
+    let mut board = emulator();
     let (mut renderer, expected) = shown_over_the_line(&mut board);
     let colour = renderer
         .colour(Size::W320, Route::Serial, &mut |_, _| {})

@@ -1,6 +1,6 @@
 //! Uploads of meshes over a line with faults, and uploads of invalid meshes.
 
-use crate::common::{address, console, emulator, info, mesh};
+use crate::common::{address, console, emulator, info, mesh, running_board};
 use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
 use glint::fuzz::Random;
@@ -53,7 +53,7 @@ impl Board for BadLine<'_> {
 fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     let mesh = mesh("icosphere:4");
     let Manifest { length, crc32 } = Manifest::of(&mesh);
-    let mut board = emulator();
+    let mut board = running_board();
     let mut console = console(&mut board);
     let staging = address(&mut console, "staging");
     let command = format!("load {length} {crc32:08x}");

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::firmware::{LIMIT, PROMPT, command, image, started};
+use crate::firmware::{LIMIT, PROMPT, command, emulated, image, started};
 use litex_pac::triangle::Counters;
 
 /// Keys of output lines whose values depend on time.
@@ -95,7 +95,7 @@ fn console_output_matches_the_transcript() {
 
 #[test]
 fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
-    let (mut board, _) = started(&image());
+    let (mut board, _) = emulated(&image());
     // Noise of all bytes except line ends and Ctrl-C: editing keys, partial characters and escape sequences.
     let noise = (0..500_u32).map(|index| (index.wrapping_mul(0x9e37_79b9) >> 24) as u8);
     board.uart_write(
@@ -129,7 +129,7 @@ fn noise_and_overlong_lines_are_rejected_and_nothing_is_lost() {
 
 #[test]
 fn pins_are_read_and_driven() {
-    let (mut board, _) = started(&image());
+    let (mut board, _) = emulated(&image());
     board.set_buttons(0b0101);
     board.set_switches(0xbeef);
     assert!(command(&mut board, "buttons").contains("buttons 0x5\r\nswitches 0xbeef\r\nok"));

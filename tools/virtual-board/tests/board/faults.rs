@@ -1,16 +1,16 @@
 //! Tests of the firmware on gateware of another build, and of its report of traps.
 
-use crate::firmware::{LIMIT, PROMPT, address, command, image, patch, started};
+use crate::firmware::{LIMIT, PROMPT, address, command, emulated, image, patch, started};
+use emulated_board::EmulatedBoard;
 use litex_pac::BUILD_ID;
 use litex_pac::memories::MAIN_RAM;
-use virtual_board::{Start, VirtualBoard};
 
 #[test]
 fn gateware_of_another_build_is_reported_and_the_console_works() {
     let mut image = image();
     // Changes the firmware's build id, as if the firmware had been built for another gateware.
     patch(&mut image, address(&["GLINT_BUILD_ID"]), &[!BUILD_ID]);
-    let (mut board, said) = started(&image);
+    let (mut board, said) = emulated(&image);
     let (found, expected) = (
         format!("gateware {BUILD_ID:#010x}"),
         format!("built for gateware {:#010x}", !BUILD_ID),
@@ -41,10 +41,7 @@ fn firmware_for_more_memory_than_the_board_has_is_refused() {
     // Changes the end of the firmware's memory map from 128 MB to 256 MB.
     let end = MAIN_RAM.base + 2 * MAIN_RAM.size;
     patch(&mut image, address(&["GLINT_WINDOWS_END"]), &[end]);
-    let mut board = VirtualBoard::builder()
-        .start(Start::Fast { firmware: &image })
-        .build()
-        .expect("a virtual board");
+    let mut board = EmulatedBoard::fast(&image).expect("an image that fits");
     let said = board
         .read_until("press Enter to restart\r\n", LIMIT)
         .expect("a refusal");
@@ -71,7 +68,7 @@ fn a_trap_reports_its_cause_and_address_and_enter_restarts() {
     let mut image = image();
     for (cause, code, value) in TRAPS {
         patch(&mut image, reboot, code);
-        let (mut board, _) = started(&image);
+        let (mut board, _) = emulated(&image);
         board.uart_write(b"reboot\r");
         let said = board
             .read_until("press Enter to restart\r\n", LIMIT)

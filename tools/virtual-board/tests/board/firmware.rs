@@ -1,7 +1,8 @@
-//! Helpers for tests of the firmware: its image, and boards that run it.
+//! Helpers for tests of the firmware: its image, and boards that run it, virtual or emulated.
 
 use std::path::{Path, PathBuf};
 
+use emulated_board::EmulatedBoard;
 use litex_pac::memories::MAIN_RAM;
 use object::{Object, ObjectSymbol};
 use virtual_board::{Start, VirtualBoard};
@@ -50,22 +51,61 @@ pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
     image[offset..][..bytes.len()].copy_from_slice(&bytes);
 }
 
-/// Starts a board with `image`; returns the board, and its output up to the first prompt.
+/// A board with a console.
+pub trait Console {
+    /// Sends bytes to the UART.
+    fn send(&mut self, bytes: &[u8]);
+
+    /// Runs until the board has sent `expected`; returns the output up to the end of `expected`.
+    ///
+    /// # Panics
+    /// If `expected` has not come within [`LIMIT`]; the message names `what` was done.
+    fn expect(&mut self, expected: &str, what: &str) -> String;
+}
+
+impl Console for VirtualBoard {
+    fn send(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn expect(&mut self, expected: &str, what: &str) -> String {
+        self.read_until(expected, LIMIT)
+            .unwrap_or_else(|error| panic!("`{what}`: {error}"))
+    }
+}
+
+impl Console for EmulatedBoard {
+    fn send(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn expect(&mut self, expected: &str, what: &str) -> String {
+        self.read_until(expected, LIMIT)
+            .unwrap_or_else(|error| panic!("`{what}`: {error}"))
+    }
+}
+
+/// Starts an emulated board with `image`; returns the board, and its output up to the first prompt.
+pub fn emulated(image: &[u8]) -> (EmulatedBoard, String) {
+    let mut board = EmulatedBoard::fast(image).expect("an image that fits");
+    let said = board.expect(PROMPT, "start");
+    (board, said)
+}
+
+/// Starts a virtual board with `image`; returns the board, and its output up to the first prompt.
 pub fn started(image: &[u8]) -> (VirtualBoard, String) {
     let start = Start::Fast { firmware: image };
     let mut board = VirtualBoard::builder()
         .start(start)
         .build()
         .expect("a virtual board");
-    let said = board.read_until(PROMPT, LIMIT).expect("a prompt");
+    let said = board.expect(PROMPT, "start");
     (board, said)
 }
 
 /// Sends a line and returns the output up to the next prompt, echo first.
-pub fn command(board: &mut VirtualBoard, line: &str) -> String {
-    board.uart_write(line.as_bytes());
-    board.uart_write(b"\r");
-    board
-        .read_until(PROMPT, LIMIT)
-        .unwrap_or_else(|error| panic!("`{line}`: {error}"))
+pub fn command(board: &mut impl Console, line: &str) -> String {
+    board.send(line.as_bytes());
+    board.send(b"\r");
+    board.expect(PROMPT, line)
 }

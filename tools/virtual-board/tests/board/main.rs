@@ -6,6 +6,7 @@ mod bios;
 mod console;
 mod faults;
 mod firmware;
+mod lockstep;
 mod pins;
 mod program;
 mod scan_out;

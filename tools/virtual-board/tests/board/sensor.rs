@@ -1,7 +1,8 @@
-//! Tests of the SoC's I2C master, and of the firmware's attitude, with a virtual MPU-6050 on the SoC's pins.
+//! Tests of the SoC's I2C master, and of the firmware's attitude, with a virtual MPU-6050 on the pins.
 
-use crate::firmware::{LIMIT, PROMPT, command, image};
+use crate::firmware::{Console, PROMPT, command, image};
 use crate::program;
+use emulated_board::EmulatedBoard;
 use litex_pac::{i2c, leds};
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 use virtual_board::{Start, VirtualBoard};
@@ -10,8 +11,8 @@ use virtual_board::{Start, VirtualBoard};
 const STEP: u64 = 8;
 
 /// Returns the number of cycles of the system clock in a millisecond.
-fn millisecond(board: &VirtualBoard) -> u64 {
-    u64::from(board.clock_hz()) / 1000
+fn millisecond(clock_hz: u32) -> u64 {
+    u64::from(clock_hz) / 1000
 }
 
 pub fn sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
@@ -44,7 +45,7 @@ fn a_program_reads_the_sensor_through_the_pins() {
     sensor.log = Some(Vec::new());
     board.plug(sensor);
     // A transaction of five bytes takes less than a quarter of a millisecond.
-    let round = millisecond(&board) / 4;
+    let round = millisecond(board.clock_hz()) / 4;
     board.run(round);
     assert_eq!(board.leds(), 0x168);
     board
@@ -85,14 +86,8 @@ fn numbers(text: &str) -> Vec<f64> {
     words.map(|word| word.parse().expect("a number")).collect()
 }
 
-/// Starts a board with a sensor that is already set up, since a reset of the sensor would take a tenth of a second.
-pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
-    let image = image();
-    let start = Start::Fast { firmware: &image };
-    let mut board = VirtualBoard::builder()
-        .start(start)
-        .build()
-        .expect("a virtual board");
+/// Returns a sensor that is already set up, since a reset of the sensor would take a tenth of a second.
+fn ready_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
     let mut sensor = sensor(motion);
     for (register, value) in [
         (0x6b, 0x01),
@@ -104,15 +99,34 @@ pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Virt
     ] {
         sensor.chip.write(register, value);
     }
-    board.plug(sensor);
-    board.read_until(PROMPT, LIMIT).expect("a prompt");
+    sensor
+}
+
+/// Starts a virtual board with a sensor.
+pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
+    let image = image();
+    let start = Start::Fast { firmware: &image };
+    let mut board = VirtualBoard::builder()
+        .start(start)
+        .build()
+        .expect("a virtual board");
+    board.plug(ready_sensor(motion));
+    board.expect(PROMPT, "start");
+    board
+}
+
+/// Starts an emulated board with a sensor.
+fn emulated_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> EmulatedBoard {
+    let mut board = EmulatedBoard::fast(&image()).expect("an image that fits");
+    board.plug(ready_sensor(motion));
+    board.expect(PROMPT, "start");
     board
 }
 
 #[test]
 fn the_camera_follows_the_sensor_and_a_replugged_one_is_found() {
     let mut board = board_with_sensor(turn);
-    let millisecond = millisecond(&board);
+    let millisecond = millisecond(board.clock_hz());
     command(&mut board, "imu look");
     board.run((90 * millisecond).saturating_sub(board.cycles()));
     let status = command(&mut board, "imu");
@@ -288,10 +302,10 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
 fn the_camera_follows_a_script() {
     let is_slow = std::env::var_os("GLINT_IMU_MOTION").is_some();
     let stretch = if is_slow { 7.0 } else { 1.0 };
-    let mut board = board_with_sensor(move |time| script(time, stretch).1);
-    let millisecond = millisecond(&board);
+    let mut board = emulated_with_sensor(move |time| script(time, stretch).1);
+    let millisecond = millisecond(board.clock_hz());
     command(&mut board, "imu look");
-    let camera = |board: &mut VirtualBoard| -> [[f64; 3]; 3] {
+    let camera = |board: &mut EmulatedBoard| -> [[f64; 3]; 3] {
         let view = command(board, "view");
         let view = numbers(line(&view, "view"));
         [3, 6, 9].map(|at| [0, 1, 2].map(|i| view[at + i]))
@@ -325,11 +339,11 @@ fn the_camera_follows_a_script() {
 /// second of board time.
 #[test]
 fn every_fault_is_reported_and_recovered() {
-    let mut board = board_with_sensor(|_| State::default());
-    let millisecond = millisecond(&board);
+    let mut board = emulated_with_sensor(|_| State::default());
+    let millisecond = millisecond(board.clock_hz());
     command(&mut board, "imu orbit");
     board.run(20 * millisecond);
-    let failures = |board: &mut VirtualBoard| {
+    let failures = |board: &mut EmulatedBoard| {
         let status = command(board, "imu");
         let number = |key| line(&status, key).parse::<u32>().expect("a number");
         let failure = line(&status, "failure").to_owned();
