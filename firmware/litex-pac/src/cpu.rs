@@ -33,6 +33,15 @@ pub fn interrupts_pending() -> u32 {
     pending
 }
 
+/// The implementation of the CPU, its register `mimpid`: [`EMULATED`](crate::EMULATED) on the emulated board.
+#[must_use]
+pub fn implementation() -> u32 {
+    let implementation;
+    // SAFETY: reads a register that every RISC-V CPU has and that has no side effect.
+    unsafe { asm!("csrr {}, mimpid", out(reg) implementation, options(nomem, nostack)) };
+    implementation
+}
+
 /// Empties the data cache, so that reads see memory written by other bus masters. The cache writes through, so memory already
 /// holds all data written by the CPU.
 #[inline]

@@ -51,6 +51,9 @@ pub use generated::*;
 pub use memory::Memory;
 pub use riscv_types::{ExternalInterruptNumber, InterruptNumber};
 
+/// Value of the CPU's register `mimpid` on the emulated board, `EMUL` in ASCII. VexRiscv has 33.
+pub const EMULATED: u32 = u32::from_be_bytes(*b"EMUL");
+
 /// Whether [`Peripherals::take`] has returned the handles.
 static TAKEN: Mutex<Cell<bool>> = Mutex::new(Cell::new(false));
 

@@ -3,7 +3,7 @@
 use core::fmt::{self, Display};
 
 use glint_core::console::{MachineCommands, write_help};
-use litex_pac::ctrl;
+use litex_pac::{EMULATED, cpu, ctrl};
 
 use crate::error::CommandError;
 use crate::gateware::GatewareRenderer;
@@ -64,10 +64,15 @@ impl<'l> MachineCommands<'l> for Machine {
         let counters = renderer.display.counters();
         let subjects = renderer.gateware.as_ref();
         let subjects = subjects.map_or("none", GatewareRenderer::subjects);
-        let entries: [(&str, fmt::Arguments); 19] = [
+        let board = match cpu::implementation() {
+            EMULATED => "emulated",
+            _ => "gateware",
+        };
+        let entries: [(&str, fmt::Arguments); 20] = [
             ("version", format_args!("{}", env!("CARGO_PKG_VERSION"))),
             ("firmware_id", format_args!("{:#010x}", identity.firmware)),
             ("gateware_id", format_args!("{:#010x}", identity.gateware)),
+            ("board", format_args!("{board}")),
             ("blocks", format_args!("{:#x}", identity.blocks)),
             ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{}", clock.frequency().hertz())),

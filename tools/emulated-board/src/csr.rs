@@ -13,8 +13,8 @@ const MSTATUS_BITS: u32 = PRIVILEGE_BEFORE | INTERRUPTS_BEFORE | INTERRUPTS;
 const MCAUSE_BITS: u32 = 1 << 31 | 0xf;
 /// VexRiscv's description of its data cache: bytes of the cache, and bytes of a line from bit 20 on.
 const CACHE: u32 = 32 << 20 | 4096;
-/// Values of `mvendorid`, `marchid` and `mimpid` of VexRiscv.
-const IDENTIFIERS: [u32; 3] = [11, 22, 33];
+/// Values of `mvendorid` and `marchid` of VexRiscv, and of `mimpid`, by which the firmware knows the emulated board.
+const IDENTIFIERS: [u32; 3] = [11, 22, litex_pac::EMULATED];
 
 /// Causes of exceptions, as in `mcause`.
 pub mod cause {

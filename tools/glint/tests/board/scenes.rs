@@ -52,7 +52,7 @@ fn scenes_are_the_models() {
 fn a_scene_file_is_the_models() {
     const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";
     let scene = Scene::parse("a", "a.toml", FILE).unwrap();
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board)
         .with_route(Route::Memory)
         .with_scene(Some(scene.clone()));

@@ -1,7 +1,7 @@
-//! The wireframe simulator on the virtual board: buttons with bounce, switches, commands and uploads, with every frame checked.
+//! The wireframe simulator on the emulated board: buttons with bounce, switches, commands and uploads, with every frame checked.
 
-use crate::common::{address, console, info, renderer, running_board};
-use glint::board::SimulatedBoard;
+use crate::common::{address, console, emulator, info, renderer};
+use glint::board::{EmulatedBoard, SimulatedBoard};
 use glint::console::{Console, ConsoleError};
 use glint::render::{Frame, Subject, WireframeSubject, on_model};
 use glint::transfer::{self, TransferError};
@@ -36,13 +36,13 @@ fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
 }
 
 /// The shown picture of a board, and the one of the frame before.
-fn shown(console: &mut Console<SimulatedBoard>) -> [Vec<u16>; 2] {
+fn shown(console: &mut Console<SimulatedBoard<EmulatedBoard>>) -> [Vec<u16>; 2] {
     let front = address(console, "frame");
     let back = BUFFERS.into_iter().find(|&buffer| buffer != front).unwrap();
     [front, back].map(|buffer| {
         let mut bytes = vec![0; 2 * Size::W320.pixel_count()];
         let board = console.board().inner();
-        board.ddr_read(buffer, &mut bytes).unwrap();
+        board.read_memory(buffer, &mut bytes).unwrap();
         let pixels = bytes.as_chunks().0.iter();
         pixels.map(|&pixel| u16::from_le_bytes(pixel)).collect()
     })
@@ -55,7 +55,7 @@ fn count(stats: &[String], name: &str) -> u64 {
 }
 
 /// Sets the buttons to each value for a number of milliseconds, then waits until the frames are drawn.
-fn buttons(console: &mut Console<SimulatedBoard>, script: &[(u8, u64)]) {
+fn buttons(console: &mut Console<SimulatedBoard<EmulatedBoard>>, script: &[(u8, u64)]) {
     let board = console.board().inner();
     for &(pressed, ms) in script {
         board.set_buttons(pressed);
@@ -67,7 +67,7 @@ fn buttons(console: &mut Console<SimulatedBoard>, script: &[(u8, u64)]) {
 
 #[test]
 fn a_session_with_buttons() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let program = cube();
     let mut motion = Motion::default();
@@ -139,7 +139,7 @@ fn a_session_with_buttons() {
 
 #[test]
 fn a_session_with_commands() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let text = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\nsegment -1 0 1 1 0.5 1\nsegment 0 -1 1 0 1 4\nend\n";
     let program = wireframe::parse(wireframe::Form::Text, text.into()).unwrap();
@@ -148,7 +148,7 @@ fn a_session_with_commands() {
     let error = refused(console.command("press up").unwrap_err());
     assert!(error.contains("expected `program` first"), "{error}");
 
-    let upload = |console: &mut Console<SimulatedBoard>, bytes: &[u8]| {
+    let upload = |console: &mut Console<SimulatedBoard<EmulatedBoard>>, bytes: &[u8]| {
         transfer::upload_for(console, "program", bytes, 3, &mut |_, _| {}, &mut |_| {})
     };
     upload(console, &program).unwrap();
@@ -188,7 +188,7 @@ fn a_session_with_commands() {
 
 #[test]
 fn a_script_of_keys() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let program = cube();
     let script = wireframe::script("rotate,right:2,pan,up,zoom-in").unwrap();

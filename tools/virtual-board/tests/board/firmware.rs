@@ -53,6 +53,9 @@ pub fn patch(image: &mut [u8], address: u32, words: &[u32]) {
 
 /// A board with a console.
 pub trait Console {
+    /// Frequency of the system clock in Hz.
+    fn clock(&self) -> u32;
+
     /// Sends bytes to the UART.
     fn send(&mut self, bytes: &[u8]);
 
@@ -64,6 +67,10 @@ pub trait Console {
 }
 
 impl Console for VirtualBoard {
+    fn clock(&self) -> u32 {
+        self.clock_hz()
+    }
+
     fn send(&mut self, bytes: &[u8]) {
         self.uart_write(bytes);
     }
@@ -75,6 +82,10 @@ impl Console for VirtualBoard {
 }
 
 impl Console for EmulatedBoard {
+    fn clock(&self) -> u32 {
+        self.clock_hz()
+    }
+
     fn send(&mut self, bytes: &[u8]) {
         self.uart_write(bytes);
     }
