@@ -22,6 +22,8 @@ pub struct Appearance {
     pub fog: U4_28,
     /// Whether ambient occlusion is on.
     pub occlusion: bool,
+    /// Whether undecided rays are magenta, to be seen, and not of the colour of the horizon.
+    pub undecided: bool,
 }
 
 impl Appearance {

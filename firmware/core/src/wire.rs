@@ -24,6 +24,9 @@
 //! * The receiver decides when the transfer is complete. It repeats its verdict until the sender has closed, so both
 //!   sides reach the end; if every `Close` is lost, the receiver ends after a timeout.
 //!
+//! A host that begins a conversation sends a `Reset` ([`reset`]), which ends what is left of an earlier transfer at once, and so does a
+//! person's Ctrl-C.
+//!
 //! A side with a console on the same line drops the bytes that it receives after the end of a transfer, until the line is quiet
 //! ([`Timing::quiet_ms`]). The other side treats the bytes after the last zero byte as text.
 
@@ -39,7 +42,7 @@ mod state;
 mod window;
 
 pub use format::{CRC_32, MAX_LENGTH, Manifest, crc32};
-pub use frame::MAX_FRAME;
+pub use frame::{MAX_FRAME, reset};
 pub use party::Party;
 pub use receiver::Receiver;
 pub use sender::Sender;

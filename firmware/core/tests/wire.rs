@@ -313,7 +313,10 @@ fn an_awful_line_is_slow_and_right_or_given_up() {
     }
     .run(&some_data(2_000));
     assert_eq!(outcome.sender, State::Failed(Failure::Silence(5_000)));
-    assert_eq!(outcome.receiver, State::Failed(Failure::Silence(2_000)));
+    assert_eq!(
+        outcome.receiver,
+        State::Failed(Failure::Silence(Timing::CONSOLE.silence_ms))
+    );
     assert_eq!(outcome.received, None);
 }
 
@@ -349,7 +352,7 @@ fn a_cut_line_ends_both_sides() {
             ..Scene::default()
         },
         Failure::Silence(5_000),
-        Failure::Silence(2_000),
+        Failure::Silence(Timing::CONSOLE.silence_ms),
     );
 }
 

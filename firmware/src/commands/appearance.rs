@@ -1,4 +1,4 @@
-//! Commands that set a field's appearance: material, lights, background, fog and occlusion. Meshes have the lights too.
+//! Commands that set a field's appearance: material, lights, background, fog, occlusion and undecided rays. Meshes have the lights too.
 
 use glint_core::appearance::Appearance;
 use glint_core::choice::switch_name;
@@ -100,6 +100,17 @@ impl<'l> AppearanceCommands<'l> for Machine {
             None => {
                 let on = switch_name(self.scene.appearance().occlusion);
                 self.terminal.print_entry("occlusion", &on);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn undecided(&mut self, on: Option<bool>) -> Outcome<'l> {
+        match on {
+            Some(on) => change(self, &mut |appearance| appearance.undecided = on),
+            None => {
+                let on = switch_name(self.scene.appearance().undecided);
+                self.terminal.print_entry("undecided", &on);
             }
         }
         Ok(Reply::Done)

@@ -113,6 +113,11 @@ impl<'l> MachineCommands<'l> for Machine {
         }
     }
 
+    fn echo(&mut self, word: &'l str) -> Outcome<'l> {
+        self.terminal.print(format_args!("{word}\n"));
+        Ok(Reply::Done)
+    }
+
     fn leds(&mut self, value: u16) -> Outcome<'l> {
         devices(self)?.leds.set(value);
         self.heartbeat = false;

@@ -7,8 +7,8 @@ use crate::error::CommandError;
 use crate::machine::Machine;
 use crate::transfer;
 
-/// Receives the data that `manifest` announces into the staging memory, unless the memory already holds them. `command`
-/// is the name of the command that uploads them.
+/// Receives the data that `manifest` announces into the staging memory, unless the memory already holds them, which the reply says
+/// with the line `present`. `command` is the name of the command that uploads them.
 ///
 /// # Errors
 /// The upload is longer than the free memory, or the transfer fails.
@@ -40,7 +40,9 @@ pub fn receive<'m>(
     // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
     // have been interrupted near its end.
     cpu::flush_data_cache();
-    if crc32(staging) != manifest.crc32 {
+    if crc32(staging) == manifest.crc32 {
+        terminal.print(format_args!("present\n"));
+    } else {
         terminal.print(format_args!("ready\n"));
         transfer::receive(uart, *clock, staging, manifest).map_err(CommandError::Transfer)?;
     }

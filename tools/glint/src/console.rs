@@ -2,6 +2,8 @@
 
 use crate::board::{Board, BoardError};
 use glint_core::console::PROMPT;
+use glint_core::wire::{self, MAX_FRAME};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// An error of a command that was sent to the console.
 #[derive(Debug, thiserror::Error)]
@@ -43,6 +45,9 @@ pub enum ConsoleError {
 
 /// Time-out of a reply in milliseconds of the board's time: longer than the slowest frame of a board without accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
+
+/// Number of times that [`Console::synchronise`] asks for an answer.
+const ATTEMPTS: u32 = 3;
 
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
@@ -97,6 +102,56 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
+    /// Begins a conversation with a board that others have used: ends what is left of a transfer, and drops all that the board still
+    /// has to say to earlier commands, so that no line of it is taken for a later reply.
+    ///
+    /// # Errors
+    /// [`ConsoleError::Silence`] without an answer.
+    pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
+        self.reset_transfer()?;
+        let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
+        let number =
+            since_epoch.map_or(0, |time| time.as_nanos() as u64) ^ u64::from(std::process::id());
+        let mut attempt = 1;
+        loop {
+            let word = format!("sync-{number:016x}-{attempt}");
+            let found = self.echo(&word);
+            match found {
+                Ok(true) => return Ok(()),
+                // The board has ended a transfer, and dropped what came with its end.
+                Ok(false) => {}
+                Err(ConsoleError::Silence { .. }) if attempt < ATTEMPTS => {}
+                Err(error) => return Err(error),
+            }
+            attempt += 1;
+        }
+    }
+
+    /// Asks the board to print a word. Returns whether it has, and false if it has ended a transfer or a command in error first.
+    fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
+        let command = format!("echo {word}");
+        self.board.write(format!("\0{command}\r").as_bytes())?;
+        loop {
+            let line = self.next_line(&command)?;
+            if line == word {
+                return self.lines(&command, &mut |_| {}).map(|_| true);
+            }
+            if line.starts_with("error: ") {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Ends what is left of a transfer on the board, if there is one.
+    ///
+    /// # Errors
+    /// An error of the board.
+    pub fn reset_transfer(&mut self) -> Result<(), BoardError> {
+        let mut frame = [0; MAX_FRAME];
+        let length = wire::reset(&mut frame);
+        self.board.write(&frame[..length])
+    }
+
     /// Sends a command and returns the lines of its reply without the final `ok`.
     ///
     /// # Errors
@@ -106,14 +161,21 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.reply(command)
     }
 
-    /// Sends a command that may start a transfer. Returns true if the board is ready for the transfer, and false if the command
-    /// has ended without a transfer.
+    /// Sends a command that starts a transfer, and waits until the board is ready for it. Calls `on_line` with each line before.
     ///
     /// # Errors
-    /// The firmware refuses the command, or does not answer.
-    pub fn command_with_transfer(&mut self, command: &str) -> Result<bool, ConsoleError> {
+    /// The firmware refuses the command, ends it without a transfer, or does not answer.
+    pub fn command_with_transfer(
+        &mut self,
+        command: &str,
+        on_line: &mut dyn FnMut(&str),
+    ) -> Result<(), ConsoleError> {
         self.send(command)?;
-        self.lines(command, &mut |_| {})
+        if self.lines(command, on_line)? {
+            Ok(())
+        } else {
+            Err(unexpected(command, "`ready`", "`ok`"))
+        }
     }
 
     /// Calls `on_line` with each line of a reply up to `ready` or the final `ok`. Returns true if the reply ends with `ready`,
@@ -166,7 +228,14 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// The firmware refuses the command, or does not answer.
     pub fn reply(&mut self, command: &str) -> Result<Vec<String>, ConsoleError> {
         let mut lines = Vec::new();
-        self.lines(command, &mut |line| lines.push(line.to_owned()))?;
+        if self.lines(command, &mut |line| lines.push(line.to_owned()))? {
+            self.reset_transfer()?;
+            return Err(unexpected(
+                command,
+                "`ok`",
+                "`ready`, the start of a transfer",
+            ));
+        }
         Ok(lines)
     }
 
@@ -216,6 +285,15 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
             waited_ms: self.patience_ms,
             last: all[start..].to_owned(),
         })
+    }
+}
+
+/// The error for a reply that ends in another way than `expected`.
+pub fn unexpected(command: &str, expected: &str, found: &str) -> ConsoleError {
+    ConsoleError::Reply {
+        command: command.to_owned(),
+        expected: expected.to_owned(),
+        found: found.to_owned(),
     }
 }
 
@@ -342,8 +420,12 @@ mod tests {
             refused,
             "the board refused `leds x`: leds `x`: expected a number"
         );
-        assert!(console.command_with_transfer("load 1 2").unwrap());
-        assert!(!console.command_with_transfer("load 1 2").unwrap());
+        let mut start = || console.command_with_transfer("load 1 2", &mut |_| {});
+        assert!(start().is_ok());
+        assert_eq!(
+            start().unwrap_err().to_string(),
+            "the reply to `load 1 2`: expected `ready`, found \"`ok`\""
+        );
         let silence = console.command("hello").unwrap_err();
         assert!(
             matches!(silence, ConsoleError::Silence { ref last, .. } if last == "glint> hello"),

@@ -157,9 +157,8 @@ pub fn mask<B: Board + ?Sized>(
 ) -> Result<Mask, TransferError> {
     const COMMAND: &str = "gesture mask";
     console.command("gesture on")?;
-    console.send(COMMAND)?;
     let mut lines = Vec::new();
-    console.lines(COMMAND, &mut |line| lines.push(line.to_owned()))?;
+    console.command_with_transfer(COMMAND, &mut |line| lines.push(line.to_owned()))?;
     let Dimensions([width, height]) = console::value(COMMAND, &lines, "mask")?;
     let mut bits = vec![0; (width * height / 8) as usize];
     let (board, pending) = console.line();

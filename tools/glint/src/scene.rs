@@ -139,6 +139,7 @@ impl<'s> State<'s> {
                 appearance.fog = density.flatten().unwrap_or_default();
             }
             Command::Occlusion { on } => appearance.occlusion = on.unwrap_or_default(),
+            Command::Undecided { on } => appearance.undecided = on.unwrap_or_default(),
             // The frame follows from its subject, and the model has no backends.
             _ => {}
         }

@@ -99,13 +99,21 @@ fn announce<B: Board + ?Sized>(
     on_line: &mut dyn FnMut(&str),
 ) -> Result<(), TransferError> {
     console.send(command)?;
-    if console.lines(command, on_line)? {
+    let mut is_present = false;
+    let is_ready = console.lines(command, &mut |line| match line {
+        "present" => is_present = true,
+        line => on_line(line),
+    })?;
+    if is_ready {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
         // The rest of the reply is read even after a failed transfer, so that it is not taken for the reply to the next command.
         let reply = console.lines(command, on_line);
         sent?;
         reply?;
+    } else if !is_present {
+        let expected = "`ready`, or `present` for data that the board has";
+        return Err(console::unexpected(command, expected, "`ok`").into());
     }
     Ok(())
 }
@@ -177,7 +185,7 @@ pub fn download<B: Board + ?Sized>(
     progress: &mut Progress,
 ) -> Result<Vec<u8>, TransferError> {
     let mut data = vec![0; length];
-    console.command_with_transfer(command)?;
+    console.command_with_transfer(command, &mut |_| {})?;
     let (board, pending) = console.line();
     let received = receive(board, pending, &mut data, progress);
     let reply = console.reply(command);

@@ -18,26 +18,56 @@ const SLICE: u64 = 2000;
 /// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
+/// A board with a UART, simulated in a thread of its own.
+pub trait Uart: Send + 'static {
+    /// Runs `cycles` cycles of the system clock.
+    fn run(&mut self, cycles: u64);
+    /// Number of bytes that the UART has not received yet.
+    fn uart_queued(&self) -> usize;
+    /// Sends bytes to the UART.
+    fn uart_write(&mut self, bytes: &[u8]);
+    /// Moves the unread serial output to the end of `output`.
+    fn uart_read(&mut self, output: &mut Vec<u8>);
+}
+
+impl Uart for VirtualBoard {
+    fn run(&mut self, cycles: u64) {
+        self.run(cycles);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.uart_queued()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.uart_read(output);
+    }
+}
+
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
-type Task = Box<dyn FnOnce(&mut VirtualBoard) + Send>;
+type Task<B> = Box<dyn FnOnce(&mut B) + Send>;
 
 /// A board in its own thread, with its UART on a pseudo-terminal.
 ///
 /// The terminal is raw: every byte passes unchanged in both directions. Dropping the `Pty` stops the board.
-pub struct Pty {
+pub struct Pty<B: Uart = VirtualBoard> {
     path: PathBuf,
-    tasks: Option<Sender<Task>>,
-    thread: Option<JoinHandle<VirtualBoard>>,
+    tasks: Option<Sender<Task<B>>>,
+    thread: Option<JoinHandle<B>>,
     /// The side of the terminal that programs use; it is kept open here, so that programs can close and reopen it.
     _terminal: OwnedFd,
 }
 
-impl Pty {
+impl<B: Uart> Pty<B> {
     /// Moves the board to a new thread, and starts it.
     ///
     /// # Errors
     /// When the system provides no pseudo-terminal.
-    pub fn start(board: VirtualBoard) -> Result<Self, Error> {
+    pub fn start(board: B) -> Result<Self, Error> {
         let (side, terminal, path) = open().map_err(io::Error::from)?;
         let (tasks, queue) = channel();
         let thread = std::thread::Builder::new()
@@ -61,12 +91,9 @@ impl Pty {
     ///
     /// # Panics
     /// When the board's thread has panicked.
-    pub fn with<R: Send + 'static>(
-        &self,
-        task: impl FnOnce(&mut VirtualBoard) -> R + Send + 'static,
-    ) -> R {
+    pub fn with<R: Send + 'static>(&self, task: impl FnOnce(&mut B) -> R + Send + 'static) -> R {
         let (reply, answer) = channel();
-        let task: Task = Box::new(move |board| {
+        let task: Task<B> = Box::new(move |board| {
             // Sending cannot fail, as the caller waits for the result.
             let _ = reply.send(task(board));
         });
@@ -83,7 +110,7 @@ impl Pty {
     /// # Panics
     /// When the board's thread has panicked.
     #[must_use]
-    pub fn stop(mut self) -> VirtualBoard {
+    pub fn stop(mut self) -> B {
         self.tasks = None;
         let thread = self
             .thread
@@ -95,7 +122,7 @@ impl Pty {
     }
 }
 
-impl Drop for Pty {
+impl<B: Uart> Drop for Pty<B> {
     fn drop(&mut self) {
         self.tasks = None;
         if let Some(thread) = self.thread.take() {
@@ -128,7 +155,7 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
 
 /// Body of the board's thread. In turns it passes bytes from the terminal to the UART, runs the board for a slice, and
 /// passes bytes from the UART to the terminal.
-fn run(mut board: VirtualBoard, mut terminal: File, tasks: &Receiver<Task>) -> VirtualBoard {
+fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> B {
     let mut output = Vec::new();
     loop {
         loop {

@@ -36,6 +36,7 @@ commands! {
         help Help(command: Option<CommandName>): "list the commands, or explain one";
         info Info(key: Option<Name>): "show the state of the machine, or one entry of it";
         selftest SelfTest(): "test clock, memory, sensors, scan-out, and a picture of every engine against its stored checksum";
+        echo Echo(word: Name): "print a word; a program finds the end of earlier output by it";
         leds Leds(value: u16): "set the 16 LEDs";
         buttons Buttons(): "show buttons and switches";
         reboot Reboot(): "reset the SoC";
@@ -67,6 +68,7 @@ commands! {
         background Background(background: Option<Background>) in FIELD: "show or set the background of a field";
         fog Fog(density: Option<Or<Off, U4_28>>) in FIELD: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
         occlusion Occlusion(on: Option<bool>) in FIELD: "turn ambient occlusion of a field on or off, or show the setting";
+        undecided Undecided(on: Option<bool>) in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";
     }
 
     /// Commands of the camera.

@@ -1,7 +1,7 @@
 //! The end of a transfer.
 
 use super::frame::{Message, write};
-use super::state::{Failure, State, Timing};
+use super::state::{Failure, Reason, State, Timing};
 
 /// Number of times that the last message of a transfer is sent. The message is repeated because it is not acknowledged.
 const COPIES: u8 = 3;
@@ -46,6 +46,16 @@ impl Ending {
     /// Starts the end of a failed transfer, without a last message.
     pub fn failed(failure: Failure, timing: Timing, now_ms: u64) -> Self {
         Self::new(State::Failed(failure), None, timing, now_ms)
+    }
+
+    /// Starts the end of a transfer that the other side has interrupted: it waits for nothing.
+    pub fn interrupted(now_ms: u64) -> Self {
+        let timing = Timing {
+            silence_ms: 0,
+            quiet_ms: 0,
+        };
+        let failure = Failure::AbortedByPeer(Reason::Cancelled);
+        Self::failed(failure, timing, now_ms)
     }
 
     /// Drops received bytes, which are remains of the transfer, and returns their number. Without a wait for a quiet line no

@@ -33,6 +33,8 @@ pub enum Message<'a> {
     Close,
     /// Message from either side: the transfer is cancelled.
     Abort(Reason),
+    /// Message from a host that begins a conversation: a transfer that an earlier one has left is over, whatever its session.
+    Reset,
 }
 
 /// The contents of a data frame.
@@ -63,6 +65,18 @@ const ACKNOWLEDGE: u8 = 3;
 const COMPLETE: u8 = 4;
 const CLOSE: u8 = 5;
 const ABORT: u8 = 6;
+const RESET: u8 = 7;
+
+/// Time in milliseconds without a byte after which the start of a frame is no start any more.
+const GAP_MS: u64 = 50;
+/// The byte of the key Ctrl-C.
+const CTRL_C: u8 = 0x03;
+
+/// Writes the frame that ends what is left of a transfer, and returns its length. Its bytes do nothing on a console without a
+/// transfer.
+pub fn reset(out: &mut [u8]) -> usize {
+    write(0, Message::Reset, out)
+}
 
 /// Encodes a frame into `out` and returns its length; 0 if `out` is too short.
 pub fn write(session: u8, message: Message, out: &mut [u8]) -> usize {
@@ -111,6 +125,7 @@ fn write_body(
         Message::Complete { verified } => body.push(&[head(COMPLETE), verified.into()])?,
         Message::Close => body.push(&[head(CLOSE)])?,
         Message::Abort(reason) => body.push(&[head(ABORT), reason as u8])?,
+        Message::Reset => body.push(&[head(RESET)])?,
     }
     let Body { mut encoder, crc } = body;
     encoder.push(&crc.finalize().to_le_bytes())?;
@@ -136,6 +151,8 @@ pub struct Reader {
     buffer: [u8; MAX_FRAME],
     /// Number of bytes received so far of the present frame. A number above the buffer's length marks a frame that is too long.
     length: usize,
+    /// Time in milliseconds at which the last bytes were received.
+    last_ms: u64,
 }
 
 impl Reader {
@@ -143,7 +160,26 @@ impl Reader {
         Self {
             buffer: [0; MAX_FRAME],
             length: 0,
+            last_ms: 0,
         }
+    }
+
+    /// Notes that bytes are received now. After a gap they do not continue a frame.
+    pub fn receive(&mut self, now_ms: u64) {
+        if self.has_gap(now_ms) {
+            self.length = 0;
+        }
+        self.last_ms = now_ms;
+    }
+
+    /// Whether a person has typed Ctrl-C: the key's byte stands alone before a gap. In a frame other bytes follow it at once.
+    pub fn is_interrupted(&self, now_ms: u64) -> bool {
+        let typed = self.buffer.get(..self.length).unwrap_or_default();
+        !typed.is_empty() && typed.iter().all(|&byte| byte == CTRL_C) && self.has_gap(now_ms)
+    }
+
+    const fn has_gap(&self, now_ms: u64) -> bool {
+        now_ms.saturating_sub(self.last_ms) >= GAP_MS
     }
 
     /// Takes bytes up to the next zero byte. Returns the number of taken bytes; if the zero byte completes a valid frame, also
@@ -201,6 +237,7 @@ fn parse(frame: &mut [u8]) -> Option<(u8, Message<'_>)> {
             verified: verified == 1,
         },
         (CLOSE, []) => Message::Close,
+        (RESET, []) => Message::Reset,
         (ABORT, &[reason]) => Message::Abort(match reason {
             0 => Reason::Cancelled,
             1 => Reason::TooLong,
@@ -218,7 +255,7 @@ fn parse(frame: &mut [u8]) -> Option<(u8, Message<'_>)> {
 mod tests {
     use super::*;
 
-    fn messages() -> [Message<'static>; 9] {
+    fn messages() -> [Message<'static>; 10] {
         static BYTES: [u8; 240] = [0xA5; 240];
         [
             Message::Open(Manifest {
@@ -253,6 +290,7 @@ mod tests {
             Message::Complete { verified: true },
             Message::Close,
             Message::Abort(Reason::Unannounced),
+            Message::Reset,
         ]
     }
 

@@ -3,7 +3,7 @@
 use super::ending::Ending;
 use super::format::{BLOCK, CRC_32, MAX_LENGTH, Manifest, WINDOW};
 use super::frame::{Acknowledge, Data, MAX_FRAME, Message, Reader, write};
-use super::peer::{Peer, feed};
+use super::peer::{Peer, check_interrupt, feed};
 use super::state::{Failure, Reason, State, Timing};
 
 /// Receives one transfer into a buffer.
@@ -49,6 +49,7 @@ impl<'a> Receiver<'a> {
         if out.len() < MAX_FRAME {
             0
         } else {
+            check_interrupt(&self.reader, &mut self.transfer, now_ms);
             self.transfer.poll(now_ms, out)
         }
     }
@@ -145,6 +146,10 @@ impl Peer for Transfer<'_> {
             _ => return,
         }
         self.valid_ms = now_ms;
+    }
+
+    fn interrupt(&mut self, now_ms: u64) {
+        self.ending = Some(Ending::interrupted(now_ms));
     }
 
     fn ending(&mut self) -> Option<&mut Ending> {

@@ -4,7 +4,7 @@ use super::ending::Ending;
 use super::format::{BLOCK, MAX_LENGTH, Manifest};
 use super::frame::{Acknowledge, Data, MAX_FRAME, Message, OVERHEAD, Reader, write};
 use super::pace::{FrameSize, Patience};
-use super::peer::{Peer, feed};
+use super::peer::{Peer, check_interrupt, feed};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
@@ -59,6 +59,7 @@ impl<'a> Sender<'a> {
         if out.len() < MAX_FRAME {
             0
         } else {
+            check_interrupt(&self.reader, &mut self.transfer, now_ms);
             self.transfer.poll(now_ms, out)
         }
     }
@@ -143,6 +144,10 @@ impl Peer for Transfer<'_> {
             _ => return,
         }
         self.valid_ms = now_ms;
+    }
+
+    fn interrupt(&mut self, now_ms: u64) {
+        self.ending = Some(Ending::interrupted(now_ms));
     }
 
     fn ending(&mut self) -> Option<&mut Ending> {

@@ -13,9 +13,9 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Time-outs of the board, which runs the console.
+    /// Time-outs of the board, which runs the console. A simulated board takes two minutes for the first one.
     pub const CONSOLE: Self = Self {
-        silence_ms: 2_000,
+        silence_ms: 1_000,
         quiet_ms: 5,
     };
     /// Time-outs of the host, which uses the console of the board.

@@ -208,6 +208,8 @@ fn every_command_is_understood() {
     );
     assert_parses("occlusion", Command::Occlusion { on: None });
     assert_parses("occlusion off", Command::Occlusion { on: Some(false) });
+    assert_parses("undecided on", Command::Undecided { on: Some(true) });
+    assert_parses("echo x-1", Command::Echo { word: "x-1" });
     let camera = Command::Camera {
         r: Q32_32::lit("3.5"),
         theta: degrees(-90),

@@ -60,6 +60,9 @@ impl Tuning {
     }
 }
 
+/// Colour of undecided rays that are to be seen: magenta.
+const MARK: [u8; 3] = [255, 0, 255];
+
 /// Options of drawing a field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldOptions {
@@ -97,17 +100,20 @@ impl FieldOptions {
             background,
             fog,
             occlusion,
+            undecided,
             ..
         } = appearance;
         let lighting = appearance.lighting().seen_from(view);
-        let palette = Palette::of(field, material, &lighting, background);
+        let mut palette = Palette::of(field, material, &lighting, background);
+        if occlusion {
+            palette = palette.with_occlusion();
+        }
+        if undecided {
+            palette.undecided = MARK;
+        }
         Self {
             stereo,
-            palette: if occlusion {
-                palette.with_occlusion()
-            } else {
-                palette
-            },
+            palette,
             fog,
             tuning: Tuning::of(field),
             ..Self::default()

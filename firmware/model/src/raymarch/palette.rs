@@ -14,7 +14,8 @@ pub struct Palette {
     pub faces: [[u8; 3]; 8],
     /// Lights and materials of the spheres.
     pub lights: Lights,
-    /// Colour of an undecided ray, which has reached its step limit.
+    /// Colour of an undecided ray, which has reached its step limit: that of the horizon, since such a ray runs along a face into
+    /// the distance, where fog and sky have this colour.
     pub undecided: [u8; 3],
     /// Colour of the sky at the zenith.
     pub zenith: [u8; 3],
@@ -47,7 +48,7 @@ impl Palette {
                 [a, b, c, d, e, f, [0; 3], [0; 3]]
             },
             lights: Lights::new(material, lighting),
-            undecided: [255, 0, 255],
+            undecided: horizon,
             zenith,
             horizon,
             fog: [0; 256],

@@ -4,6 +4,7 @@ use super::error::BoardError;
 use super::line::{Board, Memory};
 use emulated_board::EmulatedBoard;
 use std::path::{Path, PathBuf};
+use virtual_board::pty::Uart;
 use virtual_board::virtual_mpu6050::Wires;
 use virtual_board::{Start, VirtualBoard, WIDTH};
 
@@ -23,6 +24,9 @@ pub trait Simulation {
 
     /// Sends bytes to the UART.
     fn uart_write(&mut self, bytes: &[u8]);
+
+    /// Number of bytes that the UART has not received yet.
+    fn uart_queued(&self) -> usize;
 
     /// Moves the unread serial output to the end of `output`.
     fn uart_read(&mut self, output: &mut Vec<u8>);
@@ -66,6 +70,10 @@ impl Simulation for VirtualBoard {
         self.uart_write(bytes);
     }
 
+    fn uart_queued(&self) -> usize {
+        self.uart_queued()
+    }
+
     fn uart_read(&mut self, output: &mut Vec<u8>) {
         self.uart_read(output);
     }
@@ -102,6 +110,10 @@ impl Simulation for EmulatedBoard {
 
     fn uart_write(&mut self, bytes: &[u8]) {
         self.uart_write(bytes);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.uart_queued()
     }
 
     fn uart_read(&mut self, output: &mut Vec<u8>) {
@@ -206,6 +218,24 @@ pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, BoardError> {
         path: path.display().to_string(),
         source,
     })
+}
+
+impl<S: Simulation + Send + 'static> Uart for SimulatedBoard<S> {
+    fn run(&mut self, cycles: u64) {
+        self.board.run(cycles);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.board.uart_queued()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.board.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.board.uart_read(output);
+    }
 }
 
 impl<S: Simulation> Board for SimulatedBoard<S> {

@@ -39,9 +39,21 @@ impl LineArguments {
         started(SimulatedBoard::emulated(&firmware)?)
     }
 
-    /// Opens a board on a serial port.
+    /// Opens a board on a serial port, and ends what an earlier program has left there.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
-        Ok(SerialBoard::open(port, self.baud)?)
+        let mut board = SerialBoard::open(port, self.baud)?;
+        let spinner = spinner("waiting for the board");
+        Console::new(&mut board).synchronise()?;
+        spinner.finish_and_clear();
+        Ok(board)
+    }
+
+    /// Opens the board that `name` selects, which may not run its firmware yet.
+    pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
+        match name {
+            BoardName::Serial(port) => Ok(Box::new(SerialBoard::open(port, self.baud)?)),
+            simulated => self.board(simulated),
+        }
     }
 
     /// Opens the board that `name` selects. A simulated board is started and runs its firmware.

@@ -42,6 +42,9 @@ pub struct FieldArguments {
     /// Ambient occlusion: darken a field's surface where other surfaces are close.
     #[arg(long)]
     occlusion: bool,
+    /// Draw the rays of a field that reach their step limit magenta, in place of the horizon's colour.
+    #[arg(long)]
+    undecided: bool,
     /// Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This
     /// saves evaluations of the field.
     #[arg(long)]
@@ -99,6 +102,7 @@ impl FieldArguments {
             ("--background", self.background.is_some()),
             ("--fog", self.fog.is_some()),
             ("--occlusion", self.occlusion),
+            ("--undecided", self.undecided),
             ("--prepass", self.prepass),
         ];
         if let (None, Some((option, _))) = (&self.field, given.iter().find(|(_, given)| *given)) {
@@ -123,6 +127,7 @@ impl FieldArguments {
             background: self.background.unwrap_or_default(),
             fog: fog.transpose()?.unwrap_or_default(),
             occlusion: self.occlusion,
+            undecided: self.undecided,
             ..Appearance::default()
         };
         for text in &self.light {

@@ -1,6 +1,8 @@
 //! The command line.
 
+mod board;
 mod common;
+mod completions;
 mod convert;
 mod demo;
 mod field;
@@ -14,7 +16,7 @@ mod scene;
 mod terminal;
 mod wireframe;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 /// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
@@ -36,6 +38,8 @@ enum Command {
     Upload(flash::UploadArguments),
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
+    Board(board::BoardArguments),
+    Completions(completions::CompletionsArguments),
     Demo(demo::DemoArguments),
     #[command(subcommand)]
     Imu(imu::ImuCommand),
@@ -59,6 +63,8 @@ impl Arguments {
             Command::Upload(arguments) => arguments.run(),
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),
+            Command::Board(arguments) => arguments.run(),
+            Command::Completions(arguments) => arguments.run(Self::command()),
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
             Command::Gesture(command) => command.run(),

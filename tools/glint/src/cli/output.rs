@@ -101,15 +101,16 @@ fn unwritable(path: &Path) -> String {
     format!("{}: cannot be written", path.display())
 }
 
-/// Refuses a name with another extension than those given. A name without an extension promises nothing, and is accepted.
+/// Refuses a name with another extension than those given, if some are. A name without an extension promises nothing, and is accepted.
 fn check_extension(path: &Path, extensions: &[&str]) -> anyhow::Result<()> {
     let Some(found) = path.extension() else {
         return Ok(());
     };
     let found = found.to_string_lossy();
-    if extensions
-        .iter()
-        .any(|known| found.eq_ignore_ascii_case(known))
+    if extensions.is_empty()
+        || extensions
+            .iter()
+            .any(|known| found.eq_ignore_ascii_case(known))
     {
         return Ok(());
     }

@@ -6,7 +6,9 @@ use clap::Args;
 use glint::board::{Board, BoardName};
 use glint::console::Console;
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
-use std::io::{Read, Write};
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 
 /// Code of the key Ctrl-], which ends the session.
@@ -14,41 +16,71 @@ const EXIT: u8 = 0x1d;
 /// Time-out of a read from the board, in milliseconds of the board's time.
 const LOOK_MS: u64 = 10;
 
-/// Open a board's console. Ctrl-] ends the session.
+/// Open a board's console, or send commands to it.
+///
+/// On a terminal Ctrl-] ends the session, and Ctrl-C ends what runs on the board. Commands come from --send, from --file, or line by line
+/// from standard input if that is no terminal; the first one that fails ends the program.
 #[derive(Args)]
 pub struct ConsoleArguments {
     /// Board: `emulated`, `virtual` or a serial port.
     board: BoardName,
     /// Send a command, print its reply and exit; repeatable.
-    #[arg(long, value_name = "COMMAND")]
+    #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     send: Vec<String>,
+    /// Send the commands of a file, one a line; `-` is standard input. Empty lines and lines that start with # are skipped.
+    #[arg(long, value_name = "SCRIPT", conflicts_with = "send")]
+    file: Option<PathBuf>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the replies to --send as JSON: an array of lines for each command.
-    #[arg(long, requires = "send")]
+    /// Print the replies to commands as JSON: an array of lines for each command that did not fail.
+    #[arg(long)]
     json: bool,
 }
 
 impl ConsoleArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        let script: Box<dyn Iterator<Item = io::Result<String>>> = match &self.file {
+            Some(path) if path != Path::new("-") => {
+                let file = File::open(path).with_context(|| path.display().to_string())?;
+                Box::new(BufReader::new(file).lines())
+            }
+            None if !self.send.is_empty() => Box::new(self.send.iter().cloned().map(Ok)),
+            None if isatty(std::io::stdin()) => {
+                anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
+                return interact(&mut *self.line.unsynchronised_board(&self.board)?);
+            }
+            _ => Box::new(std::io::stdin().lines()),
+        };
         let mut board = self.line.board(&self.board)?;
-        if self.send.is_empty() {
-            return interact(&mut *board);
-        }
-        let mut console = Console::new(&mut *board);
         let mut replies = Vec::new();
-        for command in &self.send {
+        let result = self.execute(script, &mut Console::new(&mut *board), &mut replies);
+        if self.json {
+            print_json(&replies)?;
+        }
+        result
+    }
+
+    /// Sends the commands of a script up to the first one that fails, and collects or prints the replies.
+    fn execute(
+        &self,
+        script: impl Iterator<Item = io::Result<String>>,
+        console: &mut Console,
+        replies: &mut Vec<Vec<String>>,
+    ) -> anyhow::Result<()> {
+        for command in script {
+            let command = command.context("the commands")?;
+            let command = command.trim();
+            if command.is_empty() || command.starts_with('#') {
+                continue;
+            }
             let lines = console.command(command)?;
-            if !self.json {
+            if self.json {
+                replies.push(lines);
+            } else {
                 lines.iter().try_for_each(say)?;
             }
-            replies.push(lines);
         }
-        if self.json {
-            print_json(&replies)
-        } else {
-            Ok(())
-        }
+        Ok(())
     }
 }
 
@@ -92,12 +124,14 @@ fn keys() -> Receiver<Vec<u8>> {
     receiver
 }
 
-fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
+/// Connects the terminal with the board until the user ends the session.
+pub fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
     let _raw = RawTerminal::enter()?;
     let keys = keys();
     let mut output = std::io::stdout();
     let mut received = Vec::new();
+    Console::new(board).reset_transfer()?;
     // Makes the board print its prompt.
     board.write(b"\r")?;
     loop {

@@ -68,6 +68,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         background,
         fog,
         occlusion,
+        undecided,
     } = subject.appearance;
     let ambient = ambient.map(|ambient| Hexadecimal(ambient).to_string());
     let mut commands = vec![
@@ -82,6 +83,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         format!("background {}", background.name()),
         format!("fog {fog}"),
         format!("occlusion {}", switch_name(*occlusion)),
+        format!("undecided {}", switch_name(*undecided)),
         // A mesh in a field cannot be drawn for two eyes, so stereo is off when `mesh` is sent.
         "stereo off".to_owned(),
         format!("mesh {}", switch_name(with_mesh)),

@@ -4,6 +4,7 @@
 
 mod attitudes;
 mod common;
+mod conversations;
 mod edges;
 mod fields;
 mod gesture;
@@ -12,5 +13,7 @@ mod objects;
 mod scenes;
 mod sensor;
 mod serial_boot;
+mod stays;
+mod terminal;
 mod uploads;
 mod wireframes;

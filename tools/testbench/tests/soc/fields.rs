@@ -265,6 +265,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
         background: Background::Sky,
         fog: U4_28::lit("0.2"),
         occlusion: true,
+        undecided: true,
     };
     let field = FieldSubject {
         field: &Field::parse("box:0.75,0.75,0.75").unwrap(),

@@ -1,0 +1,23 @@
+//! `glint completions`.
+
+use super::common::say;
+use clap::{Args, Command};
+use clap_complete::{Shell, generate};
+
+/// Print the completions of this program for a shell.
+///
+/// For bash: `glint completions bash > ~/.local/share/bash-completion/completions/glint`.
+#[derive(Args)]
+pub struct CompletionsArguments {
+    /// The shell.
+    shell: Shell,
+}
+
+impl CompletionsArguments {
+    /// Prints the completions of `program`.
+    pub fn run(self, mut program: Command) -> anyhow::Result<()> {
+        let mut script = Vec::new();
+        generate(self.shell, &mut program, "glint", &mut script);
+        say(String::from_utf8_lossy(&script).trim_end())
+    }
+}

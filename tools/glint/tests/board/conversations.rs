@@ -1,0 +1,92 @@
+//! Conversations with a board that an earlier program has left in the middle of something.
+
+use crate::common::{console, emulator, info, mesh};
+use glint::board::{Board, EmulatedBoard, SimulatedBoard};
+use glint::console::{Console, ConsoleError};
+use glint::transfer;
+use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
+
+/// The console of a board in an unknown state.
+fn again(board: &mut SimulatedBoard<EmulatedBoard>) -> Console<'_, SimulatedBoard<EmulatedBoard>> {
+    let mut console = Console::new(board).patience(2_000);
+    console.synchronise().unwrap();
+    console
+}
+
+/// Begins an upload, and leaves it in the middle of a frame, as a program that is killed.
+fn begin_and_leave(console: &mut Console<SimulatedBoard<EmulatedBoard>>, mesh: &[u8]) {
+    let Manifest { length, crc32 } = Manifest::of(mesh);
+    let command = format!("load {length} {crc32:08x}");
+    console
+        .command_with_transfer(&command, &mut |_| {})
+        .unwrap();
+    let (board, pending) = console.line();
+    let mut frame = [0; MAX_FRAME];
+    let mut sender = Sender::new(mesh, 1, Timing::HOST, board.now_ms());
+    while sender.progress().0 < 1_000 {
+        let now = board.now_ms();
+        let taken = sender.on_bytes(now, pending);
+        pending.drain(..taken);
+        loop {
+            let length = sender.poll(now, &mut frame);
+            if length == 0 {
+                break;
+            }
+            board.write(&frame[..length]).unwrap();
+        }
+        board.read(pending, 1).unwrap();
+    }
+    let length = sender.poll(board.now_ms(), &mut frame);
+    board.write(&frame[..length / 2]).unwrap();
+}
+
+#[test]
+fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    let (large, small) = (mesh("icosphere:4"), mesh("icosphere:1"));
+    let mut board = emulator();
+    console(&mut board).command("size 320 180").unwrap();
+
+    // The reply to a command of an earlier program comes late: its `ok` is not that of the upload.
+    board.write(b"\0orbit 3600\r").unwrap();
+    board.read(&mut Vec::new(), 1).unwrap();
+    transfer::upload(&mut again(&mut board), &small, None, 1, quiet).unwrap();
+    assert_eq!(info::<u32>(&mut again(&mut board), "triangles"), 20);
+
+    // A killed upload: the old model stays, and the next upload works.
+    begin_and_leave(&mut again(&mut board), &large);
+    let start = board.now_ms();
+    let mut console = again(&mut board);
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+    assert!(console.board().now_ms() - start < 100);
+    transfer::upload(&mut console, &large, None, 2, quiet).unwrap();
+    assert_eq!(info::<u32>(&mut console, "triangles"), 320);
+
+    // The same data again: the board has them, and says so.
+    transfer::upload(&mut console, &large, None, 3, quiet).unwrap();
+
+    // Transfers that were begun by hand: a key ends them, and a program does.
+    for command in ["load 100 0", "frame"] {
+        board.write(format!("{command}\r").as_bytes()).unwrap();
+        let mut said = Vec::new();
+        let mut wait_for = |board: &mut SimulatedBoard<EmulatedBoard>, wanted: &[u8]| {
+            let start = board.now_ms();
+            while !said.windows(wanted.len()).any(|part| part == wanted) {
+                board.read(&mut said, 100).unwrap();
+                assert!(board.now_ms() - start < 500, "{}", said.escape_ascii());
+            }
+        };
+        wait_for(&mut board, b"ready");
+        board.write(b"\x03").unwrap();
+        wait_for(&mut board, b"cancelled by the other side");
+        board.write(format!("{command}\r").as_bytes()).unwrap();
+        let triangles = info::<u32>(&mut again(&mut board), "triangles");
+        assert_eq!(triangles, 320);
+    }
+
+    // A command that starts a transfer is no command with a reply, and leaves no transfer.
+    let mut console = again(&mut board);
+    let refused = console.command("load 100 0").unwrap_err();
+    assert!(matches!(refused, ConsoleError::Reply { .. }), "{refused}");
+    assert_eq!(info::<u32>(&mut again(&mut board), "triangles"), 320);
+}

@@ -1,0 +1,160 @@
+//! A board that stays, and the programs that use it in turn.
+
+use crate::common::mesh;
+use crate::terminal::Terminal;
+use glint::board::{Board, SerialBoard};
+use glint::console::Console;
+use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+/// Seconds without output after which litex_term counts as failed.
+const PATIENCE: u32 = 120;
+
+/// `glint board` in a process of its own, with an emulated board.
+struct Stay {
+    child: Child,
+    folder: PathBuf,
+}
+
+impl Stay {
+    fn start() -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-stays");
+        std::fs::create_dir_all(&folder).unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args([
+                "board",
+                "--board",
+                "emulated",
+                "--pty",
+                "port",
+                "--ready-file",
+                "ready",
+            ])
+            .current_dir(&folder)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let port = lines.next().unwrap().unwrap();
+        assert_eq!(
+            std::fs::read_link(folder.join("port")).unwrap(),
+            Path::new(&port)
+        );
+        Self { child, folder }
+    }
+
+    fn glint(&self, arguments: &[&str], input: &str) -> Output {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(arguments)
+            .current_dir(&self.folder)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child
+            .stdin
+            .take()
+            .unwrap()
+            .write_all(input.as_bytes())
+            .unwrap();
+        child.wait_with_output().unwrap()
+    }
+
+    fn succeed(&self, arguments: &[&str], input: &str) -> String {
+        let output = self.glint(arguments, input);
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {error}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+}
+
+impl Drop for Stay {
+    fn drop(&mut self) {
+        // The program has ended already, unless the test failed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Begins an upload, and closes the port in the middle of it.
+fn upload_a_part(port: &Path, mesh: &[u8]) {
+    let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
+    let mut console = Console::new(&mut board);
+    console.synchronise().unwrap();
+    let Manifest { length, crc32 } = Manifest::of(mesh);
+    console
+        .command_with_transfer(&format!("load {length} {crc32:08x}"), &mut |_| {})
+        .unwrap();
+    let (board, pending) = console.line();
+    let mut frame = [0; MAX_FRAME];
+    let mut sender = Sender::new(mesh, 1, Timing::HOST, board.now_ms());
+    while sender.progress().0 < 1_000 {
+        let now = board.now_ms();
+        let taken = sender.on_bytes(now, pending);
+        pending.drain(..taken);
+        loop {
+            let length = sender.poll(now, &mut frame);
+            if length == 0 {
+                break;
+            }
+            board.write(&frame[..length]).unwrap();
+        }
+        board.read(pending, 1).unwrap();
+    }
+}
+
+#[test]
+fn programs_use_one_board_in_turn() {
+    let mut stay = Stay::start();
+    let port = stay.folder.join("port");
+    let upload = ["upload", "icosphere:1", "--board", "port", "--json"];
+    let report: serde_json::Value = serde_json::from_str(&stay.succeed(&upload, "")).unwrap();
+    assert_eq!(report["bytes"], mesh("icosphere:1").len());
+
+    upload_a_part(&port, &mesh("icosphere:4"));
+    std::fs::write(
+        stay.folder.join("script"),
+        "# the model\n\ninfo triangles\n",
+    )
+    .unwrap();
+    let script = ["console", "port", "--file", "script"];
+    assert_eq!(stay.succeed(&script, ""), "triangles 20\n");
+    upload_a_part(&port, &mesh("icosphere:4"));
+    stay.succeed(&["upload", "icosphere:4", "--board", "port"], "");
+    let pipe = stay.succeed(&["console", "port"], "info triangles\n");
+    assert_eq!(pipe, "triangles 320\n");
+
+    let send = ["--send", "info triangles", "--send", "infor", "--json"];
+    let output = stay.glint(&[&["console", "port"], &send[..]].concat(), "");
+    assert_eq!(output.status.code(), Some(1));
+    assert_eq!(output.stdout, b"[[\"triangles 320\"]]\n");
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.starts_with("error: the board refused `infor`"),
+        "{error}"
+    );
+
+    let litex_term = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/litex_term");
+    let mut terminal = Terminal::start(&litex_term, &[port.to_str().unwrap()]);
+    let mut seconds = 0;
+    let mut is_over = || {
+        seconds += 1;
+        seconds > PATIENCE
+    };
+    terminal.type_in(b"info triangles\r");
+    terminal.wait_for("triangles 320", &mut is_over);
+    terminal.wait_for("ok", &mut is_over);
+    terminal.type_in(b"\x03");
+    terminal.wait_for("^C", &mut is_over);
+    terminal.type_in(b"\x03");
+    assert!(terminal.child.wait().unwrap().success());
+
+    stay.succeed(&["console", "port", "--send", "info"], "");
+    let pid = stay.child.id().to_string();
+    assert!(Command::new("kill").arg(pid).status().unwrap().success());
+    assert!(stay.child.wait().unwrap().success());
+    assert!(!port.is_symlink());
+}

@@ -1,0 +1,103 @@
+//! A program that needs a terminal, such as litex_term.
+
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Write};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
+
+/// Bytes of output kept for an error message.
+const KEPT: usize = 1000;
+
+/// A program with a terminal as its input, as litex_term requires.
+pub struct Terminal {
+    pub child: Child,
+    keys: File,
+    output: Receiver<Vec<u8>>,
+    seen: String,
+}
+
+impl Terminal {
+    pub fn start(program: &Path, arguments: &[&str]) -> Self {
+        let keys = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&keys).unwrap();
+        unlockpt(&keys).unwrap();
+        let path = ptsname(&keys, Vec::new()).unwrap().into_string().unwrap();
+        let input = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .open(path)
+            .unwrap();
+        // Ctrl-C works in a controlling terminal only, which `setsid --ctty` makes of the input.
+        let mut child = Command::new("setsid")
+            .arg("--ctty")
+            .arg(program)
+            .args(arguments)
+            .env("PYTHONUNBUFFERED", "1")
+            .stdin(input)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()
+            .unwrap_or_else(|error| {
+                panic!(
+                    "{}: {error}; run `cargo xtask bootstrap`",
+                    program.display()
+                )
+            });
+        let mut stdout = child.stdout.take().unwrap();
+        let (sender, output) = channel();
+        std::thread::spawn(move || {
+            let mut buffer = [0; 4096];
+            while let Ok(length @ 1..) = stdout.read(&mut buffer) {
+                if sender.send(buffer[..length].to_vec()).is_err() {
+                    return;
+                }
+            }
+        });
+        Self {
+            child,
+            keys: File::from(keys),
+            output,
+            seen: String::new(),
+        }
+    }
+
+    /// Waits until the program prints `wanted`, and fails when `is_over`. The search starts after the text that the previous wait has
+    /// found.
+    pub fn wait_for(&mut self, wanted: &str, is_over: &mut dyn FnMut() -> bool) {
+        loop {
+            if let Some(at) = self.seen.find(wanted) {
+                self.seen.drain(..at + wanted.len());
+                return;
+            }
+            // Only the end of the output is kept, because the progress bar prints megabytes.
+            let keep = self
+                .seen
+                .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
+            self.seen.drain(..keep);
+            match self.output.recv_timeout(Duration::from_secs(1)) {
+                Ok(bytes) => self.seen.push_str(&String::from_utf8_lossy(&bytes)),
+                Err(RecvTimeoutError::Timeout) => {
+                    assert!(!is_over(), "no {wanted:?}; it printed {:?}", self.seen);
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    panic!("it ended without {wanted:?}: {:?}", self.seen)
+                }
+            }
+        }
+    }
+
+    pub fn type_in(&mut self, keys: &[u8]) {
+        self.keys.write_all(keys).unwrap();
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        // The program has ended already, unless the test failed.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
