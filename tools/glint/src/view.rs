@@ -154,11 +154,39 @@ pub fn with_width(view: View, text: &str) -> Result<View, FormatError> {
 /// # Errors
 /// The text is not a decimal from 1 to 179.
 pub fn with_field_of_view(view: View, text: &str) -> Result<View, FormatError> {
+    let angle = Turns::from_degrees(angle(text)?);
+    view.with_field_of_view(angle).map_err(no_camera)
+}
+
+/// Parses a field of view in degrees.
+///
+/// # Errors
+/// The text is not a decimal from 1 to 179.
+pub fn field_of_view(text: &str) -> Result<f64, FormatError> {
+    angle(text).map(Q32_32::to_num)
+}
+
+fn angle(text: &str) -> Result<Q32_32, FormatError> {
     let degrees: Option<Q32_32> = text.trim().parse().ok();
-    let angle = degrees
+    degrees
         .filter(|degrees| (1..=179).contains(degrees))
-        .map(Turns::from_degrees)
-        .ok_or_else(|| refuse("1 to 179 degrees", text))?;
+        .ok_or_else(|| refuse("1 to 179 degrees", text))
+}
+
+/// Returns the camera with a field of view in which what is in the middle of the picture is larger by `factor`.
+///
+/// # Errors
+/// The field of view is not from 1 to 179 degrees.
+pub fn zoomed(view: View, factor: f64) -> Result<View, FormatError> {
+    let half_width = view.half_width().to_num::<f64>() / factor;
+    let degrees = 2.0 * half_width.atan().to_degrees();
+    if !(factor > 0.0 && (1.0..=179.0).contains(&degrees)) {
+        return Err(FormatError::whole(
+            "a factor that leaves a field of view of 1 to 179 degrees",
+            factor.to_string(),
+        ));
+    }
+    let angle = Turns::from_degrees(Q32_32::from_num(degrees));
     view.with_field_of_view(angle).map_err(no_camera)
 }
 
@@ -173,7 +201,7 @@ fn refuse(expected: &str, text: &str) -> FormatError {
     FormatError::whole(expected, crate::error::quote(text.as_bytes()))
 }
 
-fn no_camera(error: ViewError) -> FormatError {
+pub(crate) fn no_camera(error: ViewError) -> FormatError {
     FormatError::whole("a camera", error.to_string())
 }
 

@@ -149,6 +149,12 @@ pub fn warn(text: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "warning: {text}");
 }
 
+/// Prints a note to standard error, on one line.
+pub fn note(text: impl std::fmt::Display) {
+    // There is no place to report that standard error is closed.
+    let _ = writeln!(std::io::stderr(), "note: {text}");
+}
+
 /// Prints a value as JSON on one line.
 pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
     say(serde_json::to_string(value)?)

@@ -1,6 +1,7 @@
 //! The command line.
 
 mod board;
+mod camera;
 mod common;
 mod completions;
 mod convert;

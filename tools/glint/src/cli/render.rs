@@ -1,5 +1,6 @@
 //! `glint render`.
 
+use super::camera::{CameraArguments, Shown};
 use super::common::{
     TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner, warn,
 };
@@ -10,6 +11,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
+use glint::framing::Sphere;
 use glint::model::Model;
 use glint::object::Description;
 use glint::render::{
@@ -18,14 +20,12 @@ use glint::render::{
 };
 use glint::scene::{self, Changes};
 use glint::transfer::Progress;
-use glint::view;
-use glint_core::camera::View;
 use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::U8_28;
 use glint_core::matrix::Matrix;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::picture::{Backend, Edges, Size};
-use glint_model::{Clip, MAX_EYE, Object, Placement, RenderError};
+use glint_model::{Clip, Object, Placement};
 use glint_scene::Scene;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -46,40 +46,8 @@ pub struct RenderArguments {
     object: Vec<String>,
     #[command(flatten)]
     field: FieldArguments,
-    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The image plane at
-    /// distance 1 has a half width of 0.9, the near plane is at 0.1 [default: 2,30,60, with a field 4,30,60].
-    #[arg(
-        long,
-        value_name = "R,THETA,PHI",
-        conflicts_with = "view",
-        allow_hyphen_values = true
-    )]
-    camera: Option<String>,
-    /// A camera at the eye E that looks in the direction of the gaze G, with the direction U (by default z) up on the screen.
-    #[arg(
-        long,
-        value_name = "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]",
-        conflicts_with_all = ["view", "camera"],
-        allow_hyphen_values = true
-    )]
-    look_at: Option<String>,
-    /// A camera at the eye E that looks along +y, turned by YAW to the right, PITCH down and ROLL about its direction, in degrees.
-    #[arg(
-        long,
-        value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
-        conflicts_with_all = ["view", "camera", "look_at"],
-        allow_hyphen_values = true
-    )]
-    look: Option<String>,
-    /// The horizontal field of view, 1 to 179 degrees, in place of the camera's half width. Pixels are square.
-    #[arg(long, value_name = "DEGREES")]
-    fov: Option<String>,
-    /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
-    #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "field"])]
-    orthographic: Option<String>,
-    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
-    #[arg(long, value_name = "VIEW.json")]
-    view: Option<PathBuf>,
+    #[command(flatten)]
+    camera: CameraArguments,
     /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
     /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
@@ -163,12 +131,17 @@ impl RenderArguments {
         let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;
-            let has_camera = self.camera.is_some()
-                || self.look_at.is_some()
-                || self.look.is_some()
-                || self.view.is_some();
+            let shown = Shown {
+                sphere: None,
+                model: None,
+                has_mesh: false,
+            };
+            let view = self
+                .camera
+                .is_given()
+                .then(|| self.camera.view(&shown, 0.0));
             let changes = Changes {
-                view: has_camera.then(|| self.camera()).transpose()?,
+                view: view.transpose()?,
                 shading: None,
                 size,
             };
@@ -176,8 +149,10 @@ impl RenderArguments {
             return drawn.map_err(anyhow::Error::from_boxed)?;
         }
         let size = size.unwrap_or_default();
-        let view = self.camera()?;
         let field = self.field.field()?;
+        if field.is_some() && self.camera.is_orthographic() {
+            return Err(bad_value("--orthographic", "a mesh", "a --field").into());
+        }
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
         let clip = self.clip()?;
@@ -213,6 +188,24 @@ impl RenderArguments {
                 })
             })
             .collect::<Result<Vec<_>, MeshError>>()?;
+        let sphere = match (&mesh, &field) {
+            (_, Some(_)) => None,
+            (Some(mesh), None) if objects.is_empty() => {
+                Some(Sphere::around(&[(mesh.mesh, Matrix::IDENTITY)]))
+            }
+            _ => {
+                let places = std::iter::once(Matrix::IDENTITY).filter(|_| mesh.is_some());
+                let places = places.chain(descriptions.iter().map(|object| object.place.matrix));
+                let meshes = objects.iter().map(|object| object.subject.mesh);
+                Some(Sphere::around(&meshes.zip(places).collect::<Vec<_>>()))
+            }
+        };
+        let shown = Shown {
+            sphere,
+            model: self.model.as_deref(),
+            has_mesh: self.model.is_some(),
+        };
+        let view = self.camera.view(&shown, 0.0)?;
         let subject = match (mesh, field) {
             _ if !objects.is_empty() => Subject::Objects(&objects),
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
@@ -281,46 +274,7 @@ impl RenderArguments {
         names.extend(self.field.file().map(str::to_owned));
         names.extend(scene.into_iter().flat_map(scene::meshes).map(str::to_owned));
         let files = names.into_iter().map(PathBuf::from);
-        Ok(files.chain(self.view.clone()).collect())
-    }
-
-    fn camera(&self) -> anyhow::Result<View> {
-        let view = match (&self.view, &self.look_at, &self.look) {
-            (Some(path), ..) => {
-                let view = view::read(path)?;
-                self.check_eye(&view, &path.display().to_string())?;
-                view
-            }
-            (None, Some(text), _) => {
-                let view = view::look_at(text).map_err(|error| error.in_file("--look-at"))?;
-                self.check_eye(&view, "--look-at")?;
-                view
-            }
-            (None, None, Some(text)) => {
-                let view = view::look(text).map_err(|error| error.in_file("--look"))?;
-                self.check_eye(&view, "--look")?;
-                view
-            }
-            (None, None, None) => {
-                let default = if self.field.name().is_some() {
-                    "4,30,60"
-                } else {
-                    "2,30,60"
-                };
-                let camera = self.camera.as_deref().unwrap_or(default);
-                view::spherical(camera).map_err(|error| error.in_file("--camera"))?
-            }
-        };
-        let view = match (&self.fov, &self.orthographic) {
-            (Some(angle), _) => {
-                view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
-            }
-            (None, Some(width)) => {
-                view::with_width(view, width).map_err(|error| error.in_file("--orthographic"))?
-            }
-            (None, None) => view,
-        };
-        Ok(view)
+        Ok(files.chain(self.camera.file().map(PathBuf::from)).collect())
     }
 
     fn subject<'m>(&self, model: &'m Model, clip: Clip) -> Result<MeshSubject<'m>, MeshError> {
@@ -351,15 +305,6 @@ impl RenderArguments {
             bad_value("--far", "a distance from 0 to below 256", found)
         })?;
         Ok(Clip::View { far })
-    }
-
-    /// Refuses a camera, given by `source`, that is too far away for a mesh.
-    fn check_eye(&self, view: &View, source: &str) -> anyhow::Result<()> {
-        if self.model.is_some() && !view.is_within(MAX_EYE) {
-            let found = RenderError::Eye(view.eye()).to_string();
-            return Err(bad_value(source, "a camera", found).into());
-        }
-        Ok(())
     }
 
     fn render(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<Rendered> {

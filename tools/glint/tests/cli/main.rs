@@ -1,6 +1,7 @@
 //! The program from outside: exit codes, messages, files.
 
 mod attitudes;
+mod cameras;
 mod common;
 mod conversions;
 mod fields;

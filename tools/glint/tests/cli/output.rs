@@ -109,7 +109,11 @@ fn an_input_is_never_an_output() {
         ),
         (&["convert", "m.obj", "m.obj"], "m.obj", "m.obj"),
         (&["convert", "m.obj", "./m.obj"], "./m.obj", "m.obj"),
-        (&["render", "m.obj", "--out", "m.png"], "m.png", "m.obj"),
+        (
+            &["render", "m.obj", "--up", "z", "--out", "m.png"],
+            "m.png",
+            "m.obj",
+        ),
         (
             &["render", "--object", "m.obj", "--out", "m.png"],
             "m.png",

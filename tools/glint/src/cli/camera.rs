@@ -1,0 +1,178 @@
+//! The options on the command line for the camera.
+
+use super::common::{bad_value, named, note};
+use clap::Args;
+use glint::framing::Sphere;
+use glint::view;
+use glint_core::camera::View;
+use glint_core::matrix::Axis;
+use glint_model::{MAX_EYE, RenderError};
+use std::path::{Path, PathBuf};
+
+/// Options of the camera.
+#[derive(Args)]
+pub struct CameraArguments {
+    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The image plane at
+    /// distance 1 has a half width of 0.9, the near plane is at 0.1 [default: one that shows the whole model, with a field
+    /// 4,30,60].
+    #[arg(
+        long,
+        value_name = "R,THETA,PHI",
+        conflicts_with = "view",
+        allow_hyphen_values = true
+    )]
+    camera: Option<String>,
+    /// A camera at the eye E that looks in the direction of the gaze G, with the direction U (by default z) up on the screen.
+    #[arg(
+        long,
+        value_name = "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]",
+        conflicts_with_all = ["view", "camera"],
+        allow_hyphen_values = true
+    )]
+    look_at: Option<String>,
+    /// A camera at the eye E that looks along +y, turned by YAW to the right, PITCH down and ROLL about its direction, in degrees.
+    #[arg(
+        long,
+        value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
+        conflicts_with_all = ["view", "camera", "look_at"],
+        allow_hyphen_values = true
+    )]
+    look: Option<String>,
+    /// The axis of the model that is up on the screen, without a camera [default: y for .obj, .gltf and .glb, otherwise z].
+    #[arg(long, value_parser = named(Axis::ALL, Axis::name), conflicts_with_all = ["view", "camera", "look_at", "look"])]
+    up: Option<Axis>,
+    /// Enlarge what is in the middle of the picture by this factor, by a narrower field of view.
+    #[arg(long, value_name = "FACTOR")]
+    zoom: Option<f64>,
+    /// The horizontal field of view, 1 to 179 degrees, in place of the camera's half width. Pixels are square.
+    #[arg(long, value_name = "DEGREES")]
+    fov: Option<String>,
+    /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
+    #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "zoom"])]
+    orthographic: Option<String>,
+    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
+    #[arg(long, value_name = "VIEW.json")]
+    view: Option<PathBuf>,
+}
+
+/// What a picture shows if no camera is given.
+pub struct Shown<'a> {
+    /// The sphere around the model; `None` for a field, with or without a mesh.
+    pub sphere: Option<Sphere>,
+    /// The name of the model's file or generator, if it has one.
+    pub model: Option<&'a str>,
+    /// Whether a mesh limits the distance of the eye.
+    pub has_mesh: bool,
+}
+
+impl CameraArguments {
+    /// Whether a camera is given, and not only its lens.
+    pub const fn is_given(&self) -> bool {
+        self.camera.is_some()
+            || self.look_at.is_some()
+            || self.look.is_some()
+            || self.view.is_some()
+    }
+
+    /// Whether the projection is orthographic.
+    pub const fn is_orthographic(&self) -> bool {
+        self.orthographic.is_some()
+    }
+
+    /// The file of the camera, if it has one.
+    pub fn file(&self) -> Option<&Path> {
+        self.view.as_deref()
+    }
+
+    /// The camera, `turned` degrees about the model's upright axis if no camera is given.
+    pub fn view(&self, shown: &Shown, turned: f64) -> anyhow::Result<View> {
+        let view = match (
+            &self.view,
+            &self.look_at,
+            &self.look,
+            &self.camera,
+            shown.sphere,
+        ) {
+            (Some(path), ..) => {
+                let view = view::read(path)?;
+                check_eye(&view, shown, &path.display().to_string())?;
+                view
+            }
+            (_, Some(text), ..) => {
+                let view = view::look_at(text).map_err(|error| error.in_file("--look-at"))?;
+                check_eye(&view, shown, "--look-at")?;
+                view
+            }
+            (_, _, Some(text), ..) => {
+                let view = view::look(text).map_err(|error| error.in_file("--look"))?;
+                check_eye(&view, shown, "--look")?;
+                view
+            }
+            (_, _, _, None, Some(sphere)) => {
+                let degrees = self.fov.as_deref().map(view::field_of_view).transpose();
+                let degrees = degrees.map_err(|error| error.in_file("--fov"))?;
+                let view = sphere.framed(self.up_of(shown.model), turned, degrees);
+                let view =
+                    view.map_err(|error| error.in_file(shown.model.unwrap_or("--object")))?;
+                return self.projected(view);
+            }
+            (_, _, _, camera, _) => {
+                let camera = camera.as_deref().unwrap_or("4,30,60");
+                view::spherical(camera).map_err(|error| error.in_file("--camera"))?
+            }
+        };
+        let view = match &self.fov {
+            Some(angle) => {
+                view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
+            }
+            None => view,
+        };
+        self.projected(view)
+    }
+
+    /// The axis that is up, by the option or by the format of the model.
+    fn up_of(&self, model: Option<&str>) -> Axis {
+        self.up.unwrap_or_else(|| {
+            let extension = model.and_then(|model| Path::new(model).extension()?.to_str());
+            let is_upright = |known: &str| {
+                extension.is_some_and(|extension| extension.eq_ignore_ascii_case(known))
+            };
+            match ["obj", "gltf", "glb"]
+                .into_iter()
+                .find(|known| is_upright(known))
+            {
+                Some(extension) => {
+                    note(format_args!(
+                        "y is up, as usual in .{extension}; --up z or --camera changes it"
+                    ));
+                    Axis::Y
+                }
+                None => Axis::Z,
+            }
+        })
+    }
+
+    /// The camera with the zoom or the orthographic projection of the options.
+    fn projected(&self, view: View) -> anyhow::Result<View> {
+        let view = match self.zoom {
+            Some(factor) => view::zoomed(view, factor).map_err(|error| error.in_file("--zoom"))?,
+            None => view,
+        };
+        match &self.orthographic {
+            Some(width) => {
+                Ok(view::with_width(view, width)
+                    .map_err(|error| error.in_file("--orthographic"))?)
+            }
+            None => Ok(view),
+        }
+    }
+}
+
+/// Refuses a camera, given by `source`, that is too far away for a mesh.
+fn check_eye(view: &View, shown: &Shown, source: &str) -> anyhow::Result<()> {
+    if shown.has_mesh && !view.is_within(MAX_EYE) {
+        let found = RenderError::Eye(view.eye()).to_string();
+        return Err(bad_value(source, "a camera", found).into());
+    }
+    Ok(())
+}
