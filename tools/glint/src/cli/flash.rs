@@ -28,7 +28,7 @@ pub struct FlashArguments {
     #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
     spi: bool,
     /// Board: `emulated`, `virtual` or a serial port.
-    #[arg(long, default_value = "virtual")]
+    #[arg(long, default_value = "emulated")]
     board: BoardName,
     /// Address to load the program at, and to start it at.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]

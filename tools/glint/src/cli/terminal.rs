@@ -23,6 +23,7 @@ const LOOK_MS: u64 = 10;
 #[derive(Args)]
 pub struct ConsoleArguments {
     /// Board: `emulated`, `virtual` or a serial port.
+    #[arg(default_value = "emulated")]
     board: BoardName,
     /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]

@@ -1,17 +1,20 @@
-//! Serial boot of the firmware through the BIOS, over the virtual board's pseudo-terminal: by LiteX's own terminal, and by
-//! `glint flash`.
+//! Serial boot of the firmware through the BIOS: by LiteX's own terminal over the virtual board's pseudo-terminal, and by `glint flash`
+//! on the emulated board.
 
 use crate::terminal::Terminal;
-use glint::board::SerialBoard;
+use glint::board::SimulatedBoard;
 use glint::console::Console;
+use glint::flash;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use virtual_board::{Start, VirtualBoard, pty::Pty};
 
 /// Time-out of a test in clock cycles of the board: several times as many as the tests need.
 const LIMIT: u64 = 400_000_000;
 
-/// Time-out of `glint flash` and of a console, in host time.
+/// Address of main memory, where the program begins.
+const MAIN_RAM: u32 = 0x4000_0000;
+
+/// Longest wait of `glint flash` for the BIOS in milliseconds of the board's time.
 const PATIENCE_MS: u64 = 300_000;
 
 /// The firmware built by `cargo xtask firmware`.
@@ -50,26 +53,13 @@ fn litex_term_loads_the_firmware_and_gets_an_answer() {
 
 #[test]
 fn glint_flash_loads_the_firmware_and_it_answers() {
-    let board = board();
-    let port = board.path().to_str().unwrap();
-    let flashed = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .arg("flash")
-        .arg(firmware())
-        .args(["--board", port, "--json"])
-        .output()
-        .unwrap();
-    assert!(flashed.status.success(), "{flashed:?}");
-    let report: serde_json::Value = serde_json::from_slice(&flashed.stdout).unwrap();
-    let bytes = std::fs::metadata(firmware()).unwrap().len();
-    assert_eq!(report["bytes"], bytes, "{report}");
-
-    let mut line = SerialBoard::open(port, 115_200).unwrap();
-    let mut console = Console::new(&mut line).patience(PATIENCE_MS);
-    let banner = console.greet().unwrap();
-    assert!(
-        banner.contains("Liftoff!") && banner.contains("Glint"),
-        "{banner}"
-    );
+    let program = std::fs::read(firmware()).unwrap();
+    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let report = flash::flash(&mut board, &program, MAIN_RAM, PATIENCE_MS, &mut |_, _| {}).unwrap();
+    assert_eq!(report.bytes, program.len());
+    assert_eq!(report.retries, 0);
+    let mut console = Console::new(&mut board);
+    console.greet().unwrap();
     let info = console.command("info").unwrap();
     assert!(info.iter().any(|line| line == "triangles 12"), "{info:?}");
 }
