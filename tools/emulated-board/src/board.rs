@@ -2,6 +2,7 @@
 
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
+use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
 use crate::bus::Bus;
@@ -181,6 +182,16 @@ impl EmulatedBoard {
     /// Disconnects the sensor from the I2C bus, and returns it.
     pub fn unplug(&mut self) -> Option<Wires> {
         self.bus.devices.i2c.sensor.take()
+    }
+
+    /// Connects an image sensor instead of the present one, if any.
+    pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
+        self.bus.devices.gesture.plug(image_sensor);
+    }
+
+    /// The image sensor, if there is one. Its faults take effect with the next frame that it begins.
+    pub fn image_sensor(&mut self) -> Option<&mut ImageSensor> {
+        self.bus.devices.gesture.sensor()
     }
 
     /// Runs to the next vertical blanking, and returns the frame that is shown from then on; black at the last size while the

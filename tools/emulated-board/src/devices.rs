@@ -8,11 +8,12 @@ mod timer;
 mod uart;
 
 use litex_pac::{
-    Interrupt, Memory, buttons, ctrl, identity, leds, raymarch as raymarch_block,
-    scanout as scanout_block, switches, timer0, triangle as triangle_block, uart as uart_block,
+    Interrupt, Memory, buttons, ctrl, gesture as gesture_block, identity, leds,
+    raymarch as raymarch_block, scanout as scanout_block, switches, timer0,
+    triangle as triangle_block, uart as uart_block,
 };
 
-use crate::{Device, MainMemory, TriangleEngine};
+use crate::{Device, GestureEngine, MainMemory, TriangleEngine};
 use i2c::I2c;
 use pins::{Inputs, Outputs};
 pub use scanout::Frame;
@@ -30,11 +31,11 @@ pub const REGISTERS: Memory = Memory {
 /// Bytes of the window of a block: blocks are as far apart as the first two.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 
-/// The bits of scan-out, triangle engine, raymarcher and line engine in `identity.blocks`.
-const PRESENT: u32 = 0b1111;
+/// The bits of scan-out, triangle engine, raymarcher, line engine and gesture engine in `identity.blocks`.
+const PRESENT: u32 = 0b1_1111;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
-const BLOCKS: [(usize, Option<Interrupt>); 11] = [
+const BLOCKS: [(usize, Option<Interrupt>); 12] = [
     (ctrl::Ctrl::BASE, None),
     (identity::Identity::BASE, None),
     (uart_block::Uart::BASE, Some(Interrupt::Uart)),
@@ -46,6 +47,7 @@ const BLOCKS: [(usize, Option<Interrupt>); 11] = [
     (scanout_block::Scanout::BASE, Some(Interrupt::Scanout)),
     (triangle_block::Triangle::BASE, Some(Interrupt::Triangle)),
     (raymarch_block::Raymarch::BASE, Some(Interrupt::Raymarch)),
+    (gesture_block::Gesture::BASE, Some(Interrupt::Gesture)),
 ];
 
 /// The blocks of the SoC.
@@ -68,6 +70,8 @@ pub struct Devices {
     pub scanout: Scanout,
     /// The triangle engine with the raymarcher.
     triangle: TriangleEngine,
+    /// The gesture engine with its image sensor.
+    pub gesture: GestureEngine,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
 }
@@ -86,6 +90,7 @@ impl Devices {
             leds: Outputs::default(),
             scanout: Scanout::new(),
             triangle: TriangleEngine::new(),
+            gesture: GestureEngine::new(),
             // Each block states its next event when it is asked for the first time.
             next: [0; BLOCKS.len()],
         }
@@ -101,6 +106,7 @@ impl Devices {
         self.leds = Outputs::default();
         self.scanout.reset();
         self.triangle = TriangleEngine::new();
+        self.gesture.reset();
         self.next = [0; BLOCKS.len()];
     }
 
@@ -116,7 +122,8 @@ impl Devices {
             7 => &mut self.leds,
             8 => &mut self.scanout,
             9 => &mut self.triangle,
-            _ => &mut self.triangle.raymarcher,
+            10 => &mut self.triangle.raymarcher,
+            _ => &mut self.gesture,
         }
     }
 

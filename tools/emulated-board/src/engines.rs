@@ -3,10 +3,12 @@
 //! An engine takes its parameters from its registers and its input from main memory, as the gateware does. Its results, the counts that
 //! have an exact meaning, its errors and its interrupts are those of the gateware; its time is an estimate.
 
+mod gesture;
 mod parameters;
 mod pass;
 mod raymarch;
 mod triangle;
 
+pub use gesture::GestureEngine;
 pub use raymarch::Raymarcher;
 pub use triangle::TriangleEngine;

@@ -30,10 +30,11 @@ mod memory;
 pub use board::EmulatedBoard;
 pub use device::Device;
 pub use devices::Frame;
-pub use engines::{Raymarcher, TriangleEngine};
+pub use engines::{GestureEngine, Raymarcher, TriangleEngine};
 pub use error::Error;
 pub use events::Events;
 pub use memory::MainMemory;
+pub use virtual_image_sensor;
 pub use virtual_mpu6050;
 
 /// The time in ns at the cycle `now` of the system clock.

@@ -38,6 +38,12 @@ impl Levels {
         self.0 & Self::VSYNC != 0
     }
 
+    /// Whether PCLK is inverted: it rises at the beginning of the period.
+    #[must_use]
+    pub const fn is_inverted(self) -> bool {
+        self.0 & Self::INVERTED != 0
+    }
+
     /// Whether PCLK has an edge in this period.
     #[must_use]
     pub const fn ticks(self) -> bool {

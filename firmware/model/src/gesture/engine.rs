@@ -66,7 +66,7 @@ pub struct Seen {
     pub lines: u16,
 }
 
-/// The engine from the pins to the results. It is enabled from the start.
+/// The engine from the pins to the results.
 #[derive(Clone, Debug)]
 pub struct Engine {
     /// The settings that the next frame takes.
@@ -79,11 +79,13 @@ pub struct Engine {
     pub fault: Option<Fault>,
     /// What the image sensor sends.
     pub seen: Seen,
+    /// Polarities of the pins. They change while the engine is off.
+    pub polarity: Polarity,
+    is_enabled: bool,
     snapshot: Snapshot,
     is_snapshot_wanted: bool,
     is_snapshot_ready: bool,
     is_keeping: bool,
-    polarity: Polarity,
     in_force: Settings,
     sums: Sums,
     /// Whether a frame has begun since the start, or since the clock stopped.
@@ -98,7 +100,7 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Makes an engine that has seen nothing yet; `pins` is the state of the pins.
+    /// Makes an engine that is on and has seen nothing yet; `pins` is the state of the pins.
     #[must_use]
     pub const fn new(polarity: Polarity, settings: Settings, pins: Pins) -> Self {
         let was_between = pins.vsync != polarity.vsync_low;
@@ -115,11 +117,12 @@ impl Engine {
                 pixels: 0,
                 lines: 0,
             },
+            polarity,
+            is_enabled: true,
             snapshot: Snapshot::new(0, false),
             is_snapshot_wanted: false,
             is_snapshot_ready: false,
             is_keeping: false,
-            polarity,
             in_force: settings,
             sums: Sums::NONE,
             is_active: false,
@@ -156,6 +159,18 @@ impl Engine {
         }
         self.was_between = is_between;
         self.was_in_line = is_in_line;
+    }
+
+    /// Turns the engine on or off. After it is on, the first frame begins at the next VSYNC.
+    pub const fn set_enabled(&mut self, is_enabled: bool) {
+        self.is_enabled = is_enabled;
+        self.is_active = self.is_active && is_enabled;
+    }
+
+    /// Whether the engine is on and no frame has begun yet.
+    #[must_use]
+    pub const fn is_waiting(&self) -> bool {
+        self.is_enabled && !self.is_active
     }
 
     /// Learns that the sensor's clock has stopped: the frame under way is dropped.
@@ -242,7 +257,7 @@ impl Engine {
             self.is_keeping = true;
             self.snapshot.clear();
         }
-        self.is_active = true;
+        self.is_active = self.is_enabled;
         self.found = None;
         self.sums = Sums::NONE;
         self.seen.lines = self.line;

@@ -27,6 +27,15 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
+    /// Adds the counts of other rows.
+    pub const fn add(&mut self, other: &Self) {
+        self.rays += other.rays;
+        self.evaluations += other.evaluations;
+        self.hits += other.hits;
+        self.misses += other.misses;
+        self.undecided += other.undecided;
+    }
+
     /// Adds a ray with the result `outcome` to the counts.
     pub fn count(&mut self, setup: &FieldSetup, outcome: &RayResult) {
         self.rays += 1;
@@ -56,8 +65,23 @@ pub fn render_field(
     show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
 ) -> Result<FieldStats, RenderError> {
     target.check()?;
-    let &FieldSetup { width, height, .. } = setup;
-    target.check_size((width, height))?;
+    target.check_size((setup.width, setup.height))?;
+    let (colour, depth) = (&mut *target.colour, &mut *target.depth);
+    Ok(render_rows(setup, palette, 0, colour, depth, show))
+}
+
+/// Draws the rows of a field from `first` on, as many as `colour` and `depth` have, as [`render_field`] does. `first` is a multiple of
+/// 16, so that the rows begin with those of a block of the prepass.
+#[inline(always)]
+pub fn render_rows(
+    setup: &FieldSetup,
+    palette: &Palette,
+    first: u32,
+    colour: &mut [u16],
+    depth: &mut [u32],
+    show: &mut dyn FnMut(u32, u32, &Ray, &RayResult),
+) -> FieldStats {
+    let width = setup.width;
     let mut stats = FieldStats::default();
     let mut rays = Rays::new(setup);
     let mut look = |eye, x, y| {
@@ -71,8 +95,8 @@ pub fn render_field(
         };
         (paint(setup, palette, &ray, &outcome), code)
     };
-    let pixels = core::iter::zip(target.colour.iter_mut(), target.depth.iter_mut());
-    let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    let pixels = core::iter::zip(colour.iter_mut(), depth.iter_mut());
+    let places = (first..setup.height).flat_map(|y| (0..width).map(move |x| (x, y)));
     for ((x, y), (colour, depth)) in core::iter::zip(places, pixels) {
         let (left, code) = look(0, x, y);
         match setup.stereo {
@@ -88,7 +112,7 @@ pub fn render_field(
         }
     }
     stats.evaluations += rays.evaluations();
-    Ok(stats)
+    stats
 }
 
 impl FieldSetup {

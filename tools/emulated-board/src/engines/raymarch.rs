@@ -1,11 +1,11 @@
 //! The raymarcher: distance fields in the frames of the triangle engine (docs/raymarch.md), with all features.
 
+mod rows;
 mod setup;
 mod spheres;
 
 use glint_core::picture::Size;
 use glint_model::FrameBuffer;
-use glint_model::raymarch::{RayResult, State, render_field};
 use litex_pac::raymarch::{
     Caps, Control, Counters, Error, EvPending, Kind, Raymarch, Solid, Status, Table, offset,
 };
@@ -73,23 +73,7 @@ impl Raymarcher {
     pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
         let palette = palette(&self.parameters, &self.spheres, &self.tables);
-        // Where there are triangles, the test of a ray's depth is repeated, because the counts of the model lack its result.
-        let before = target.depth.to_vec();
-        let width = target.width;
-        let mut hidden = 0;
-        let mut show = |x, y, ray: &_, outcome: &RayResult| {
-            let stored = before.get((y * width + x) as usize);
-            let stored = stored.copied().unwrap_or(0);
-            if stored > 0 && setup.stereo.is_none() {
-                let code = match outcome.state {
-                    State::Hit(_) => setup.depth_code(ray, outcome.reached()),
-                    _ => 0,
-                };
-                hidden += u32::from(code < stored);
-            }
-        };
-        // The picture has the size of the constants.
-        let stats = render_field(&setup, &palette, target, &mut show).unwrap_or_default();
+        let (stats, hidden) = rows::render(&setup, &palette, target);
         let eyes = 1 + u32::from(setup.stereo.is_some());
         let work = (stats.evaluations / LANES).max(stats.rays.into());
         let cycles = work + LATENCY;

@@ -5,6 +5,7 @@ use super::line::{Board, Memory};
 use emulated_board::EmulatedBoard;
 use std::path::{Path, PathBuf};
 use virtual_board::pty::Uart;
+use virtual_board::virtual_image_sensor::ImageSensor;
 use virtual_board::virtual_mpu6050::Wires;
 use virtual_board::{Start, VirtualBoard, WIDTH};
 
@@ -45,6 +46,9 @@ pub trait Simulation {
 
     /// Connects a motion sensor to the I2C bus instead of the present one, if any.
     fn plug(&mut self, sensor: Wires);
+
+    /// Connects an image sensor instead of the present one, if any.
+    fn plug_image_sensor(&mut self, sensor: ImageSensor);
 
     /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
     ///
@@ -90,6 +94,10 @@ impl Simulation for VirtualBoard {
         self.plug(sensor);
     }
 
+    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
+        self.plug_image_sensor(sensor);
+    }
+
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
         Ok(self.capture()?.scaled_back(scale)?)
     }
@@ -130,6 +138,10 @@ impl Simulation for EmulatedBoard {
 
     fn plug(&mut self, sensor: Wires) {
         self.plug(sensor);
+    }
+
+    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
+        self.plug_image_sensor(sensor);
     }
 
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {

@@ -8,7 +8,7 @@ use glint::board::{Board, BoardName};
 use glint::console::Console;
 use glint::gesture::{self, SensorFault};
 use std::path::PathBuf;
-use virtual_board::virtual_image_sensor::{Images, Source};
+use virtual_board::virtual_image_sensor::{ImageSensor, Images, Source};
 
 /// Size of the frames of the synthetic hand: that of the sensor's set-up.
 const SIZE: [usize; 2] = [320, 240];
@@ -30,7 +30,7 @@ impl GestureCommand {
 /// Options of a board with an image sensor.
 #[derive(Args)]
 struct SensorArguments {
-    /// Board of the image sensor: `virtual` (the verilated SoC with a virtual OV7670) or a serial port.
+    /// Board of the image sensor: `emulated` or `virtual` (the verilated SoC), both with a virtual OV7670, or a serial port.
     #[arg(long)]
     board: BoardName,
     /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
@@ -55,33 +55,38 @@ impl SensorArguments {
         files.with_context(|| folder.display().to_string())
     }
 
-    fn open(&self) -> anyhow::Result<Box<dyn Board>> {
-        let port = match &self.board {
-            BoardName::Emulated => {
-                anyhow::bail!(
-                    "--board emulated: it has no image sensor, expected `virtual` or a serial port"
-                )
-            }
-            BoardName::Serial(port) => port,
-            BoardName::Virtual => {
-                let source: Box<dyn Source> = match &self.pictures {
-                    None => Box::new(gesture::moving_hand(SIZE)),
-                    Some(folder) => Box::new(Images::read(folder)?),
-                };
-                let mut sensor = gesture::image_sensor(source);
-                if let Some(fault) = self.fault {
-                    fault.apply(&mut sensor, SIZE[1] / 2);
-                }
-                let mut board = self.line.virtual_board()?;
-                board.inner().plug_image_sensor(sensor);
-                return Ok(Box::new(board));
-            }
+    fn sensor(&self) -> anyhow::Result<ImageSensor> {
+        let source: Box<dyn Source> = match &self.pictures {
+            None => Box::new(gesture::moving_hand(SIZE)),
+            Some(folder) => Box::new(Images::read(folder)?),
         };
-        anyhow::ensure!(
-            self.pictures.is_none() && self.fault.is_none(),
-            "--pictures and --fault: expected --board virtual"
-        );
-        Ok(Box::new(self.line.serial_board(port)?))
+        let mut sensor = gesture::image_sensor(source);
+        if let Some(fault) = self.fault {
+            fault.apply(&mut sensor, SIZE[1] / 2);
+        }
+        Ok(sensor)
+    }
+
+    fn open(&self) -> anyhow::Result<Box<dyn Board>> {
+        match &self.board {
+            BoardName::Emulated => {
+                let mut board = self.line.emulated_board()?;
+                board.inner().plug_image_sensor(self.sensor()?);
+                Ok(Box::new(board))
+            }
+            BoardName::Virtual => {
+                let mut board = self.line.virtual_board()?;
+                board.inner().plug_image_sensor(self.sensor()?);
+                Ok(Box::new(board))
+            }
+            BoardName::Serial(port) => {
+                anyhow::ensure!(
+                    self.pictures.is_none() && self.fault.is_none(),
+                    "--pictures and --fault: expected --board emulated or --board virtual"
+                );
+                Ok(Box::new(self.line.serial_board(port)?))
+            }
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! A hand in front of the virtual image sensor steers the camera of the scene: the whole way from the pins of the sensor's port over the
 //! gesture engine, the firmware and the triangle engine to the monitor.
 
-use crate::common::{console, mesh, running_board};
-use glint::board::SimulatedBoard;
+use crate::common::{console, emulator, mesh};
+use glint::board::{EmulatedBoard, SimulatedBoard, Simulation};
 use glint::console::{Console, value};
 use glint::gesture::{self, SensorFault, image_sensor};
 use glint::imu::sensor;
@@ -86,7 +86,7 @@ fn target(place: &Place) -> [f64; 3] {
     ]
 }
 
-fn status(console: &mut Console<SimulatedBoard>) -> Vec<String> {
+fn status(console: &mut Console<SimulatedBoard<EmulatedBoard>>) -> Vec<String> {
     console.command(COMMAND).unwrap()
 }
 
@@ -99,7 +99,7 @@ fn numbers(lines: &[String], key: &str) -> Vec<f64> {
     text.split(' ').map(|word| word.parse().unwrap()).collect()
 }
 
-fn run(console: &mut Console<SimulatedBoard>, milliseconds: u64) {
+fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) {
     console.board().inner().run(milliseconds * MS);
 }
 
@@ -118,7 +118,7 @@ const PICTURE: &str = "../../docs/pictures/holoforge.png";
 /// for the documentation.
 #[test]
 fn the_camera_follows_the_hand() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let bytes = mesh("icosphere:3");
     transfer::stage(&mut console, &bytes).unwrap();
@@ -145,9 +145,8 @@ fn the_camera_follows_the_hand() {
     // Half of the way; all of it for the animation.
     for step in 0..if films { 19 } else { 10 } {
         if films {
-            let shown = console.board().inner().capture().unwrap();
             film.push(Image {
-                colour: shown.scaled_back(4).unwrap(),
+                colour: console.board().inner().monitor_frame(4).unwrap(),
                 ..Image::empty(Size::W320)
             });
         } else {
@@ -201,8 +200,8 @@ fn the_camera_follows_the_hand() {
     };
     let subject = Subject::mesh(Mesh::new_checked(&bytes).unwrap());
     let expected = on_model(&Frame::new(subject, view, Size::W320)).unwrap();
-    let shown = console.board().inner().capture().unwrap();
-    assert!(shown.scaled_back(4).unwrap() == expected.image.colour);
+    let shown = console.board().inner().monitor_frame(4).unwrap();
+    assert!(shown == expected.image.colour);
 }
 
 /// Rows of the table of faults in docs/hand.md: fault, text about the last camera frame, PCLK.
@@ -234,7 +233,7 @@ const RETURN: u64 = 125;
 /// With every fault the camera stays, and afterwards the hand is tracked again; so it is with each row of what the sensor sees.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
-    let mut board = running_board();
+    let mut board = emulator();
     board.inner().plug(sensor::virtual_sensor(None));
     let mut console = console(&mut board);
     let quiet = &mut |_: u64, _: u64| {};
@@ -263,7 +262,7 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     assert!((1_120..1_280).contains(&marked), "{marked}");
 
     sensor::wait(&mut console).unwrap();
-    let samples = |console: &mut Console<SimulatedBoard>| {
+    let samples = |console: &mut Console<SimulatedBoard<EmulatedBoard>>| {
         let lines = console.command("imu").unwrap();
         ["samples", "failures", "gaps"].map(|key| value::<u64>("imu", &lines, key).unwrap())
     };
@@ -332,7 +331,7 @@ fn sights() -> [(&'static str, Vec<Place>, f64, u64); 5] {
 }
 
 /// Walks the table of what the image sensor sees.
-fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard>, view: &View) {
+fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard>>, view: &View) {
     let rows = include_str!("../../../../docs/hand.md").lines();
     let mut rows = rows.skip_while(|row| !row.starts_with("| the image sensor sees |"));
     for ((name, hands, light, time), row) in core::iter::zip(sights(), rows.by_ref().skip(2)) {
@@ -363,7 +362,7 @@ fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard>, view: &View
 /// A hand in front of an OV5640 calibrates its colour.
 #[test]
 fn a_calibration_finds_the_hand() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut console = console(&mut board);
     let place = Place {
         centre: [160.0, 110.0],
@@ -389,8 +388,7 @@ fn a_calibration_finds_the_hand() {
     // The mark of the hand's place is in the lower right corner.
     console.command("gesture mark").unwrap();
     run(&mut console, 40);
-    let shown = console.board().inner().capture().unwrap();
-    let frame = shown.scaled_back(4).unwrap();
+    let frame = console.board().inner().monitor_frame(4).unwrap();
     let marks = frame.iter().filter(|&&colour| colour == 0x07e0).count();
     assert!((16..40).contains(&marks), "{marks}");
 }

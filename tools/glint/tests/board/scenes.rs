@@ -1,6 +1,6 @@
 //! Scenes: those in the firmware are the files of the folder `scenes`, and are drawn as the model draws them.
 
-use crate::common::{console, emulator, info, renderer, running_board};
+use crate::common::{console, emulator, info, renderer};
 use glint::render::{self, Parts, Renderer, Route, size_command, view_command};
 use glint::scene::{self, Changes};
 use glint_core::colour::Shading;
@@ -11,7 +11,7 @@ use glint_scene::{NAMES, Scene, built_in};
 /// soft core takes 131 million cycles to draw the smooth frame of `objects`.
 #[test]
 fn scenes_are_the_models() {
-    let mut board = running_board();
+    let mut board = emulator();
     let mut renderer = renderer(&mut board).with_route(Route::Memory);
     let changes = Changes {
         shading: Some(Shading::Flat),

@@ -156,7 +156,6 @@ impl Output {
             &mut self.written,
             (self.counts.clone(), self.exceptions.numbers.len()),
         );
-        let mut written = 0;
         let mut put = |place: u32, first: usize, words: Option<&[u32]>| {
             let words = words.unwrap_or_default();
             let start = place.wrapping_add(4 * first as u32);
@@ -165,22 +164,25 @@ impl Output {
                     *bytes = word.to_le_bytes();
                 }
             }
-            written += words.len().div_ceil(4) as u32;
         };
         let ends = [&before, &self.counts].map(|counts| counts.descriptors() as usize);
         let [first, end] = ends.map(|number| number * DESCRIPTOR);
         put(descriptors, first, self.descriptors.get(first..end));
+        let mut written = (end - first).div_ceil(4);
         let lengths = before.lengths().iter().zip(self.counts.lengths());
         for (band, (&from, &to)) in (0..).zip(lengths) {
             let list = 4 * list_word(band, self.room.list_shift) as usize;
             let (first, end) = (list + from as usize, list + to as usize);
             put(lists, first, self.lists.get(first..end));
+            // The end of a pass writes the incomplete last word of each list, also if the list has not grown.
+            written += (to / 4 - from / 4 + u32::from(to % 4 > 0)) as usize;
         }
         put(lists, 0, Some(self.counts.lengths()));
-        // Each exception is written alone.
+        // Lengths are written four at a time, and each exception alone.
+        written += self.counts.lengths().len() / 4 + self.exceptions.numbers.len() - listed;
         for (place, number) in self.exceptions.numbers.iter().enumerate().skip(listed) {
             put(exceptions, place, Some(&[*number]));
         }
-        written
+        written as u32
     }
 }

@@ -1,0 +1,121 @@
+//! The port of the image sensor: the levels of its pins, one period of its clock after the other.
+
+use glint_model::gesture::Pins;
+use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
+use virtual_image_sensor::{ImageSensor, Levels};
+
+/// Frequency of the system clock in Hz.
+const CLOCK: u64 = CONFIG_CLOCK_FREQUENCY as u64;
+
+/// The frame that the sensor is sending.
+#[derive(Default)]
+pub struct Port {
+    frame: Vec<Levels>,
+    /// The next period in `frame`.
+    at: usize,
+    /// The period in which VSYNC changes next; that behind the frame if there is none.
+    change: usize,
+    /// Half periods of the sensor's clock in which `frame` began, counted from the start of the board.
+    begin: u64,
+    /// The cycle in which it began, and what is left of it, in parts of `2 * clock`.
+    first: [u64; 2],
+    /// Frequency of the sensor's clock in Hz.
+    clock: u64,
+    /// Levels of the period before the next one.
+    before: Levels,
+    /// Cycle of the last tick.
+    pub last_tick: u64,
+}
+
+impl Port {
+    /// Forgets the frame: the sensor starts or stops.
+    pub fn clear(&mut self) {
+        self.frame.clear();
+        self.at = 0;
+        self.change = 0;
+    }
+
+    /// Takes the sensor's next frame if the one before has been sent. The first one begins at the cycle `now`.
+    pub fn fill(&mut self, sensor: &mut ImageSensor, now: u64) {
+        if self.at < self.frame.len() {
+            return;
+        }
+        let clock = u64::from(sensor.timing.clock.max(1));
+        self.begin = if self.frame.is_empty() || clock != self.clock {
+            (u128::from(now) * 2 * u128::from(clock) / u128::from(CLOCK)) as u64
+        } else {
+            self.begin + 2 * self.frame.len() as u64
+        };
+        self.clock = clock;
+        let (begin, halves) = (u128::from(self.begin), u128::from(2 * clock));
+        let parts = begin * u128::from(CLOCK);
+        self.first = [parts / halves, parts % halves].map(|part| part as u64);
+        let seconds = self.begin as f64 / (2.0 * clock as f64);
+        self.frame = sensor.frame(seconds);
+        self.at = 0;
+        self.find_change();
+    }
+
+    /// The next tick of the sensor's clock up to the cycle `now`: its cycle, and the pins. `falling` selects the edge.
+    pub fn next(&mut self, now: u64, falling: bool) -> Option<(u64, Pins)> {
+        while let Some(&levels) = self.frame.get(self.at) {
+            // Levels change at the beginning of a period, and PCLK rises in its middle.
+            let begins = levels.is_inverted() != falling;
+            let cycle = self.cycle(2 * self.at as u64 + u64::from(!begins));
+            if cycle > now {
+                return None;
+            }
+            let seen = if begins { self.before } else { levels };
+            self.before = levels;
+            self.at += 1;
+            if self.at > self.change {
+                self.find_change();
+            }
+            if levels.ticks() {
+                let pins = Pins {
+                    vsync: seen.vsync(),
+                    href: seen.href(),
+                    data: seen.data(),
+                };
+                return Some((cycle, pins));
+            }
+        }
+        None
+    }
+
+    /// Whether the time of the frame is over at the cycle `now`, so that the next one begins.
+    pub fn has_sent(&self, now: u64) -> bool {
+        let periods = self.frame.len();
+        periods > 0 && self.at >= periods && self.cycle(2 * periods as u64) <= now
+    }
+
+    /// The cycle in which VSYNC changes next, or the frame ends; `u64::MAX` without a frame.
+    pub fn next_event(&self) -> u64 {
+        if self.frame.is_empty() {
+            u64::MAX
+        } else {
+            self.cycle(2 * self.change as u64 + 2)
+        }
+    }
+
+    /// The present levels of the pins.
+    pub const fn levels(&self) -> Levels {
+        self.before
+    }
+
+    /// The first cycle after a number of half periods of the frame.
+    fn cycle(&self, halves: u64) -> u64 {
+        let [cycle, part] = self.first;
+        cycle + (part + halves * CLOCK).div_ceil(2 * self.clock.max(1))
+    }
+
+    fn find_change(&mut self) {
+        let rest = self.frame.get(self.at..).unwrap_or_default();
+        let mut vsync = self.before.vsync();
+        let change = rest.iter().position(|levels| {
+            let was = std::mem::replace(&mut vsync, levels.vsync());
+            was != vsync
+        });
+        self.change = self.at + change.unwrap_or(rest.len());
+    }
+}

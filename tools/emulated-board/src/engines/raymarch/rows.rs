@@ -1,0 +1,70 @@
+//! Drawing of a field by all cores of the machine, in strips of rows.
+
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use glint_model::FrameBuffer;
+use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
+
+/// Rows of a strip: those of the largest block of the prepass.
+const ROWS: usize = 16;
+
+/// Draws a field into a picture that has its triangles. Returns the counts of its rays, and the number of pixels that are behind a
+/// triangle.
+pub fn render(
+    setup: &FieldSetup,
+    palette: &Palette,
+    target: &mut FrameBuffer,
+) -> (FieldStats, u32) {
+    let pixels = ROWS * target.width as usize;
+    let strips = target.colour.chunks_mut(pixels);
+    let strips = strips.zip(target.depth.chunks_mut(pixels));
+    let strips = Mutex::new((0..).step_by(ROWS).zip(strips));
+    let sums = Mutex::new((FieldStats::default(), 0));
+    let work = || {
+        loop {
+            let next = strips.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((first, (colour, depth))) = next else {
+                return;
+            };
+            let (stats, hidden) = strip(setup, palette, first, colour, depth);
+            let mut sums = sums.lock().unwrap_or_else(PoisonError::into_inner);
+            sums.0.add(&stats);
+            sums.1 += hidden;
+        }
+    };
+    let threads = thread::available_parallelism().map_or(1, usize::from);
+    thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(work);
+        }
+        work();
+    });
+    sums.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Draws the rows from `first` on.
+fn strip(
+    setup: &FieldSetup,
+    palette: &Palette,
+    first: u32,
+    colour: &mut [u16],
+    depth: &mut [u32],
+) -> (FieldStats, u32) {
+    // Where there are triangles, the test of a ray's depth is repeated, because the counts of the model lack its result.
+    let before = depth.to_vec();
+    let mut hidden = 0;
+    let mut show = |x, y, ray: &_, outcome: &RayResult| {
+        let stored = before.get(((y - first) * setup.width + x) as usize);
+        let stored = stored.copied().unwrap_or(0);
+        if stored > 0 && setup.stereo.is_none() {
+            let code = match outcome.state {
+                State::Hit(_) => setup.depth_code(ray, outcome.reached()),
+                _ => 0,
+            };
+            hidden += u32::from(code < stored);
+        }
+    };
+    let stats = render_rows(setup, palette, first, colour, depth, &mut show);
+    (stats, hidden)
+}

@@ -1,0 +1,105 @@
+//! Frames by the gateware on the virtual board and by the engines of the emulated board: pictures, depths, the place of a
+//! hand and the counts that have an exact meaning are equal.
+
+use crate::common::{console, emulator, mesh, renderer, running_board};
+use glint::board::{SimulatedBoard, Simulation};
+use glint::console::value;
+use glint::gesture::image_sensor;
+use glint::object::Description;
+use glint::render::{
+    Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject, TriangleCounts,
+};
+use glint::view;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_model::{Object, Placement};
+use virtual_board::virtual_image_sensor::{Place, Scene};
+
+/// The frames, each with its name, by a board.
+fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) -> Vec<Rendered> {
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let parts = Parts {
+        colour: true,
+        depth: true,
+    };
+    let render = |(name, frame): &(&str, Frame)| {
+        let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
+        println!("{name}: {:?} cycles", rendered.stats.cycles);
+        rendered
+    };
+    frames.iter().map(render).collect()
+}
+
+#[test]
+fn both_boards_draw_the_same() {
+    let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
+    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
+    let outside = view::spherical("2.5,30,60").unwrap();
+    let inside = view::look("0,-0.3,0.1,20,10").unwrap();
+    let objects = [
+        "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
+        "- scale 0.5,0.5,-1 move 0.5,0.3,0.2 colour 30c0ff",
+    ]
+    .map(|text| {
+        let place = Description::parse(text).unwrap().place;
+        Object {
+            subject: plain(&sphere),
+            placement: Placement::new(place.matrix),
+            colour: place.colour,
+        }
+    });
+    let frames = [
+        ("a mesh", Subject::Mesh(plain(&sphere)), outside),
+        ("clipped triangles", Subject::Mesh(plain(&sponge)), inside),
+        ("objects", Subject::Objects(&objects), outside),
+    ]
+    .map(|(name, subject, view)| (name, Frame::new(subject, view, Size::W320)));
+    let by_gateware = drawn(running_board(), &frames);
+    let by_emulation = drawn(emulator(), &frames);
+    for ((name, _), (expected, found)) in frames.iter().zip(by_gateware.iter().zip(&by_emulation)) {
+        assert!(found.image == expected.image, "{name}");
+        let counts = |rendered: &Rendered| {
+            let stats = &rendered.stats;
+            let engine =
+                ["vertices", "groups", "words_written"].map(|name| stats.engine.get(name).unwrap());
+            // Pixels that the walker tests are an estimate.
+            let mesh = stats.mesh.clone().map(|counts| TriangleCounts {
+                pixels_tested: 0,
+                ..counts
+            });
+            let others = (stats.rays.clone(), stats.edges.clone());
+            (stats.backend.clone(), mesh, others, engine)
+        };
+        assert_eq!(counts(found), counts(expected), "{name}");
+        // The cycles are an estimate.
+        let [found, expected] = [found, expected].map(|rendered| rendered.stats.cycles.unwrap());
+        assert!(
+            (expected / 5..2 * expected).contains(&found),
+            "{name}: {found}, {expected}"
+        );
+    }
+}
+
+/// What a board finds of a hand that rests in front of an image sensor without noise.
+fn found<S: Simulation>(mut board: SimulatedBoard<S>) -> [String; 3] {
+    let hand = Place {
+        centre: [150.0, 110.0],
+        area: 6_000.0,
+    };
+    let scene = Scene::new([320, 240], move |_| vec![hand]);
+    board.inner().plug_image_sensor(image_sensor(scene));
+    let mut console = console(&mut board);
+    console.command("gesture on").unwrap();
+    let cycles = u64::from(console.board().inner().clock_hz()) / 50;
+    console.board().inner().run(cycles);
+    let lines = console.command("gesture").unwrap();
+    println!("{lines:#?}");
+    ["hand", "centre", "fault"].map(|key| value("gesture", &lines, key).unwrap())
+}
+
+#[test]
+fn both_boards_find_the_hand() {
+    let expected = found(running_board());
+    assert_eq!(expected[0], "tracked");
+    assert_eq!(found(emulator()), expected);
+}
