@@ -41,6 +41,7 @@ mod memory;
 mod models;
 #[allow(unsafe_code)] // Keeps copies of meshes beyond the borrow of their memory.
 mod objects;
+mod overlay;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
 mod renderer;
@@ -51,6 +52,7 @@ mod selftest;
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 mod sensor;
 mod shapes;
+mod shown;
 #[allow(unsafe_code)] // Uses the UART before it has an owner.
 mod start;
 mod terminal;

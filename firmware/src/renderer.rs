@@ -3,6 +3,7 @@
 use glint_core::feature::{CPU, EDGES};
 use glint_core::picture::{Backend, Size};
 use glint_core::wire::crc32;
+use glint_hal::frequency::Frequency;
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
 use glint_model::{Frame, FrameBuffer, FrameStats, RenderError, Subject};
@@ -11,7 +12,9 @@ use litex_pac::cpu;
 use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output};
 use crate::memory::Scratch;
 use crate::models::Models;
+use crate::overlay::Overlay;
 use crate::scene::{DrawError, Drawn, RenderedBy, Scene};
+use crate::shown::Shown;
 
 /// The renderers of gateware and CPU, and their memory.
 pub struct Renderer {
@@ -23,6 +26,8 @@ pub struct Renderer {
     pub scratch: Scratch,
     /// The edges of the mesh whose edges were shown last.
     pub edges: EdgeList<'static>,
+    /// Frequency of the clock, for the frames a second in the overlay.
+    pub frequency: Frequency,
     /// The renderer of the gateware, if the SoC has a triangle engine.
     pub gateware: Option<GatewareRenderer>,
 }
@@ -56,8 +61,9 @@ impl Renderer {
                 .map_err(DrawError::Render),
             Err(fallback) => Err(DrawError::NoCpu(fallback)),
         };
-        if drawn.is_ok() {
+        if let Ok(drawn) = &drawn {
             self.draw_mark(scene);
+            self.draw_overlay(models, scene, drawn);
             self.display.show(scene.size());
         }
         Some(drawn)
@@ -69,6 +75,26 @@ impl Renderer {
             return;
         };
         mark.draw(back, scene.size());
+        if let Some(gateware) = &mut self.gateware {
+            gateware.invalidate(back);
+        }
+    }
+
+    /// Writes what the scene shows, and how fast it was drawn, over the frame that was just drawn.
+    fn draw_overlay(&mut self, models: &Models, scene: &Scene, drawn: &Drawn) {
+        let (true, Some(back)) = (scene.has_overlay(), self.display.back()) else {
+            return;
+        };
+        let size = scene.size();
+        let mut overlay = Overlay::new(back, size);
+        overlay.line(format_args!("{}", Shown { scene, models }));
+        let by = match drawn.by {
+            RenderedBy::Cpu(_) => Backend::Cpu,
+            RenderedBy::Gateware(..) => Backend::Gateware,
+        };
+        let Drawn { cycles, .. } = drawn;
+        let rate = u64::from(self.frequency.hertz()) / (*cycles).max(1);
+        overlay.line(format_args!("{size} by {by}: {cycles} cycles, {rate} fps"));
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
         }

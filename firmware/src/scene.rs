@@ -5,7 +5,7 @@ use core::fmt;
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, FIELD, OBJECT, WIREFRAME};
+use glint_core::feature::{CPU, FIELD, OBJECT, OVERLAY, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::{Backend, Edges, Size};
@@ -105,6 +105,7 @@ pub struct Scene {
     changed: bool,
     wants_depth: bool,
     mark: Option<Mark>,
+    overlay: bool,
     drawn: Option<Result<Drawn, DrawError>>,
 }
 
@@ -132,6 +133,7 @@ impl Scene {
             changed: true,
             wants_depth: false,
             mark: None,
+            overlay: false,
             drawn: None,
         })
     }
@@ -299,7 +301,7 @@ impl Scene {
         is_possible
     }
 
-    /// Sets everything except the backend as at start.
+    /// Sets everything except backend and overlay as at start.
     ///
     /// # Errors
     /// [`ViewError`] for the camera at start.
@@ -421,6 +423,17 @@ impl Scene {
     pub fn set_mark(&mut self, mark: Option<Mark>) {
         self.changed |= self.mark != mark;
         self.mark = mark;
+    }
+
+    /// Whether text is written over the picture.
+    pub const fn has_overlay(&self) -> bool {
+        OVERLAY.is_built && self.overlay
+    }
+
+    /// Sets whether text is written over the picture.
+    pub fn set_overlay(&mut self, overlay: bool) {
+        self.changed |= self.overlay != overlay;
+        self.overlay = overlay;
     }
 
     /// Marks the scene as changed, after a change of the mesh that it shows.

@@ -179,6 +179,7 @@ pub fn machine() -> Result<Machine, StartError> {
             depth: memory.depth,
             scratch: memory.scratch,
             edges: EdgeList::new(memory.edges),
+            frequency,
             gateware,
         },
         devices,

@@ -66,6 +66,8 @@ features! {
     UPLOAD = "upload";
     /// Pictures by the soft core: those of the backend `cpu`, and those that the gateware cannot draw.
     CPU = "cpu";
+    /// Text over the picture.
+    OVERLAY = "overlay";
     /// Benchmarks.
     BENCH = "bench";
 }

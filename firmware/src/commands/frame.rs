@@ -1,5 +1,6 @@
 //! Commands for frames: settings, drawing, and download of pictures.
 
+use glint_core::choice::switch_name;
 use glint_core::colour::{Shading, Winding};
 use glint_core::console::FrameCommands;
 use glint_core::fixed::U8_28;
@@ -70,6 +71,17 @@ impl<'l> FrameCommands<'l> for Machine {
             None => {
                 let edges = OrOff(self.scene.edges());
                 self.terminal.print_entry("edges", &edges);
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn overlay(&mut self, on: Option<bool>) -> Outcome<'l> {
+        match on {
+            Some(on) => self.scene.set_overlay(on),
+            None => {
+                let on = switch_name(self.scene.has_overlay());
+                self.terminal.print_entry("overlay", &on);
             }
         }
         Ok(Reply::Done)

@@ -1,6 +1,6 @@
 //! Commands for the machine and its devices: help, information, buttons, LEDs, self-test, restart.
 
-use core::fmt::{self, Display};
+use core::fmt;
 
 use glint_core::console::{MachineCommands, write_help};
 use litex_pac::{EMULATED, cpu, ctrl};
@@ -9,9 +9,8 @@ use crate::error::CommandError;
 use crate::gateware::GatewareRenderer;
 use crate::job::{Outcome, Reply};
 use crate::machine::{Devices, Machine};
-use crate::objects::OBJECTS;
 use crate::selftest;
-use crate::wireframe::WIREFRAME;
+use crate::shown::Shown;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
@@ -45,20 +44,6 @@ impl<'l> MachineCommands<'l> for Machine {
             }),
             None => (models.mesh().vertex_count(), models.mesh().triangle_count()),
         };
-        let (field, model) = (scene.field(), models.shown());
-        let with_mesh = match field {
-            Some(_) if scene.with_mesh() && !scene.shows_wireframe() && !scene.shows_objects() => {
-                format_args!(" with {model}")
-            }
-            _ => format_args!(""),
-        };
-        let shown: &dyn Display = if scene.shows_wireframe() {
-            &WIREFRAME
-        } else if scene.shows_objects() {
-            &OBJECTS
-        } else {
-            field.map_or(&model, |field| field)
-        };
         let [width, height] = scene.size().pixels();
         let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
         let counters = renderer.display.counters();
@@ -76,7 +61,7 @@ impl<'l> MachineCommands<'l> for Machine {
             ("blocks", format_args!("{:#x}", identity.blocks)),
             ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{}", clock.frequency().hertz())),
-            ("scene", format_args!("{shown}{with_mesh}")),
+            ("scene", format_args!("{}", Shown { scene, models })),
             ("vertices", format_args!("{vertices}")),
             ("triangles", format_args!("{triangles}")),
             ("size", format_args!("{width} {height}")),

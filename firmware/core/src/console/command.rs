@@ -104,6 +104,7 @@ commands! {
         clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
         winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
         edges Edges(edges: Option<Or<Off, Edges>>) in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
+        overlay Overlay(on: Option<bool>) in OVERLAY: "turn the text over the picture on or off, or show the setting";
         prepass Prepass(on: bool) in FIELD: "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";

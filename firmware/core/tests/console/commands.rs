@@ -372,6 +372,8 @@ fn every_command_is_understood() {
     assert_parses("render", Command::Render { depth: false });
     assert_parses("render depth", Command::Render { depth: true });
     assert_parses("cull on", Command::Cull { on: true });
+    assert_parses("overlay", Command::Overlay { on: None });
+    assert_parses("overlay on", Command::Overlay { on: Some(true) });
     assert_parses("prepass on", Command::Prepass { on: true });
     assert_parses("prepass off", Command::Prepass { on: false });
     assert_parses("cull off", Command::Cull { on: false });

@@ -7,6 +7,7 @@ mod console;
 mod faults;
 mod firmware;
 mod lockstep;
+mod overlay;
 mod pins;
 mod program;
 mod scan_out;
