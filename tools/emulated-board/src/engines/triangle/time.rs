@@ -1,8 +1,8 @@
 //! The work of passes, and estimates of their clock cycles.
 //!
 //! The rates of the engine's parts are exact (docs/triangle.md, "Clocks of the engine alone", and docs/line.md, "Clocks"); how far parts
-//! overlap, and what memory costs, is not. Against the clocks that these pages state, a geometry pass is within 9 %, and a raster pass
-//! within 10 %.
+//! overlap, and what memory costs, is not. A sphere like that of docs/triangle.md takes 3,675 clocks of geometry and 7,151 of raster here,
+//! the gateware 4,200 and 7,517 alone with a memory.
 
 use glint_core::picture::Size;
 use glint_model::line::{Line, Segment};
