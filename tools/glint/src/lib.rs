@@ -2,7 +2,7 @@
 //!
 //! | module | purpose |
 //! |---|---|
-//! | [`formats`], [`polygons`] | reads and writes OBJ, STL, PLY and GLM |
+//! | [`formats`], [`polygons`] | reads OBJ, STL, PLY, glTF and GLM, and writes all but glTF |
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
 //! | [`model`], [`view`], [`framing`], [`picture`] | models, cameras and frames of the command line |

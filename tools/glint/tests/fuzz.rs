@@ -36,6 +36,7 @@ tests! {
     obj: Obj,
     stl: Stl,
     ply: Ply,
+    gltf: Gltf,
     glm: Glm,
     imu: Imu,
     replay: Replay,

@@ -30,8 +30,8 @@ pub struct ModelArguments {
 /// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to multiples of 2^-14, and order its
 /// triangles for the engine.
 ///
-/// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, and
-/// GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates.
+/// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, glTF
+/// (without textures and skins), and GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
     /// Mesh file to read.
@@ -101,8 +101,9 @@ fn convert_to(
     json: bool,
 ) -> anyhow::Result<()> {
     let in_input = |error: FormatError| error.in_path(name);
-    let format = Format::of(out)?;
-    let out = Output::open(out, MESH, [name])?;
+    let path = out;
+    let out = Output::open(path, MESH, [name])?;
+    let format = Format::of(path)?;
     if format == Format::Glm {
         let spinner = spinner("converting");
         let (mesh, report) = convert::convert(&polygons, options).map_err(in_input)?;
@@ -119,7 +120,7 @@ fn convert_to(
     match format {
         Format::Obj => write::obj(&polygons, &mut bytes),
         Format::Stl => write::stl(&polygons, &mut bytes),
-        Format::Ply | Format::Glm => write::ply(&polygons, &mut bytes),
+        Format::Ply | Format::Gltf | Format::Glm => write::ply(&polygons, &mut bytes),
     }
     .context("mesh: cannot be written")?;
     out.write(|out| out.write_all(&bytes))?;

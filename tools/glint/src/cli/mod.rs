@@ -21,7 +21,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 /// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
-/// MODEL is a mesh file (.obj, .stl, .ply, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,
+/// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,
 /// teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual` or a serial port such as /dev/ttyUSB1. Exit code 2:
 /// bad input, with one line that names the place, what was expected and what was found. Exit code 1: any other failure.
 #[derive(Parser)]

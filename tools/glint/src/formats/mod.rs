@@ -1,6 +1,7 @@
 //! Mesh files: formats, reading, writing.
 
 pub mod glm;
+pub mod gltf;
 pub mod mtl;
 pub mod obj;
 pub mod ply;
@@ -24,6 +25,8 @@ pub enum Format {
     Stl,
     /// PLY; written as binary, little-endian.
     Ply,
+    /// glTF 2.0, JSON or binary; not written.
+    Gltf,
     /// Glint's own format, GLM: the bytes of a mesh as they lie in a board's memory.
     Glm,
 }
@@ -32,7 +35,7 @@ impl Format {
     /// Selects the format by a file's extension.
     ///
     /// # Errors
-    /// The extension is not obj, stl, ply or glm.
+    /// The extension is not obj, stl, ply, gltf, glb or glm.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let extension = path
             .extension()
@@ -41,15 +44,14 @@ impl Format {
             Some("obj") => Ok(Self::Obj),
             Some("stl") => Ok(Self::Stl),
             Some("ply") => Ok(Self::Ply),
+            Some("gltf" | "glb") => Ok(Self::Gltf),
             Some("glm") => Ok(Self::Glm),
             other => {
                 let found = other.map_or("no extension".into(), |other| {
                     format!("'.{}'", other.escape_default())
                 });
-                Err(
-                    FormatError::whole("a name that ends in .obj, .stl, .ply or .glm", found)
-                        .in_path(path),
-                )
+                let expected = "a name that ends in .obj, .stl, .ply, .gltf, .glb or .glm";
+                Err(FormatError::whole(expected, found).in_path(path))
             }
         }
     }
@@ -70,27 +72,27 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     Ok(bytes)
 }
 
-/// Reads a mesh file of any format. Material files of an OBJ are read from its own folder only.
+/// Reads a mesh file of any format. Further files, such as the material files of an OBJ and the buffers of a glTF, are read from its own
+/// folder only.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
 pub fn read(path: &Path) -> Result<Polygons, InputError> {
     let format = Format::of(path)?;
     let bytes = read_file(path)?;
+    let mut beside = |name: &str| {
+        let file = path.with_file_name(Path::new(name).file_name()?);
+        // A device or a pipe could block, or be endless.
+        file.metadata().ok().filter(Metadata::is_file)?;
+        read_file(&file).ok()
+    };
     let parsed = match format {
-        Format::Obj => {
-            let mut beside = |name: &str| {
-                let file = path.with_file_name(Path::new(name).file_name()?);
-                // A device or a pipe could block, or be endless.
-                file.metadata().ok().filter(Metadata::is_file)?;
-                read_file(&file).ok()
-            };
-            match obj::parse(&bytes, &mut beside) {
-                Err(obj::ObjError::Mtl(error)) => return Err(error),
-                Err(obj::ObjError::Obj(error)) => Err(error),
-                Ok(polygons) => Ok(polygons),
-            }
-        }
+        Format::Obj => match obj::parse(&bytes, &mut beside) {
+            Err(obj::ObjError::Mtl(error)) => return Err(error),
+            Err(obj::ObjError::Obj(error)) => Err(error),
+            Ok(polygons) => Ok(polygons),
+        },
+        Format::Gltf => gltf::parse(&bytes, &mut beside),
         Format::Stl => stl::parse(&bytes),
         Format::Ply => ply::parse(&bytes),
         Format::Glm => glm::parse(&bytes),

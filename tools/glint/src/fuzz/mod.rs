@@ -4,9 +4,11 @@
 
 mod corpus;
 mod flash;
+mod gltf;
 mod mutate;
 mod targets;
 
+pub use corpus::{TWO_MESHES, as_binary};
 pub use mutate::{MAX_INPUT, Random};
 pub use targets::{Target, Verdict};
 

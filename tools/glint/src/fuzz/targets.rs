@@ -2,7 +2,7 @@
 
 use super::flash;
 use crate::convert::{self, Options};
-use crate::formats::{glm, obj, ply, stl};
+use crate::formats::{glm, gltf, obj, ply, stl};
 use crate::imu::{log, replay};
 use crate::polygons::Polygons;
 use crate::wireframe::{self, Form};
@@ -28,6 +28,8 @@ pub enum Target {
     Stl,
     /// PLY files.
     Ply,
+    /// glTF files, JSON and binary, and the files of their buffers.
+    Gltf,
     /// Meshes in a board's memory layout.
     Glm,
     /// Logs of a gyroscope and an accelerometer, as CSV text.
@@ -55,12 +57,13 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
         Self::Stl,
         Self::Ply,
+        Self::Gltf,
         Self::Glm,
         Self::Imu,
         Self::Replay,
@@ -108,6 +111,7 @@ impl Target {
                 "solid", "facet", "normal", "outer", "loop", "vertex", "endloop", "endfacet",
                 "endsolid", "COLOR=",
             ],
+            Self::Gltf => super::gltf::WORDS,
             Self::Ply => &[
                 "element",
                 "property",
@@ -144,6 +148,7 @@ impl Target {
                     input.truncate(84 + 50 * count as usize);
                 }
             }
+            Self::Gltf => super::gltf::repair(input),
             Self::Glm => {
                 input.truncate(input.len() / 16 * 16);
                 let length = input.len() as u32;
@@ -181,17 +186,11 @@ impl Target {
         match self {
             Self::Upload => run_transfer(input),
             Self::Console => run_console(input),
-            Self::Obj => {
-                // The input is parsed as OBJ, and serves as every material file of the OBJ too.
-                let polygons = obj::parse(input, &mut |_| Some(input.to_vec()));
-                polygons.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
-            }
-            Self::Stl => {
-                stl::parse(input).map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
-            }
-            Self::Ply => {
-                ply::parse(input).map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
-            }
+            // An OBJ or a glTF also serves as each further file that it names.
+            Self::Obj => run_mesh(obj::parse(input, &mut |_| Some(input.to_vec()))),
+            Self::Gltf => run_mesh(gltf::parse(input, &mut |_| Some(input.to_vec()))),
+            Self::Stl => run_mesh(stl::parse(input)),
+            Self::Ply => run_mesh(ply::parse(input)),
             Self::Glm => glm::parse(input).map_or(Verdict::Rejected, |polygons| {
                 run_conversion(&polygons);
                 run_model(input);
@@ -209,6 +208,10 @@ impl Target {
             Self::Flash => Verdict::Rejected,
         }
     }
+}
+
+fn run_mesh<E>(parsed: Result<Polygons, E>) -> Verdict {
+    parsed.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
 }
 
 /// Converts parsed polygons to a mesh, and checks that a mesh from the conversion is valid.

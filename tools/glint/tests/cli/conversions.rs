@@ -1,6 +1,7 @@
 //! `glint model` and `glint convert`.
 
 use crate::common::{SQUARE, folder, picture, refused, succeed};
+use glint::fuzz::{TWO_MESHES, as_binary};
 
 #[test]
 fn conversions_by_every_way_agree() {
@@ -35,6 +36,37 @@ fn conversions_by_every_way_agree() {
         (&960.into(), &320.into())
     );
     assert_eq!(report["error_max"], 0.0);
+}
+
+#[test]
+fn gltf_in_both_forms() {
+    let folder = folder("gltf");
+    let (binary, buffer) = as_binary(TWO_MESHES).unwrap();
+    std::fs::write(folder.join("binary.glb"), binary).unwrap();
+    let (start, rest) = TWO_MESHES.split_once("data:").unwrap();
+    let (_, end) = rest.split_once('"').unwrap();
+    let text = [start, "with%20space.bin\"", end].concat();
+    std::fs::write(folder.join("text.gltf"), text).unwrap();
+    std::fs::write(folder.join("with space.bin"), buffer).unwrap();
+    for name in ["binary.glb", "text.gltf"] {
+        let report = succeed(&folder, &["convert", name, "out.glm", "--json"]);
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        assert_eq!(
+            (&report["points"], &report["triangles"]),
+            (&8.into(), &4.into())
+        );
+        assert_eq!(report["remarks"][0], "points and lines are ignored");
+        succeed(&folder, &["render", name, "--out", "a.png"]);
+    }
+    std::fs::remove_file(folder.join("with space.bin")).unwrap();
+    assert_eq!(
+        refused(&folder, &["convert", "text.gltf", "out.glm"]),
+        "error: text.gltf: expected the file of a buffer in the folder of the glTF, found 'with%20space.bin'"
+    );
+    assert_eq!(
+        refused(&folder, &["convert", "binary.glb", "out.glb"]),
+        "error: out.glb: expected a name that ends in .obj, .stl, .ply, .glm, found '.glb'"
+    );
 }
 
 #[test]

@@ -152,11 +152,11 @@ fn bad_names_and_numbers() {
         ),
         (
             &["convert", ".", "out.glm"],
-            "error: .: expected a name that ends in .obj, .stl, .ply or .glm, found no extension",
+            "error: .: expected a name that ends in .obj, .stl, .ply, .gltf, .glb or .glm, found no extension",
         ),
         (
             &["convert", "square.obj", "out.xyz"],
-            "error: out.xyz: expected a name that ends in .obj, .stl, .ply or .glm, found '.xyz'",
+            "error: out.xyz: expected a name that ends in .obj, .stl, .ply, .glm, found '.xyz'",
         ),
         (
             &["convert", "square.obj", "out.glm", "--keep-scale"],
