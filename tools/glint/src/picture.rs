@@ -6,6 +6,9 @@ use glint_model::DepthScale;
 use std::io::{self, Write};
 use virtual_board::Picture;
 
+/// Speed of the search for the colours of a GIF, 1 (best) to 30.
+const QUANTISER_SPEED: i32 = 10;
+
 /// Colours and depth codes of a drawn frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
@@ -65,12 +68,7 @@ pub fn write_animation(
     images: &[Image],
     frames_per_second: u16,
 ) -> io::Result<()> {
-    let Some(first) = images.first() else {
-        return Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "expected at least one frame, found none",
-        ));
-    };
+    let first = first(images)?;
     let mut encoder = png::Encoder::new(out, first.width, first.height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
@@ -82,4 +80,34 @@ pub fn write_animation(
     }
     writer.finish()?;
     Ok(())
+}
+
+/// Writes images of one size as a GIF that repeats forever. Each has up to 256 colours of its own. The time of a frame is a
+/// multiple of 1/100 s.
+///
+/// # Errors
+/// It cannot be written, or there is no image.
+pub fn write_gif(out: impl Write, images: &[Image], frames_per_second: u16) -> io::Result<()> {
+    let first = first(images)?;
+    let [width, height] = [first.width, first.height].map(|side| side as u16);
+    let mut encoder = gif::Encoder::new(out, width, height, &[]).map_err(io::Error::other)?;
+    encoder
+        .set_repeat(gif::Repeat::Infinite)
+        .map_err(io::Error::other)?;
+    for image in images {
+        let mut frame =
+            gif::Frame::from_rgb_speed(width, height, image.picture().rgb(), QUANTISER_SPEED);
+        frame.delay = 100_u16.div_ceil(frames_per_second.max(1));
+        encoder.write_frame(&frame).map_err(io::Error::other)?;
+    }
+    Ok(())
+}
+
+fn first(images: &[Image]) -> io::Result<&Image> {
+    images.first().ok_or_else(|| {
+        io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "expected at least one frame, found none",
+        )
+    })
 }

@@ -18,7 +18,7 @@ pub struct CameraArguments {
     #[arg(
         long,
         value_name = "R,THETA,PHI",
-        conflicts_with = "view",
+        conflicts_with_all = ["view", "up"],
         allow_hyphen_values = true
     )]
     camera: Option<String>,
@@ -26,7 +26,7 @@ pub struct CameraArguments {
     #[arg(
         long,
         value_name = "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]",
-        conflicts_with_all = ["view", "camera"],
+        conflicts_with_all = ["view", "camera", "up"],
         allow_hyphen_values = true
     )]
     look_at: Option<String>,
@@ -34,12 +34,22 @@ pub struct CameraArguments {
     #[arg(
         long,
         value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
-        conflicts_with_all = ["view", "camera", "look_at"],
+        conflicts_with_all = ["view", "camera", "look_at", "up"],
         allow_hyphen_values = true
     )]
     look: Option<String>,
+    #[command(flatten)]
+    lens: LensArguments,
+    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
+    #[arg(long, value_name = "VIEW.json", conflicts_with = "up")]
+    view: Option<PathBuf>,
+}
+
+/// Options of any camera, and of one that shows the whole model.
+#[derive(Args)]
+pub struct LensArguments {
     /// The axis of the model that is up on the screen, without a camera [default: y for .obj, .gltf and .glb, otherwise z].
-    #[arg(long, value_parser = named(Axis::ALL, Axis::name), conflicts_with_all = ["view", "camera", "look_at", "look"])]
+    #[arg(long, value_parser = named(Axis::ALL, Axis::name))]
     up: Option<Axis>,
     /// Enlarge what is in the middle of the picture by this factor, by a narrower field of view.
     #[arg(long, value_name = "FACTOR")]
@@ -50,9 +60,6 @@ pub struct CameraArguments {
     /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
     #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "zoom"])]
     orthographic: Option<String>,
-    /// A camera from a file: {"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}.
-    #[arg(long, value_name = "VIEW.json")]
-    view: Option<PathBuf>,
 }
 
 /// What a picture shows if no camera is given.
@@ -76,7 +83,7 @@ impl CameraArguments {
 
     /// Whether the projection is orthographic.
     pub const fn is_orthographic(&self) -> bool {
-        self.orthographic.is_some()
+        self.lens.orthographic.is_some()
     }
 
     /// The file of the camera, if it has one.
@@ -84,8 +91,8 @@ impl CameraArguments {
         self.view.as_deref()
     }
 
-    /// The camera, `turned` degrees about the model's upright axis if no camera is given.
-    pub fn view(&self, shown: &Shown, turned: f64) -> anyhow::Result<View> {
+    /// The camera.
+    pub fn view(&self, shown: &Shown) -> anyhow::Result<View> {
         let view = match (
             &self.view,
             &self.look_at,
@@ -109,29 +116,43 @@ impl CameraArguments {
                 view
             }
             (_, _, _, None, Some(sphere)) => {
-                let degrees = self.fov.as_deref().map(view::field_of_view).transpose();
-                let degrees = degrees.map_err(|error| error.in_file("--fov"))?;
-                let view = sphere.framed(self.up_of(shown.model), turned, degrees);
-                let view =
-                    view.map_err(|error| error.in_file(shown.model.unwrap_or("--object")))?;
-                return self.projected(view);
+                let name = shown.model.unwrap_or("--object");
+                return self
+                    .lens
+                    .framed(&sphere, name, self.lens.up_of(shown.model), 0.0);
             }
             (_, _, _, camera, _) => {
                 let camera = camera.as_deref().unwrap_or("4,30,60");
                 view::spherical(camera).map_err(|error| error.in_file("--camera"))?
             }
         };
-        let view = match &self.fov {
+        let view = match &self.lens.fov {
             Some(angle) => {
                 view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
             }
             None => view,
         };
-        self.projected(view)
+        self.lens.projected(view)
+    }
+}
+
+impl LensArguments {
+    /// The camera that shows the whole of the model `name`, `turned` degrees about the axis `up`.
+    pub fn framed(
+        &self,
+        sphere: &Sphere,
+        name: &str,
+        up: Axis,
+        turned: f64,
+    ) -> anyhow::Result<View> {
+        let degrees = self.fov.as_deref().map(view::field_of_view).transpose();
+        let degrees = degrees.map_err(|error| error.in_file("--fov"))?;
+        let view = sphere.framed(up, turned, degrees);
+        self.projected(view.map_err(|error| error.in_file(name))?)
     }
 
-    /// The axis that is up, by the option or by the format of the model.
-    fn up_of(&self, model: Option<&str>) -> Axis {
+    /// The axis that is up, by the option or by the format of the model, which a note says.
+    pub fn up_of(&self, model: Option<&str>) -> Axis {
         self.up.unwrap_or_else(|| {
             let extension = model.and_then(|model| Path::new(model).extension()?.to_str());
             let is_upright = |known: &str| {
@@ -143,7 +164,7 @@ impl CameraArguments {
             {
                 Some(extension) => {
                     note(format_args!(
-                        "y is up, as usual in .{extension}; --up z or --camera changes it"
+                        "y is up, as usual in .{extension}; --up z changes it"
                     ));
                     Axis::Y
                 }

@@ -11,6 +11,7 @@ mod flash;
 mod gesture;
 mod image;
 mod imu;
+mod orbit;
 mod output;
 mod render;
 mod scene;
@@ -36,6 +37,7 @@ enum Command {
     Model(convert::ModelArguments),
     Convert(convert::ConvertArguments),
     Render(Box<render::RenderArguments>),
+    Orbit(orbit::OrbitArguments),
     Upload(flash::UploadArguments),
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
@@ -61,6 +63,7 @@ impl Arguments {
             Command::Model(arguments) => arguments.run(),
             Command::Convert(arguments) => arguments.run(),
             Command::Render(arguments) => arguments.run(),
+            Command::Orbit(arguments) => arguments.run(),
             Command::Upload(arguments) => arguments.run(),
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),

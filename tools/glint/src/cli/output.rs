@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// Extensions of a picture.
 pub const PICTURE: &[&str] = &["png"];
+/// Extensions of an animation.
+pub const ANIMATION: &[&str] = &["png", "gif"];
 /// Extensions of distances as little-endian numbers.
 pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
 /// Extensions of statistics.

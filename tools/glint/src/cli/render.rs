@@ -136,10 +136,7 @@ impl RenderArguments {
                 model: None,
                 has_mesh: false,
             };
-            let view = self
-                .camera
-                .is_given()
-                .then(|| self.camera.view(&shown, 0.0));
+            let view = self.camera.is_given().then(|| self.camera.view(&shown));
             let changes = Changes {
                 view: view.transpose()?,
                 shading: None,
@@ -205,7 +202,7 @@ impl RenderArguments {
             model: self.model.as_deref(),
             has_mesh: self.model.is_some(),
         };
-        let view = self.camera.view(&shown, 0.0)?;
+        let view = self.camera.view(&shown)?;
         let subject = match (mesh, field) {
             _ if !objects.is_empty() => Subject::Objects(&objects),
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),

@@ -10,6 +10,8 @@ use glint_core::colour::Shading;
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
+use std::path::Path;
+use std::process::Command;
 
 /// Smooth shading is drawn by the triangle engine if the gateware has it, otherwise by the CPU with a note in `stats`.
 #[test]
@@ -270,4 +272,34 @@ fn depths_come_over_the_line() {
         .depth(Size::W320, Route::Serial, &mut |_, _| {})
         .unwrap();
     assert!(depth == expected.depth);
+}
+
+/// The animation of `glint orbit` on the emulated board has the pictures of the model, by either backend.
+#[test]
+fn an_orbit_on_a_board_is_the_models() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
+    std::fs::create_dir_all(&folder).unwrap();
+    let orbit = |board: &[&str]| {
+        let arguments = ["orbit", "gear", "--frames", "6", "--out", "a.png", "--json"];
+        let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(arguments)
+            .args(board)
+            .current_dir(&folder)
+            .output()
+            .unwrap();
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{board:?}: {error}");
+        let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(report["frames"], 6);
+        let counts_cycles = report["cycles"].as_u64().is_some_and(|cycles| cycles > 0);
+        assert_eq!(counts_cycles, !board.is_empty(), "{board:?}: {report}");
+        std::fs::read(folder.join("a.png")).unwrap()
+    };
+    let expected = orbit(&[]);
+    for more in [&[][..], &["--backend", "cpu"], &["--transfer", "serial"]] {
+        assert!(
+            orbit(&[&["--board", "emulated"], more].concat()) == expected,
+            "{more:?}"
+        );
+    }
 }

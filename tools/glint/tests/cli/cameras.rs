@@ -96,7 +96,7 @@ fn the_axis_that_is_up() {
     };
     let (upright, note) = drawn(&["z.obj", "--up", "z"]);
     assert_eq!(note, "");
-    let guessed = "note: y is up, as usual in .obj; --up z or --camera changes it\n";
+    let guessed = "note: y is up, as usual in .obj; --up z changes it\n";
     assert!(drawn(&["y.obj"]) == (upright.clone(), guessed.to_owned()));
     assert!(drawn(&["y.obj", "--up", "y"]) == (upright.clone(), String::new()));
     assert!(drawn(&["y.obj", "--up", "z"]).0 != upright);

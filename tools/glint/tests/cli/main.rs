@@ -8,6 +8,7 @@ mod fields;
 mod images;
 mod input;
 mod meshes;
+mod orbits;
 mod output;
 mod package;
 mod tolerance;
