@@ -1,6 +1,6 @@
 //! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong.
 
-use crate::firmware::{address, command, image, patch, started};
+use crate::firmware::{address, command, emulated, image, patch};
 use crate::sensor::{board_with_sensor, sensor};
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
@@ -32,7 +32,7 @@ fn an_unknown_sensor_and_a_picture_with_another_checksum_fail() {
     // Moves an end of the last segment of the built-in wireframe program.
     let program = address(&["wireframe", "cube", "CUBE"]);
     patch(&mut image, program + 14 * 16, &[0x0800_0800]);
-    let (mut board, _) = started(&image);
+    let (mut board, _) = emulated(&image);
     let mut unknown = sensor(|_| State::default());
     unknown.chip.fault = Some(Fault::Identity(0x12));
     board.plug(unknown);
