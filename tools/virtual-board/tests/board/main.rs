@@ -13,3 +13,4 @@ mod program;
 mod scan_out;
 mod selftest;
 mod sensor;
+mod switching;
