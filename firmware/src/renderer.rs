@@ -190,28 +190,34 @@ impl Renderer {
         scene: &Scene,
         count: u32,
     ) -> Option<Result<gateware::Rendered, Fallback>> {
-        let colour = self.display.back()?;
-        let gateware = self.gateware.as_mut()?;
-        let mut output = Output {
-            colour,
-            depth: None,
-        };
-        let mut cpu = Cpu {
-            scratch: &mut self.scratch,
-            edges: &mut self.edges,
-            progress: &mut || {},
-        };
         let frame = scene.frame(models);
-        Some(gateware.repeat(&frame, &mut output, &mut cpu, count))
+        self.unseen(|gateware, output, cpu| gateware.repeat(&frame, output, cpu, count))
     }
 
     /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
     /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
-        let colour = self.display.back()?;
-        let gateware = self.gateware.as_mut()?;
+        self.unseen(|gateware, output, cpu| {
+            let drawn = loop {
+                if let Some(drawn) = gateware.advance(frame, output, cpu) {
+                    break drawn;
+                }
+            };
+            // The engine writes to memory and not to the CPU's data cache, which may hold older data.
+            cpu::flush_data_cache();
+            let pixels = output.colour.get(..frame.size.pixel_count());
+            drawn.map(|_| crc32(bytemuck::cast_slice(pixels.unwrap_or_default())))
+        })
+    }
+
+    /// Calls `draw` with the gateware, a free frame buffer without depth codes, and what the CPU needs for its part. Returns `None` if the
+    /// gateware has no triangle engine, or while no frame buffer is free.
+    fn unseen<T>(
+        &mut self,
+        draw: impl FnOnce(&mut GatewareRenderer, &mut Output, &mut Cpu) -> T,
+    ) -> Option<T> {
         let mut output = Output {
-            colour,
+            colour: self.display.back()?,
             depth: None,
         };
         let mut cpu = Cpu {
@@ -219,15 +225,7 @@ impl Renderer {
             edges: &mut self.edges,
             progress: &mut || {},
         };
-        let drawn = loop {
-            if let Some(drawn) = gateware.advance(frame, &mut output, &mut cpu) {
-                break drawn;
-            }
-        };
-        // The engine writes to memory and not to the CPU's data cache, which may hold older data.
-        cpu::flush_data_cache();
-        let pixels = output.colour.get(..frame.size.pixel_count());
-        Some(drawn.map(|_| crc32(bytemuck::cast_slice(pixels.unwrap_or_default()))))
+        Some(draw(self.gateware.as_mut()?, &mut output, &mut cpu))
     }
 
     /// Colours of the last frame: RGB565, row by row.

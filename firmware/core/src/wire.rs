@@ -24,8 +24,7 @@
 //! * The receiver decides when the transfer is complete. It repeats its verdict until the sender has closed, so both
 //!   sides reach the end; if every `Close` is lost, the receiver ends after a timeout.
 //!
-//! A host that begins a conversation sends a `Reset` ([`reset`]), which ends what is left of an earlier transfer at once, and so does a
-//! person's Ctrl-C.
+//! A host that begins a conversation sends a `Reset` ([`reset`]), which cancels an unfinished transfer at once; so does a person's Ctrl-C.
 //!
 //! A side with a console on the same line drops the bytes that it receives after the end of a transfer, until the line is quiet
 //! ([`Timing::quiet_ms`]). The other side treats the bytes after the last zero byte as text.

@@ -125,9 +125,9 @@ fn lines_keep_their_pixels() {
     }
 }
 
-/// Every row and group in which a triangle has covered pixels is told.
+/// The search for a triangle's pixels visits every row and group in which the triangle covers one.
 #[test]
-fn groups_are_told() {
+fn every_covered_group_is_visited() {
     let mut random = Random(11);
     let mut most = 0;
     for _ in 0..200 {

@@ -102,7 +102,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Begins a conversation with a board that others have used: ends what is left of a transfer, and drops all that the board still
+    /// Begins a conversation with a board that others have used: cancels an unfinished transfer, and drops all that the board still
     /// has to say to earlier commands, so that no line of it is taken for a later reply.
     ///
     /// # Errors
@@ -142,7 +142,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Ends what is left of a transfer on the board, if there is one.
+    /// Cancels an unfinished transfer on the board, if there is one.
     ///
     /// # Errors
     /// An error of the board.

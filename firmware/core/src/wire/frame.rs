@@ -72,7 +72,7 @@ const GAP_MS: u64 = 50;
 /// The byte of the key Ctrl-C.
 const CTRL_C: u8 = 0x03;
 
-/// Writes the frame that ends what is left of a transfer, and returns its length. Its bytes do nothing on a console without a
+/// Writes the frame that cancels an unfinished transfer, and returns its length. Its bytes do nothing on a console without a
 /// transfer.
 pub fn reset(out: &mut [u8]) -> usize {
     write(0, Message::Reset, out)
