@@ -35,6 +35,7 @@ PINNED = {
     "triangle": Location(10, irq=4),
     "raymarch": Location(11, irq=5),
     "gesture": Location(12, irq=7),
+    "digits": Location(13),
     # The physical layers differ between boards, so the build id does not cover their registers.
     "ddrphy": Location(30),
     "uart_phy": Location(31),

@@ -13,6 +13,7 @@ from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import csr_bus, wishbone
 from migen import Cat, Constant, Signal, log2_int
 
+from .digits import Digits
 from .gesture import GestureEngine
 from .i2c import I2CMaster
 from .identity import Identity
@@ -93,6 +94,7 @@ class GlintSoC(SoCCore):
         self.buttons = GPIOIn(self._inputs("buttons", 4), with_irq=True)
         self.switches = GPIOIn(self._inputs("switches", 16))
         self.leds = GPIOOut(self._outputs("leds", 16))
+        self.digits = Digits(platform.request("digits", loose=True))
         if "gesture" in self.blocks:
             self.gesture = GestureEngine(platform, platform.request("camera"), sys_clk_freq)
 

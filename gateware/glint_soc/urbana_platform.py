@@ -19,6 +19,14 @@ _io = [
     ("switches", 0, Pins("G1 F2 F1 E2 E1 D2 D1 C2 B2 A4 A5 A6 C7 A7 B7 A8"), _BANK_35),
     ("leds", 0, Pins("C13 C14 D14 D15 D16 F18 E17 D17 C17 B18 A17 B17 C18 D18 E18 G17"), IOStandard("LVCMOS33")),
 
+    # The vendor's displays D0 and D1: digits from left to right, segments a to g and the point.
+    ("digits", 0,
+        Subsignal("left_digits_n", Pins("G6 H6 C3 B3")),
+        Subsignal("left_segments_n", Pins("E6 B4 D5 C5 D7 D6 C4 B5")),
+        Subsignal("right_digits_n", Pins("E4 E3 F5 H5")),
+        Subsignal("right_segments_n", Pins("F3 G5 J3 H4 F4 H3 E5 J4")),
+        _BANK_35),
+
     # `rx` and `tx` are as seen from the FPGA. The vendor's file names these pins as seen from the USB bridge.
     ("serial", 0,
         Subsignal("rx", Pins("B16")),

@@ -25,6 +25,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
 import counters  # noqa: E402
+import digits  # noqa: E402
 import register_bus  # noqa: E402
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
@@ -88,6 +89,7 @@ def test():
     others = {
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
         **{f"counters: {name}": action for name, action in counters.CHECKS.items()},
+        **{f"digits: {name}": action for name, action in digits.CHECKS.items()},
         **{f"parameters: {name}": action for name, action in parameters.CHECKS.items()},
         **{f"register banks: {name}": action for name, action in register_bus.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x9b74_8482;
+pub const BUILD_ID: u32 = 0x3c6f_1fca;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,6 +91,8 @@ pub struct Peripherals {
     pub raymarch: raymarch::Raymarch,
     /// `gesture`.
     pub gesture: gesture::Gesture,
+    /// `digits`.
+    pub digits: digits::Digits,
 }
 
 impl Peripherals {
@@ -116,6 +118,7 @@ impl Peripherals {
                 triangle: triangle::Triangle::steal(),
                 raymarch: raymarch::Raymarch::steal(),
                 gesture: gesture::Gesture::steal(),
+                digits: digits::Digits::steal(),
             }
         }
     }
@@ -7840,5 +7843,53 @@ pub mod gesture {
             ]
             .into_iter()
         }
+    }
+}
+
+/// The registers of `digits`.
+pub mod digits {
+    use crate::register::{ReadWrite, Register};
+
+    /// Access to `digits`.
+    pub struct Digits {
+        _private: (),
+    }
+
+    impl Digits {
+        /// Address of the first register.
+        pub const BASE: usize = 0xf000_6800;
+
+        /// Another handle, beside the one that [`Peripherals::take`](crate::Peripherals::take) hands out.
+        ///
+        /// # Safety
+        /// The holders of the handles must tolerate each other's changes to the registers.
+        #[must_use]
+        pub const unsafe fn steal() -> Self {
+            Self { _private: () }
+        }
+
+        /// `left`, 32 bits: Segments of the digits of the left display, a byte each, the leftmost digit in bits 7:0. Bits 0 to 6 of a byte light the segments a to g, bit 7 the point. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn left(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6800) }
+        }
+
+        /// `right`, 32 bits: Segments of the digits of the right display, a byte each, the leftmost digit in bits 7:0. Bits 0 to 6 of a byte light the segments a to g, bit 7 the point. Reads as 0.
+        #[inline]
+        #[must_use]
+        pub const fn right(&self) -> Register<u32, ReadWrite> {
+            // SAFETY: the SoC's description has this register, of this width, at this address.
+            unsafe { Register::at(0xf000_6804) }
+        }
+    }
+
+    /// Offset of each register from the first one in bytes; a register of two words has its high word there.
+    pub mod offset {
+        /// `left`.
+        pub const LEFT: u32 = 0x0;
+        /// `right`.
+        pub const RIGHT: u32 = 0x4;
     }
 }

@@ -169,6 +169,12 @@ impl EmulatedBoard {
         self.bus.devices.leds.levels
     }
 
+    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
+    #[must_use]
+    pub fn digits(&self) -> [u8; 8] {
+        self.bus.devices.digits.segments
+    }
+
     /// Connects a sensor to the I2C bus instead of the present sensor, if any.
     pub fn plug(&mut self, sensor: Wires) {
         self.bus.devices.i2c.sensor = Some(sensor);

@@ -8,14 +8,14 @@ mod timer;
 mod uart;
 
 use litex_pac::{
-    Interrupt, Memory, buttons, ctrl, gesture as gesture_block, identity, leds,
+    Interrupt, Memory, buttons, ctrl, digits, gesture as gesture_block, identity, leds,
     raymarch as raymarch_block, scanout as scanout_block, switches, timer0,
     triangle as triangle_block, uart as uart_block,
 };
 
 use crate::{Device, GestureEngine, MainMemory, TriangleEngine};
 use i2c::I2c;
-use pins::{Inputs, Outputs};
+use pins::{Digits, Inputs, Outputs};
 pub use scanout::Frame;
 use scanout::Scanout;
 use system::{Controller, Identity};
@@ -35,7 +35,7 @@ const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 const PRESENT: u32 = 0b1_1111;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
-const BLOCKS: [(usize, Option<Interrupt>); 12] = [
+const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (ctrl::Ctrl::BASE, None),
     (identity::Identity::BASE, None),
     (uart_block::Uart::BASE, Some(Interrupt::Uart)),
@@ -48,6 +48,7 @@ const BLOCKS: [(usize, Option<Interrupt>); 12] = [
     (triangle_block::Triangle::BASE, Some(Interrupt::Triangle)),
     (raymarch_block::Raymarch::BASE, Some(Interrupt::Raymarch)),
     (gesture_block::Gesture::BASE, Some(Interrupt::Gesture)),
+    (digits::Digits::BASE, None),
 ];
 
 /// The blocks of the SoC.
@@ -72,6 +73,8 @@ pub struct Devices {
     triangle: TriangleEngine,
     /// The gesture engine with its image sensor.
     pub gesture: GestureEngine,
+    /// The displays of digits.
+    pub digits: Digits,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
 }
@@ -91,12 +94,13 @@ impl Devices {
             scanout: Scanout::new(),
             triangle: TriangleEngine::new(),
             gesture: GestureEngine::new(),
+            digits: Digits::default(),
             // Each block states its next event when it is asked for the first time.
             next: [0; BLOCKS.len()],
         }
     }
 
-    /// Resets the blocks, as the CPU has asked for: pins keep their levels, and the video timing goes on.
+    /// Resets the blocks, as the CPU has asked for: pins keep their levels, the digits what they show, and the video timing goes on.
     pub fn reset(&mut self) {
         self.controller = Controller::new();
         self.uart.reset();
@@ -123,7 +127,8 @@ impl Devices {
             8 => &mut self.scanout,
             9 => &mut self.triangle,
             10 => &mut self.triangle.raymarcher,
-            _ => &mut self.gesture,
+            11 => &mut self.gesture,
+            _ => &mut self.digits,
         }
     }
 

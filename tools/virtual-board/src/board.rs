@@ -9,6 +9,7 @@ use litex_pac::memories::MAIN_RAM;
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
+use crate::digits::Digits;
 use crate::library::Soc;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
@@ -93,6 +94,7 @@ impl<'a> Builder<'a> {
             sensor: None,
             image_sensor: None,
             camera_clock: (0, 0),
+            digits: Digits::default(),
             uart: Vec::new(),
             running: Duration::ZERO,
         };
@@ -125,6 +127,7 @@ pub struct VirtualBoard {
     image_sensor: Option<ImageSensor>,
     /// Periods of the image sensor's master clock so far, and the cycle in which this number was seen to change.
     camera_clock: (u64, u64),
+    digits: Digits,
     /// Serial output of the SoC that the user of the board has not read yet.
     uart: Vec<u8>,
     running: Duration,
@@ -224,9 +227,10 @@ impl VirtualBoard {
         (u128::from(self.cycles()) * 1_000_000_000 / u128::from(self.clock_hz())) as u64
     }
 
-    /// Takes new serial output and video from the SoC.
+    /// Takes new serial output and video from the SoC, and looks at the digits.
     fn collect(&mut self) {
         self.soc.uart_read(&mut self.uart);
+        self.digits.look(self.soc.cycles(), self.soc.digits());
         if self.monitor.is_on() {
             let monitor = &mut self.monitor;
             self.soc.video_take(|samples| monitor.watch(samples));
@@ -319,6 +323,12 @@ impl VirtualBoard {
     #[must_use]
     pub fn leds(&self) -> u16 {
         self.soc.leds()
+    }
+
+    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
+    #[must_use]
+    pub fn digits(&self) -> [u8; 8] {
+        self.digits.seen(self.cycles())
     }
 
     /// Connects a sensor to the I2C bus instead of the present sensor, if any. The sensor then drives the wires in place

@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask gateware` compiles the SoC to a shared library. This crate loads it, drives its clocks and pins, and models its
 //! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons,
-//! switches, LEDs, an MPU-6050 ([`VirtualBoard::plug`]), an image sensor ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the
+//! switches, LEDs, digits, an MPU-6050 ([`VirtualBoard::plug`]), an image sensor ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the
 //! video timing and captures pictures.
 //! A back door reads and writes DDR3 at run time, coherent with the CPU's caches.
 //!
@@ -26,6 +26,7 @@
 
 mod board;
 mod boot;
+mod digits;
 mod error;
 mod library;
 mod monitor;

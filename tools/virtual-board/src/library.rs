@@ -78,6 +78,8 @@ pub(crate) struct Soc {
     buttons: usize,
     switches: usize,
     leds: usize,
+    /// The pins of the left display and of the right one: those that select a digit, and those of the segments.
+    digits: [[usize; 2]; 2],
     // The last field, so that the library is unloaded after the table of its functions is dropped.
     instance: Instance,
 }
@@ -93,6 +95,9 @@ impl Soc {
             buttons: instance.find("buttons"),
             switches: instance.find("switches"),
             leds: instance.find("leds"),
+            digits: ["left", "right"].map(|side| {
+                ["digits", "segments"].map(|pins| instance.find(&format!("digits_{side}_{pins}_n")))
+            }),
             instance,
         })
     }
@@ -169,6 +174,17 @@ impl Soc {
 
     pub fn leds(&self) -> u16 {
         self.instance.value(self.leds) as u16
+    }
+
+    /// The selected digits and the segments of the left display and of the right one, as they are lit: 1 is on.
+    pub fn digits(&self) -> [[u8; 2]; 2] {
+        // The pins are active low. A display has four digits and eight segments.
+        self.digits.map(|[digits, segments]| {
+            [
+                !self.instance.value(digits) as u8 & 0xf,
+                !self.instance.value(segments) as u8,
+            ]
+        })
     }
 
     pub fn i2c_drive(&mut self, released: u8) {

@@ -1,4 +1,4 @@
-//! Buttons, switches and LEDs.
+//! Buttons, switches, LEDs, and the displays of digits.
 
 use litex_pac::buttons::offset;
 
@@ -109,6 +109,36 @@ impl Device for Outputs {
     fn write(&mut self, offset: u32, value: u32, _now: u64, _ram: &mut MainMemory) {
         if offset == litex_pac::leds::offset::OUT {
             self.levels = value as u16;
+        }
+    }
+
+    fn advance(&mut self, _now: u64, _ram: &mut MainMemory) -> u64 {
+        u64::MAX
+    }
+
+    fn interrupt(&self) -> bool {
+        false
+    }
+}
+
+/// Two displays of four digits. A reset leaves what they show.
+#[derive(Default)]
+pub struct Digits {
+    /// Segments of each digit from left to right, as in the registers.
+    pub segments: [u8; 8],
+}
+
+impl Device for Digits {
+    fn read(&mut self, _offset: u32, _now: u64) -> u32 {
+        0
+    }
+
+    fn write(&mut self, offset: u32, value: u32, _now: u64, _ram: &mut MainMemory) {
+        let (left, right) = self.segments.split_at_mut(4);
+        match offset {
+            litex_pac::digits::offset::LEFT => left.copy_from_slice(&value.to_le_bytes()),
+            litex_pac::digits::offset::RIGHT => right.copy_from_slice(&value.to_le_bytes()),
+            _ => {}
         }
     }
 

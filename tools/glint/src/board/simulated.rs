@@ -50,6 +50,9 @@ pub trait Simulation {
     /// Connects an image sensor instead of the present one, if any.
     fn plug_image_sensor(&mut self, sensor: ImageSensor);
 
+    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
+    fn digits(&self) -> [u8; 8];
+
     /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
     ///
     /// # Errors
@@ -98,6 +101,10 @@ impl Simulation for VirtualBoard {
         self.plug_image_sensor(sensor);
     }
 
+    fn digits(&self) -> [u8; 8] {
+        self.digits()
+    }
+
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
         Ok(self.capture()?.scaled_back(scale)?)
     }
@@ -142,6 +149,10 @@ impl Simulation for EmulatedBoard {
 
     fn plug_image_sensor(&mut self, sensor: ImageSensor) {
         self.plug_image_sensor(sensor);
+    }
+
+    fn digits(&self) -> [u8; 8] {
+        self.digits()
     }
 
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {

@@ -1,7 +1,7 @@
 //! Tests of the preloaded start, the pins, and the back door against a program whose data are in the CPU's caches.
 
 use crate::program;
-use litex_pac::{buttons, leds, switches};
+use litex_pac::{buttons, digits, leds, switches};
 use virtual_board::VirtualBoard;
 
 /// Address of the word in DDR3 that the program reads or writes. The DDR3 row of this word holds no other data of the program.
@@ -91,6 +91,27 @@ fn the_back_door_sees_what_the_program_has_stored() {
             "read {i}: the count in memory is {ahead:#06x} ahead of the LEDs' {shown:#06x}"
         );
     }
+}
+
+#[test]
+fn the_digits_show_their_registers_from_left_to_right() {
+    // SAFETY: only addresses of registers are taken; nothing is accessed.
+    let digits = unsafe { digits::Digits::steal() };
+    let mut board = program::started(
+        "digits",
+        &[
+            ("LEFT", digits.left().address() as u32),
+            ("LEFT_SHOWN", 0x8066_4f5b),
+            ("RIGHT", digits.right().address() as u32),
+            ("RIGHT_SHOWN", 0x7f07_7d6d),
+        ],
+    );
+    // A little more than the time in which each digit is lit once.
+    board.run(70_000);
+    assert_eq!(
+        board.digits(),
+        [0x5b, 0x4f, 0x66, 0x80, 0x6d, 0x7d, 0x07, 0x7f]
+    );
 }
 
 /// Returns the address of the instruction at `patch` in `programs/pins.S`, which copies the word unchanged.

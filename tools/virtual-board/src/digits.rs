@@ -1,0 +1,45 @@
+//! The displays of digits, of which the SoC lights one digit at a time.
+
+/// Cycles for which a digit looks lit after it was: twice the cycles in which the SoC lights each digit once.
+const SEEN: u64 = 2 << 16;
+
+/// The digits as an eye sees them.
+#[derive(Default)]
+pub(crate) struct Digits {
+    /// Segments of each digit from left to right when it was last lit, and the cycle after which it looks dark.
+    digits: [(u8, u64); 8],
+}
+
+impl Digits {
+    /// Looks at the pins of both displays in a cycle: the lit digits of each, one bit each, and its lit segments.
+    pub fn look(&mut self, cycle: u64, displays: [[u8; 2]; 2]) {
+        for (digits, [lit, segments]) in self.digits.chunks_mut(4).zip(displays) {
+            for (place, digit) in digits.iter_mut().enumerate() {
+                if lit >> place & 1 != 0 {
+                    *digit = (segments, cycle + SEEN);
+                }
+            }
+        }
+    }
+
+    /// Segments of the digits from left to right, as they are seen in a cycle.
+    pub fn seen(&self, cycle: u64) -> [u8; 8] {
+        self.digits
+            .map(|(segments, end)| if cycle < end { segments } else { 0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_digit_is_seen_until_it_was_dark_for_two_turns() {
+        let mut digits = Digits::default();
+        digits.look(5, [[0b0001, 0x06], [0, 0x06]]);
+        digits.look(7, [[0, 0xff], [0b1000, 0xff]]);
+        assert_eq!(digits.seen(8), [0x06, 0, 0, 0, 0, 0, 0, 0xff]);
+        assert_eq!(digits.seen(5 + SEEN), [0, 0, 0, 0, 0, 0, 0, 0xff]);
+        assert_eq!(digits.seen(7 + SEEN), [0; 8]);
+    }
+}
