@@ -6,11 +6,11 @@ use litex_pac::memories::{ROM, SRAM};
 use crate::MainMemory;
 use crate::devices::{Devices, REGISTERS};
 
-/// Clock cycles after which the bus answers an access to an address where nothing is.
+/// Clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
-/// What such an access reads.
-const NOTHING: u32 = u32::MAX;
+/// Value that a load from an unused address returns.
+const UNUSED: u32 = u32::MAX;
 
 /// Result of an access outside main memory.
 pub struct Access {
@@ -112,26 +112,26 @@ impl Bus {
                     device: true,
                 }
             }
-            Place::Nothing => self.time_out(),
+            Place::Unused => self.time_out(),
         }
     }
 
     fn time_out(&mut self) -> Access {
         self.devices.count_bus_error();
         Access {
-            value: NOTHING,
+            value: UNUSED,
             cycles: TIMEOUT,
             device: false,
         }
     }
 }
 
-/// What is at an address outside main memory: a byte of a memory, or of the registers.
+/// Target of an address outside main memory, with the offset from the start of the target.
 enum Place {
     Rom(usize),
     Sram(usize),
     Register(u32),
-    Nothing,
+    Unused,
 }
 
 fn place(address: u32) -> Place {
@@ -146,6 +146,6 @@ fn place(address: u32) -> Place {
     } else if let Some(offset) = within(REGISTERS) {
         Place::Register(offset)
     } else {
-        Place::Nothing
+        Place::Unused
     }
 }

@@ -14,7 +14,7 @@ pub trait Device {
     /// Writes the register at `offset`. An engine reads and writes main memory `ram`.
     fn write(&mut self, offset: u32, value: u32, now: u64, ram: &mut MainMemory);
 
-    /// Does what is due at the cycle `now`, and returns the cycle of the next event, `u64::MAX` for none.
+    /// Processes all events up to the cycle `now`, and returns the cycle of the next event, `u64::MAX` for none.
     ///
     /// The bus calls it after each access to the block, and in the cycle that the last call has returned.
     fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;

@@ -7,6 +7,7 @@ mod system;
 mod timer;
 mod uart;
 
+use glint_core::block::Block;
 use litex_pac::{
     Interrupt, Memory, buttons, ctrl, digits, gesture as gesture_block, identity, leds,
     raymarch as raymarch_block, scanout as scanout_block, switches, timer0,
@@ -30,9 +31,6 @@ pub const REGISTERS: Memory = Memory {
 
 /// Bytes of the window of a block: blocks are as far apart as the first two.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
-
-/// The bits of scan-out, triangle engine, raymarcher, line engine and gesture engine in `identity.blocks`.
-const PRESENT: u32 = 0b1_1111;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
 const BLOCKS: [(usize, Option<Interrupt>); 13] = [
@@ -84,7 +82,9 @@ impl Devices {
     pub fn new() -> Self {
         Self {
             controller: Controller::new(),
-            identity: Identity { blocks: PRESENT },
+            identity: Identity {
+                blocks: Block::ALL.iter().fold(0, |bits, block| bits | block.bit()),
+            },
             uart: Uart::new(),
             timer: Timer::new(),
             i2c: I2c::new(),
@@ -164,7 +164,7 @@ impl Devices {
         self.update(number, now, ram);
     }
 
-    /// Does what is due at `now`; returns the cycle of the next event.
+    /// Processes all events up to the cycle `now`; returns the cycle of the next event.
     pub fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64 {
         for number in 0..BLOCKS.len() {
             if self.next[number] <= now {
@@ -184,7 +184,7 @@ impl Devices {
             .fold(0, |lines, (_, interrupt)| lines | 1 << interrupt as u32)
     }
 
-    /// Counts an access to an address where nothing is.
+    /// Counts an access to an unused address.
     pub fn count_bus_error(&mut self) {
         self.controller.count_bus_error();
     }

@@ -26,7 +26,7 @@ impl Controller {
         }
     }
 
-    /// Counts an access to an address where nothing is.
+    /// Counts an access to an unused address.
     pub fn count_bus_error(&mut self) {
         self.bus_errors = self.bus_errors.saturating_add(1);
     }
