@@ -4,12 +4,14 @@ use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
-use glint_core::feature::{Feature, GESTURE, IMU, OBJECT, REPLAY, UPLOAD};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, OBJECT, REPLAY, UPLOAD};
+use glint_core::flash::FlashError;
 use glint_core::hand::CalibrationError as HandColourError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
 use glint_core::picture::Size;
+use glint_core::scene::{LineError, blocks_of};
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
 use glint_hal::gesture::SetUpError;
@@ -37,12 +39,40 @@ pub enum CommandError<'l> {
     Key(&'l str),
     /// The name is not a mesh or a scene.
     Scene(&'l str),
+    /// The flash is damaged where the scene, list or mesh of this name is.
+    Flash {
+        /// The name.
+        name: &'l str,
+        /// The deviation from the format.
+        error: FlashError,
+    },
+    /// The text of a scene in the flash is not that of a scene.
+    Line {
+        /// The scene.
+        name: &'l str,
+        /// The first such line.
+        error: LineError<'static>,
+    },
+    /// A scene shows a mesh that the board does not have.
+    NoMesh {
+        /// The scene.
+        name: &'l str,
+        /// The mesh.
+        mesh: &'l str,
+    },
+    /// A mesh of the flash is invalid.
+    FlashMesh {
+        /// The mesh.
+        name: &'l str,
+        /// The deviation from the format.
+        error: MeshError,
+    },
     /// The gateware lacks blocks that a scene needs.
     Blocks {
         /// The scene.
-        built_in: &'static BuiltIn,
-        /// The block enable bits of the gateware.
-        blocks: u32,
+        name: &'l str,
+        /// The blocks, a bit for each.
+        lacks: u32,
     },
     /// This build lacks parts of the firmware that a scene needs.
     Features {
@@ -73,10 +103,10 @@ pub enum CommandError<'l> {
     Engine(Fallback),
     /// An upload is longer than the memory for it.
     TooLong {
-        /// Name of the command that uploads.
-        command: &'static str,
+        /// Name of the command that uploads, or of the mesh of the flash.
+        name: &'l str,
         /// Length of the upload in bytes.
-        bytes: u32,
+        bytes: usize,
         /// Length of the free memory in bytes.
         free: usize,
     },
@@ -133,10 +163,35 @@ pub enum CommandError<'l> {
     HandColour(HandColourError),
     /// The upload is not a log.
     Log(LogError),
+    /// The demo is off.
+    DemoOff,
     /// No log has been completely replayed since the last upload.
     NoReplay,
     /// Devices are unavailable because the build ids of firmware and gateware differ.
     Mismatch,
+}
+
+impl CommandError<'_> {
+    /// The number of the error on the display of digits, where the demo cannot show a scene (docs/boards.md).
+    pub const fn number(&self) -> u8 {
+        match self {
+            Self::Flash { .. } => 2,
+            Self::Scene(_) => 3,
+            Self::NoMesh { .. }
+            | Self::FlashMesh { .. }
+            | Self::TooLong { .. }
+            | Self::MeshName { .. } => 4,
+            Self::Blocks { .. } => 5,
+            Self::Features { .. } | Self::LeftOut(_) => 6,
+            Self::Line { .. } => 7,
+            _ => 8,
+        }
+    }
+
+    /// Whether a sensor is missing or failed, so that nothing moves the camera.
+    pub const fn is_of_sensor(&self) -> bool {
+        matches!(self, Self::ImageSensor(_) | Self::NoGesture)
+    }
 }
 
 impl Display for CommandError<'_> {
@@ -154,10 +209,18 @@ impl Display for CommandError<'_> {
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
             }
-            Self::Blocks { built_in, blocks } => {
-                let name = built_in.name;
+            Self::Flash { name, error } if DEMO.is_built => write!(f, "{name}: {error}"),
+            Self::Line { name, error } if DEMO.is_built => write!(f, "scene {name}: {error}"),
+            Self::NoMesh { name, mesh } => write!(
+                f,
+                "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
+            ),
+            Self::FlashMesh { name, error } if DEMO.is_built => {
+                write!(f, "mesh {name} of the flash: {error}")
+            }
+            Self::Blocks { name, lacks } => {
                 write!(f, "scene {name}: this gateware lacks")?;
-                let mut lacks = built_in.lacks(*blocks);
+                let mut lacks = blocks_of(*lacks);
                 lacks.try_for_each(|block| write!(f, " {block}"))?;
                 write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
             }
@@ -200,18 +263,14 @@ impl Display for CommandError<'_> {
                 f.write_str("bench triangle: field shown, expected `field off` first")
             }
             Self::Engine(error) => error.fmt(f),
-            Self::TooLong {
-                command,
-                bytes,
-                free,
-            } => write!(
+            Self::TooLong { name, bytes, free } => write!(
                 f,
-                "{command} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of a mesh"
+                "{name} {bytes}: expected at most {free} bytes, which are free; `unload NAME` frees the memory of a mesh"
             ),
             Self::MeshName { name, error } => {
                 write!(f, "load `{name}`: ")?;
                 match error {
-                    NameError::BuiltIn => f.write_str("built-in scene, expected another name"),
+                    NameError::Scene => f.write_str("the name of a scene, expected another name"),
                     NameError::Full => write!(
                         f,
                         "{MAX_MESHES} meshes, expected at most {MAX_MESHES}; `unload NAME` removes one"
@@ -260,6 +319,7 @@ impl Display for CommandError<'_> {
             ),
             Self::HandColour(error) if GESTURE.is_built => write!(f, "gesture calibrate: {error}"),
             Self::Log(error) if REPLAY.is_built => write!(f, "replay: {error}"),
+            Self::DemoOff => f.write_str("demo: off, expected `demo on` first"),
             Self::NoReplay => {
                 f.write_str("replay: no attitudes, expected an upload of a log first")
             }

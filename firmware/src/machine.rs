@@ -1,16 +1,20 @@
 //! The state of the machine.
 
+use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::timer::Clock;
 use litex_pac::ctrl::Ctrl;
 
+use crate::demo::Demo;
 use crate::gesture::Gesture;
 use crate::interrupts::UART;
 use crate::models::Models;
+use crate::panel::Switches;
 use crate::renderer::Renderer;
 use crate::replay::Replay;
 use crate::scene::Scene;
+use crate::scenes::Library;
 use crate::sensor::Imu;
 use crate::terminal::{ConsoleUart, Terminal};
 use crate::transfer::Downloads;
@@ -42,6 +46,8 @@ pub struct Devices {
     pub switches: InputPort<u16>,
     /// The sixteen LEDs.
     pub leds: OutputPort<u16>,
+    /// The displays of digits.
+    pub digits: Digits,
     /// The I2C bus of the sensor; `None` after the future that reads the sensor has taken it.
     pub i2c: Option<I2c>,
 }
@@ -60,6 +66,10 @@ pub struct Machine {
     pub scene: Scene,
     /// The built-in mesh and wireframe program, the uploaded ones, the objects and the staging memory.
     pub models: Models,
+    /// Scenes, lists and meshes of the flash.
+    pub library: Library,
+    /// The demo.
+    pub demo: Demo,
     /// Frame buffers and renderers.
     pub renderer: Renderer,
     /// The sensor's samples, attitude and calibration.
@@ -70,9 +80,11 @@ pub struct Machine {
     pub devices: Option<Devices>,
     /// The buttons, and the requests of the wireframe's keys.
     pub keypad: Keypad,
+    /// The switches.
+    pub switches: Switches,
     /// The registers that reset the SoC.
     pub ctrl: Ctrl,
-    /// Whether the first LED blinks: true until a command sets the LEDs.
+    /// Whether the LEDs show the state of the board: true until a command sets them.
     pub heartbeat: bool,
     /// The sender of transfers to the host.
     pub downloads: Downloads,
@@ -98,11 +110,14 @@ impl Machine {
             terminal: Terminal::new(&UART, clock),
             scene,
             models,
+            library: Library::new(None),
+            demo: Demo::default(),
             renderer,
             imu: Imu::default(),
             gesture: None,
             devices,
             keypad: Keypad::default(),
+            switches: Switches::default(),
             ctrl,
             heartbeat: true,
             downloads: Downloads::new(&UART, clock),

@@ -5,11 +5,12 @@
 //!
 //! ```text
 //! start, main_loop
-//! commands (scene, object, appearance, camera, imu, gesture, replay, frame, statistics, bench, machine)
+//! commands (scene, demo, object, appearance, camera, imu, gesture, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
 //! machine (state) ─┬─ renderer, gateware, scene, models, objects, shapes, arena, memory
 //!                  ├─ terminal, transfer
+//!                  ├─ panel (switches, LEDs, digits), demo, scenes (built in and in the flash)
 //!                  ├─ sensor, gesture, replay
 //!                  └─ interrupts
 //! panic (traps, panics)    bench (kernels)
@@ -24,6 +25,7 @@ mod arena;
 mod bench;
 mod commands;
 mod cube;
+mod demo;
 mod error;
 mod format;
 mod gateware;
@@ -42,6 +44,7 @@ mod models;
 #[allow(unsafe_code)] // Keeps copies of meshes beyond the borrow of their memory.
 mod objects;
 mod overlay;
+mod panel;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
 mod renderer;

@@ -8,20 +8,21 @@ use core::pin::pin;
 use core::task::Poll;
 use core::time::Duration;
 
-use embedded_hal::digital::StatefulOutputPin;
 use glint_core::calibration::SAMPLES;
-use glint_core::feature::{GESTURE, IMU, REPLAY, WIREFRAME};
+use glint_core::feature::{DEMO, GESTURE, IMU, REPLAY, WIREFRAME};
 use glint_core::hand::Pose;
 use glint_core::mpu6050::Stream;
 use glint_hal::timer::{Clock, Deadline};
 use litex_pac::cpu;
 
 use crate::commands::{self, gesture as gesture_commands, imu, replay, statistics};
+use crate::demo::Demo;
 use crate::error::CommandError;
 use crate::gesture;
 use crate::interrupts;
 use crate::job::{Job, Reply};
 use crate::machine::{Devices, Machine};
+use crate::panel::{self, HOLD};
 use crate::scene::{Scene, Sphere};
 use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::Input;
@@ -45,6 +46,8 @@ pub struct MainLoop {
     job: Option<Job>,
     /// Time of the next change of the blinking LED.
     beat: Deadline,
+    /// The level of the blinking LED.
+    blinks: bool,
     /// Time at which the idle time after a reply ends.
     quiet: Deadline,
 }
@@ -57,6 +60,7 @@ impl MainLoop {
             machine,
             job: None,
             beat: clock.after(Duration::ZERO),
+            blinks: false,
             quiet: clock.after(QUIET),
         }
     }
@@ -77,12 +81,14 @@ impl MainLoop {
         });
         // SAFETY: this function does not return.
         unsafe { sensor::start(stream) };
+        self.power_up();
         loop {
             // Comes first after an interrupt, because the gateware waits between the passes of a frame.
             self.draw();
             self.poll_job();
+            self.run_demo();
             self.beat();
-            self.poll_buttons();
+            self.poll_panel();
             self.machine.terminal.listen();
             sensor::deliver(&mut self.machine.imu);
             self.follow_hand();
@@ -90,6 +96,61 @@ impl MainLoop {
             self.steer();
             self.step();
             interrupts::sleep_unless(|| self.is_busy());
+        }
+    }
+
+    /// Starts the demo, if the flash has a list, with its first scene as the first picture.
+    fn power_up(&mut self) {
+        let Machine {
+            demo,
+            library,
+            terminal,
+            ..
+        } = &mut self.machine;
+        if let Some((name, error)) = demo.power_up(library) {
+            terminal.notify(format_args!(
+                "demo: error {}: {name}: {error}",
+                demo.error().unwrap_or(0)
+            ));
+        }
+        self.run_demo();
+    }
+
+    /// Goes on with the demo: begins the next turn when it is time, and turns the camera where the scene does.
+    fn run_demo(&mut self) {
+        let Machine {
+            demo,
+            clock,
+            renderer,
+            scene,
+            ..
+        } = &mut self.machine;
+        if !demo.is_on() || self.job.is_some() || renderer.is_busy() {
+            return;
+        }
+        if let (Some(orbit), false) = (&mut demo.orbit, scene.changed())
+            && orbit.poll(scene).is_ready()
+        {
+            demo.orbit = None;
+        }
+        if demo.turns.poll(clock.milliseconds()).is_none() {
+            return;
+        }
+        demo.orbit = None;
+        let name = demo.scene().unwrap_or_default();
+        let shown = commands::show_scene(&mut self.machine, name);
+        let Machine { demo, terminal, .. } = &mut self.machine;
+        match shown {
+            Ok(Reply::After(Job::Orbit(orbit))) => demo.orbit = Some(orbit),
+            // Without a sensor the scene does not move.
+            Ok(_) => {}
+            Err(error) if error.is_of_sensor() => {}
+            Err(error) => {
+                let number = error.number();
+                if demo.set_error(number) {
+                    terminal.notify(format_args!("demo: error {number}: {error}"));
+                }
+            }
         }
     }
 
@@ -103,7 +164,17 @@ impl MainLoop {
             || sensor::has_events()
             || gesture::has_frame()
             || matches!(self.job, Some(Job::Replay))
+            || self.demo_goes_on()
             || !self.machine.renderer.display.is_visible()
+    }
+
+    /// Whether the demo has a scene to show now.
+    fn demo_goes_on(&self) -> bool {
+        let Machine { demo, clock, .. } = &self.machine;
+        demo.is_on()
+            && self.job.is_none()
+            && !self.machine.renderer.is_busy()
+            && demo.turns.is_ready(clock.milliseconds())
     }
 
     /// Whether the next pass of the loop will execute or receive input.
@@ -231,6 +302,7 @@ impl MainLoop {
             keypad,
             clock,
             gesture,
+            demo,
             ..
         } = &mut self.machine;
         if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && scene.changed()
@@ -240,7 +312,7 @@ impl MainLoop {
         let mut progress = || {
             terminal.listen();
             sensor::deliver(imu);
-            poll_buttons(devices, keypad, *clock, scene, imu);
+            poll_buttons(devices, keypad, *clock, scene, imu, demo);
         };
         if !renderer.is_busy() {
             if !scene.changed() || !(self.job.is_some() || self.quiet.passed()) {
@@ -299,20 +371,27 @@ impl MainLoop {
         terminal.prompt();
     }
 
-    /// Acts on buttons that were pressed since the last poll.
-    fn poll_buttons(&mut self) {
+    /// Acts on buttons and switches that have changed since the last poll.
+    fn poll_panel(&mut self) {
         let Machine {
             devices,
             keypad,
+            switches,
             clock,
             scene,
             imu,
+            demo,
+            renderer,
             ..
         } = &mut self.machine;
-        poll_buttons(devices, keypad, *clock, scene, imu);
+        poll_buttons(devices, keypad, *clock, scene, imu, demo);
+        // The scene must not change while the gateware draws.
+        if let (Some(devices), true, false) = (devices, DEMO.is_built, renderer.is_busy()) {
+            switches.take(devices.switches.read(), demo, scene, clock.milliseconds());
+        }
     }
 
-    /// Blinks the first LED.
+    /// Blinks the first LED, and shows the state of the board.
     fn beat(&mut self) {
         if !self.beat.passed() {
             return;
@@ -321,41 +400,60 @@ impl MainLoop {
             clock,
             devices,
             heartbeat,
+            demo,
+            scene,
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
+        self.blinks = !self.blinks;
         // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
         sensor::advance(cpu::cycles_low());
-        if let Some(devices) = devices.as_ref().filter(|_| *heartbeat) {
-            let Ok(()) = devices.leds.pin(0).toggle();
+        let Some(devices) = devices else { return };
+        if *heartbeat {
+            devices.leds.set(panel::leds(demo, self.blinks));
         }
+        let drawn = scene.drawn().and_then(Result::ok);
+        let rate = drawn.map(|drawn| drawn.rate(clock.frequency()));
+        devices.digits.show(panel::digits(demo, rate, self.blinks));
     }
 }
 
-/// Acts on buttons that were pressed since the last poll: they are keys of the wireframe while it is shown, and serve the sensor
-/// otherwise.
+/// Acts on buttons that were pressed since the last poll. While the wireframe is shown they are its keys, but with the demo on only if
+/// the switch [`HOLD`] is on. Otherwise they choose scenes of the demo, if it is on, and serve the sensor.
 fn poll_buttons(
     devices: &Option<Devices>,
     keypad: &mut Keypad,
     clock: Clock,
     scene: &Scene,
     imu: &mut Imu,
+    demo: &mut Demo,
 ) {
     let Some(devices) = devices else {
         return;
     };
-    if !(IMU.is_built || WIREFRAME.is_built) {
+    if !(IMU.is_built || WIREFRAME.is_built || DEMO.is_built) {
         return;
     }
     let pressed = keypad.sample(devices.buttons.read(), clock);
-    if scene.shows_wireframe() {
-        keypad.press(pressed, devices.switches.read());
+    if pressed == 0 {
         return;
     }
-    if IMU.is_built && pressed & CALIBRATE != 0 {
+    let switches = devices.switches.read();
+    if scene.shows_wireframe() && (!demo.is_on() || switches & HOLD != 0) {
+        keypad.press(pressed, switches);
+        return;
+    }
+    let steers = IMU.is_built && imu.follow().is_some();
+    if demo.is_on() {
+        demo.press(pressed, steers, clock.milliseconds());
+    }
+    if !IMU.is_built || demo.is_on() && !steers {
+        return;
+    }
+    if pressed & CALIBRATE != 0 {
         imu.calibrate(SAMPLES);
     }
-    if IMU.is_built && pressed & RECENTRE != 0 {
+    if pressed & RECENTRE != 0 {
         imu.recentre();
     }
 }

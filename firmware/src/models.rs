@@ -11,7 +11,6 @@ use heapless::{String, Vec};
 
 use crate::arena::Arena;
 use crate::objects::{ObjectError, Objects};
-use crate::scenes::{self, DEFAULT};
 use crate::shapes::{CUBE, Shapes};
 
 /// Name of a mesh that is uploaded without a name.
@@ -32,8 +31,8 @@ struct Named {
 /// Reason why no mesh can be uploaded under a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameError {
-    /// The name is that of a built-in scene.
-    BuiltIn,
+    /// The name is that of a scene.
+    Scene,
     /// There are [`MAX_MESHES`] meshes with other names.
     Full,
 }
@@ -152,6 +151,16 @@ impl Models {
         self.shapes.shape(shape)
     }
 
+    /// Whether an uploaded mesh has this name.
+    pub fn has_upload(&self, name: &str) -> bool {
+        self.meshes.iter().any(|(named, _)| named.name == name)
+    }
+
+    /// Whether an uploaded or a built-in mesh has this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.has_upload(name) || Shapes::names().any(|built_in| built_in == name)
+    }
+
     fn find(&mut self, name: &str) -> Option<Mesh<'static>> {
         let uploaded = self.meshes.iter().find(|(named, _)| named.name == name);
         match uploaded {
@@ -165,16 +174,12 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that a mesh may have this name.
+    /// Checks that an upload may have this name, which is not that of a scene.
     ///
     /// # Errors
     /// The reason why not.
     pub fn check_name(&self, name: &str) -> Result<(), NameError> {
-        if name == DEFAULT || scenes::named(name).is_some() {
-            return Err(NameError::BuiltIn);
-        }
-        let is_new = self.meshes.iter().all(|(named, _)| named.name != name);
-        if self.meshes.is_full() && is_new {
+        if self.meshes.is_full() && !self.has_upload(name) {
             return Err(NameError::Full);
         }
         Ok(())
@@ -189,8 +194,8 @@ impl Models {
         self.arena.staging().get_mut(..length)
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, keeps them under `name`, in place of an earlier mesh
-    /// of this name, and shows the mesh.
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and keeps them under `name`, in place of an earlier mesh
+    /// of this name.
     ///
     /// # Errors
     /// [`MeshError`] for an invalid mesh; then nothing changes.
@@ -207,7 +212,9 @@ impl Models {
             }
         };
         let new = (named(name, mesh), region);
-        self.shown = new.0.clone();
+        if self.shown.name == name {
+            self.shown = new.0.clone();
+        }
         self.objects.replace(name, mesh);
         let old = self.meshes.iter_mut().find(|(old, _)| old.name == name);
         match old.map(|old| core::mem::replace(old, new.clone())) {

@@ -92,8 +92,7 @@ impl Renderer {
             RenderedBy::Cpu(_) => Backend::Cpu,
             RenderedBy::Gateware(..) => Backend::Gateware,
         };
-        let Drawn { cycles, .. } = drawn;
-        let rate = u64::from(self.frequency.hertz()) / (*cycles).max(1);
+        let (cycles, rate) = (drawn.cycles, drawn.rate(self.frequency));
         overlay.line(format_args!("{size} by {by}: {cycles} cycles, {rate} fps"));
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);

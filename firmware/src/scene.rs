@@ -11,6 +11,7 @@ use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::{Backend, Edges, Size};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
+use glint_hal::frequency::Frequency;
 use glint_hal::triangle::Counters;
 use glint_model::MeshOptions;
 use glint_model::{Clip, FieldSubject, Frame, FrameStats, RenderError, Subject, WireframeSubject};
@@ -55,6 +56,13 @@ pub struct Drawn {
     pub by: RenderedBy,
     /// Whether the frame's depth codes are in memory.
     pub has_depth: bool,
+}
+
+impl Drawn {
+    /// Number of such frames a second.
+    pub fn rate(&self, frequency: Frequency) -> u64 {
+        u64::from(frequency.hertz()) / self.cycles.max(1)
+    }
 }
 
 /// The renderer of a frame.

@@ -1,8 +1,11 @@
-//! The built-in scenes: console commands that set everything a picture depends on.
+//! Scenes and lists of scenes by their names: those of the flash, and the built-in ones.
 
 mod built_in;
 #[rustfmt::skip]
 mod table;
+
+use glint_core::feature::DEMO;
+use glint_core::flash::{Contents, Expected, FlashError, Item, Kind};
 
 pub use built_in::BuiltIn;
 use built_in::Content;
@@ -10,22 +13,136 @@ pub use table::SCENES;
 
 /// Name of the scene at start, which every gateware has.
 pub const DEFAULT: &str = "default";
+/// Name of the built-in list of a board that runs alone.
+const ALONE: &str = "demo";
 
-/// The console commands of a built-in scene, a line each; of a list of scenes, those of the first one.
-pub fn lines(scene: &BuiltIn) -> &'static str {
-    match scene.content {
-        Content::Lines(lines) => lines,
-        Content::Scenes(names) => match names.first().and_then(|name| named(name)) {
-            Some(BuiltIn {
-                content: Content::Lines(lines),
-                ..
-            }) => lines,
-            _ => "",
-        },
+/// The built-in scene or list with this name.
+pub fn named(name: &str) -> Option<&'static BuiltIn> {
+    SCENES.iter().find(|scene| scene.name == name)
+}
+
+/// A scene or a list of scenes.
+#[derive(Clone, Copy, Debug)]
+pub enum Found {
+    /// One of the flash.
+    Flash(Item<'static>),
+    /// A built-in one.
+    BuiltIn(&'static BuiltIn),
+}
+
+/// What a scene or a list shows.
+#[derive(Clone, Copy, Debug)]
+pub enum Shows {
+    /// Console commands, a line each.
+    Lines(&'static str),
+    /// Scenes.
+    Scenes(List),
+}
+
+impl Found {
+    /// What the scene or list shows.
+    ///
+    /// # Errors
+    /// The flash is damaged.
+    pub fn shows(&self) -> Result<Shows, FlashError> {
+        match self {
+            Self::Flash(item) if item.kind == Kind::List => {
+                Ok(Shows::Scenes(List::Flash(item.text()?)))
+            }
+            Self::Flash(item) => Ok(Shows::Lines(item.text()?)),
+            Self::BuiltIn(built_in) => Ok(match built_in.content {
+                Content::Lines(lines) => Shows::Lines(lines),
+                Content::Scenes(names) => Shows::Scenes(List::BuiltIn(names)),
+            }),
+        }
     }
 }
 
-/// The built-in scene with this name.
-pub fn named(name: &str) -> Option<&'static BuiltIn> {
-    SCENES.iter().find(|scene| scene.name == name)
+/// The names of a list of scenes.
+#[derive(Clone, Copy, Debug)]
+pub enum List {
+    /// A list of the flash: a line each.
+    Flash(&'static str),
+    /// A built-in list.
+    BuiltIn(&'static [&'static str]),
+}
+
+impl List {
+    /// The list of a board that runs alone and has none in its flash.
+    pub fn built_in() -> Self {
+        match named(ALONE).map(|built_in| &built_in.content) {
+            Some(Content::Scenes(names)) => Self::BuiltIn(names),
+            _ => Self::BuiltIn(&[]),
+        }
+    }
+
+    /// Number of scenes.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Flash(names) => names.lines().count(),
+            Self::BuiltIn(names) => names.len(),
+        }
+    }
+
+    /// The name of a scene by its number, from 0.
+    pub fn name(&self, number: usize) -> Option<&'static str> {
+        match self {
+            Self::Flash(names) => names.lines().nth(number),
+            Self::BuiltIn(names) => names.get(number).copied(),
+        }
+    }
+}
+
+/// The contents of the flash, which come before built-in scenes, lists and meshes of the same names.
+pub struct Library {
+    contents: Option<Contents<'static>>,
+    error: Option<FlashError>,
+}
+
+impl Library {
+    /// The library of a board whose flash has these bytes where contents begin; `None` without a flash. Bytes that do not begin as
+    /// contents do are none: the flash is erased, or has something else.
+    pub fn new(flash: Option<&'static [u8]>) -> Self {
+        let flash = flash.filter(|_| DEMO.is_built);
+        let (contents, error) = match flash.map(Contents::new_checked) {
+            Some(Ok(contents)) => (Some(contents), None),
+            Some(Err(FlashError {
+                expected: Expected::Magic(_),
+                ..
+            }))
+            | None => (None, None),
+            Some(Err(error)) => (None, Some(error)),
+        };
+        Self { contents, error }
+    }
+
+    /// The reason why the contents of the flash are not used.
+    pub const fn error(&self) -> Option<FlashError> {
+        self.error
+    }
+
+    /// The items of the flash.
+    pub fn items(&self) -> impl Iterator<Item = Item<'static>> + use<> {
+        self.contents
+            .into_iter()
+            .flat_map(|contents| contents.items())
+    }
+
+    /// The scene or list with this name.
+    pub fn find(&self, name: &str) -> Option<Found> {
+        let kinds = [Kind::Scene, Kind::List].into_iter();
+        let mut found = kinds.filter_map(|kind| self.contents?.find(kind, name));
+        let built_in = || named(name).map(Found::BuiltIn);
+        found.next().map(Found::Flash).or_else(built_in)
+    }
+
+    /// The mesh of the flash with this name.
+    pub fn mesh(&self, name: &str) -> Option<Item<'static>> {
+        self.contents?.find(Kind::Mesh, name)
+    }
+
+    /// The first list of the flash.
+    pub fn first_list(&self) -> Option<Item<'static>> {
+        self.items().find(|item| item.kind == Kind::List)
+    }
 }

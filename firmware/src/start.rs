@@ -7,6 +7,7 @@ use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
+use glint_hal::digits::Digits;
 use glint_hal::frequency::{Frequency, NotAFrequency};
 use glint_hal::gesture::GestureEngine;
 use glint_hal::gpio::{InputPort, OutputPort};
@@ -133,6 +134,7 @@ pub fn machine() -> Result<Machine, StartError> {
             buttons: InputPort::new(peripherals.buttons.in_()),
             switches: InputPort::new(peripherals.switches.in_()),
             leds: OutputPort::new(peripherals.leds.out()),
+            digits: Digits::new(peripherals.digits),
             i2c: Some(I2c::new(peripherals.i2c, clock)),
         };
         (

@@ -86,6 +86,12 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
+    /// Prints a line above the prompt and the typed line.
+    pub fn notify(&mut self, text: fmt::Arguments) {
+        self.print(format_args!("\r\x1b[K{text}\n"));
+        let _ = self.editor.redraw(&mut self.output);
+    }
+
     /// Prints text. The text is lost if the serial line accepts no text.
     pub fn print(&mut self, text: fmt::Arguments) {
         let _ = fmt::Write::write_fmt(&mut self.output, text);

@@ -8,6 +8,7 @@ mod argument;
 mod command;
 mod completion;
 mod editor;
+mod effect;
 mod error;
 mod object;
 mod syntax;
@@ -19,6 +20,7 @@ pub use command::{
     ImuCommands, MachineCommands, ObjectCommands, SceneCommands, write_help,
 };
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
+pub use effect::Effect;
 pub use error::ParseError;
 pub use object::ObjectAction;
-pub use values::{GestureAction, ImuAction};
+pub use values::{DemoAction, GestureAction, ImuAction};

@@ -68,6 +68,8 @@ features! {
     CPU = "cpu";
     /// Text over the picture.
     OVERLAY = "overlay";
+    /// Scenes in turn by the board alone, and what its flash holds: scenes, lists of scenes and meshes.
+    DEMO = "demo";
     /// Benchmarks.
     BENCH = "bench";
 }

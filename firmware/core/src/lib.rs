@@ -1,5 +1,6 @@
 //! Code shared by firmware and host: cameras, sines, the sensor and its attitude, the hand and its image sensor, distance fields and
-//! lights, the format of meshes, wireframe programs, transfers over a serial line, and the console's grammar.
+//! lights, the formats of meshes and flash images, wireframe programs, transfers over a serial line, the console's grammar, scenes, and the
+//! demo of a board that runs alone.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]
@@ -17,6 +18,8 @@ pub mod camera;
 pub mod choice;
 pub mod colour;
 pub mod console;
+pub mod demo;
+pub mod digits;
 pub mod feature;
 pub mod field;
 pub mod fixed;
@@ -37,6 +40,7 @@ pub mod orientation;
 pub mod picture;
 pub mod polar;
 pub mod regions;
+pub mod scene;
 pub mod shape;
 pub mod stereo;
 pub mod trig;

@@ -2,6 +2,7 @@
 
 use glint_core::console::{ObjectAction, ObjectCommands};
 
+use super::upload;
 use crate::error::CommandError;
 use crate::job::{Outcome, Reply};
 use crate::machine::Machine;
@@ -9,6 +10,9 @@ use crate::objects::ObjectError;
 
 impl<'l> ObjectCommands<'l> for Machine {
     fn object(&mut self, action: Option<ObjectAction<'l>>) -> Outcome<'l> {
+        if let Some(ObjectAction::Add { mesh, .. }) = action {
+            upload::from_flash(self, mesh)?;
+        }
         let Self {
             terminal,
             models,

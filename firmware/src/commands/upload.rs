@@ -1,10 +1,14 @@
-//! Reception of the data that the host uploads with a command.
+//! Data for the staging memory: uploads of the host, and meshes of the flash.
 
+use glint_core::feature::{DEMO, MESH};
 use glint_core::wire::{Manifest, crc32};
 use litex_pac::cpu;
 
 use crate::error::CommandError;
 use crate::machine::Machine;
+use crate::models::Models;
+use crate::renderer::Renderer;
+use crate::replay::Replay;
 use crate::transfer;
 
 /// Receives the data that `manifest` announces into the staging memory, unless the memory already holds them, which the reply says
@@ -26,17 +30,7 @@ pub fn receive<'m>(
         uart,
         ..
     } = machine;
-    // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
-    *replay = None;
-    // Uploads may move, and another mesh may come to the place of the one whose edges the list has.
-    renderer.edges.clear();
-    let length = manifest.length as usize;
-    let free = models.free();
-    let staging = models.staging_of(length).ok_or(CommandError::TooLong {
-        command,
-        bytes: manifest.length,
-        free,
-    })?;
+    let staging = staging(models, renderer, replay, command, manifest.length as usize)?;
     // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
     // have been interrupted near its end.
     cpu::flush_data_cache();
@@ -47,4 +41,59 @@ pub fn receive<'m>(
         transfer::receive(uart, *clock, staging, manifest).map_err(CommandError::Transfer)?;
     }
     Ok(staging)
+}
+
+/// Copies the mesh of this name from the flash to the uploads, unless an upload has the name. Returns whether there is such a mesh.
+///
+/// # Errors
+/// The mesh is damaged, or there is no room for it.
+pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, CommandError<'l>> {
+    if !MESH.is_built || !DEMO.is_built {
+        return Ok(false);
+    }
+    let Machine {
+        models,
+        renderer,
+        replay,
+        library,
+        ..
+    } = machine;
+    if models.has_upload(name) {
+        return Ok(true);
+    }
+    let Some(item) = library.mesh(name) else {
+        return Ok(false);
+    };
+    let bytes = item.checked();
+    let bytes = bytes.map_err(|error| CommandError::Flash { name, error })?;
+    let accepted = models.check_name(name);
+    accepted.map_err(|error| CommandError::MeshName { name, error })?;
+    staging(models, renderer, replay, name, bytes.len())?.copy_from_slice(bytes);
+    let accepted = models.accept(name, bytes.len());
+    accepted.map_err(|error| CommandError::FlashMesh { name, error })?;
+    Ok(true)
+}
+
+/// The staging memory for `length` bytes of the upload `name`.
+///
+/// # Errors
+/// The free memory is shorter.
+fn staging<'m, 'l>(
+    models: &'m mut Models,
+    renderer: &mut Renderer,
+    replay: &mut Option<Replay>,
+    name: &'l str,
+    length: usize,
+) -> Result<&'m mut [u8], CommandError<'l>> {
+    // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
+    *replay = None;
+    // Uploads may move, and another mesh may come to the place of the one whose edges the list has.
+    renderer.edges.clear();
+    let free = models.free();
+    let staging = models.staging_of(length);
+    staging.ok_or(CommandError::TooLong {
+        name,
+        bytes: length,
+        free,
+    })
 }

@@ -1,6 +1,5 @@
 //! A built-in scene.
 
-use glint_core::block::Block;
 use glint_core::feature::Feature;
 
 /// A built-in scene, or a list of some.
@@ -8,8 +7,6 @@ use glint_core::feature::Feature;
 pub struct BuiltIn {
     /// Name on the console.
     pub name: &'static str,
-    /// The optional blocks of the gateware that it needs.
-    pub blocks: &'static [Block],
     /// The parts of the firmware that it needs.
     pub features: &'static [Feature],
     /// What it shows.
@@ -29,14 +26,12 @@ impl BuiltIn {
     /// A scene with a picture. A build without one of its features leaves the lines out.
     pub const fn picture(
         name: &'static str,
-        blocks: &'static [Block],
         features: &'static [Feature],
         lines: &'static str,
     ) -> Self {
         let lines = if all_built(features) { lines } else { "" };
         Self {
             name,
-            blocks,
             features,
             content: Content::Lines(lines),
         }
@@ -45,22 +40,14 @@ impl BuiltIn {
     /// A list of scenes.
     pub const fn list(
         name: &'static str,
-        blocks: &'static [Block],
         features: &'static [Feature],
         scenes: &'static [&'static str],
     ) -> Self {
         Self {
             name,
-            blocks,
             features,
             content: Content::Scenes(scenes),
         }
-    }
-
-    /// The blocks that the scene needs and a gateware with these block enable bits lacks.
-    pub fn lacks(&self, enabled: u32) -> impl Iterator<Item = Block> {
-        let blocks = self.blocks.iter().copied();
-        blocks.filter(move |block| block.bit() & !enabled != 0)
     }
 
     /// The parts of the firmware that the scene needs and this build lacks.

@@ -3,9 +3,9 @@
 use crate::error::{FormatError, InputError, Place, quote};
 use crate::formats::glm;
 use crate::scene;
-use glint_core::console::{Command, ObjectAction};
 use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::is_name;
+use glint_core::scene::{LineError, Reason, commands};
 use glint_scene::Scene;
 
 /// Name of the list of scenes in an image, the first of which the board shows after power-up.
@@ -142,13 +142,8 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
                 glm::check(bytes).map_err(|error| in_item(&item, error))?;
             }
             Kind::Scene => {
-                let lines = item.text().map_err(format_error)?.lines();
-                for (number, line) in lines.enumerate() {
-                    check_line(contents, line).map_err(|(expected, found)| {
-                        let place = Place::Line(number + 1);
-                        in_item(&item, FormatError::new(place, expected, found))
-                    })?;
-                }
+                let text = item.text().map_err(format_error)?;
+                check_scene(contents, text).map_err(|error| in_item(&item, error))?;
             }
             Kind::List => {
                 let names = item.text().map_err(format_error)?.lines();
@@ -165,30 +160,29 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// Checks a command of a scene. Returns what was expected, and found.
-fn check_line(contents: &Contents, line: &str) -> Result<(), (String, String)> {
-    let found = || quote(line.as_bytes());
-    let command = Command::parse(line);
-    let command = command.map_err(|error| (format!("a command ({error})"), found()))?;
-    let mesh = match command {
-        Some(Command::Scene { name }) => name,
-        Some(Command::Object {
-            action: Some(ObjectAction::Add { mesh, .. }),
-        }) => Some(mesh),
-        Some(
-            Command::Load { .. } | Command::Program { upload: Some(_) } | Command::Replay { .. },
-        ) => {
-            return Err(("a command without an upload".to_owned(), found()));
+/// Checks the commands of a scene, and that its meshes are there.
+fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
+    let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());
+    let error = |line, expected| FormatError::new(Place::Line(line), expected, quoted(line));
+    for command in commands(text) {
+        let (line, command) = command.map_err(|LineError { line, reason }| {
+            let expected = match reason {
+                Reason::Parse(reason) => format!("a command ({reason})"),
+                Reason::Effect => "a command that sets the picture".to_owned(),
+            };
+            error(line, expected)
+        })?;
+        if let Some(mesh) = command.mesh()
+            && !is_built_in(mesh)
+            && contents.find(Kind::Mesh, mesh).is_none()
+        {
+            return Err(error(
+                line,
+                "a mesh of the image or a built-in one".to_owned(),
+            ));
         }
-        Some(_) => None,
-        None => return Err(("a command".to_owned(), found())),
-    };
-    match mesh {
-        Some(name) if !is_built_in(name) && contents.find(Kind::Mesh, name).is_none() => {
-            Err(("a mesh of the image or a built-in one".to_owned(), found()))
-        }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 /// Adds kind and name of the item to an error in it.

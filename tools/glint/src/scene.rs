@@ -150,15 +150,10 @@ impl<'s> State<'s> {
 /// Names of the meshes of a scene, each once.
 pub fn meshes(scene: &Scene) -> Vec<&str> {
     let mut names = Vec::new();
-    for command in scene.commands() {
-        let name = match command {
-            Command::Scene { name } => name,
-            Command::Object {
-                action: Some(ObjectAction::Add { mesh, .. }),
-            } => Some(mesh),
-            _ => None,
-        };
-        names.extend(name.filter(|name| !names.contains(name)));
+    for mesh in scene.commands().filter_map(|command| command.mesh()) {
+        if !names.contains(&mesh) {
+            names.push(mesh);
+        }
     }
     names
 }

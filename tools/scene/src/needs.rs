@@ -4,14 +4,15 @@ use std::collections::BTreeSet;
 
 use glint_core::block::Block;
 use glint_core::colour::{Shading, Winding};
-use glint_core::console::{Command, ObjectAction};
-use glint_core::feature::{BASE, CPU, Feature, MESH, UPLOAD};
+use glint_core::console::Command;
+use glint_core::feature::{BASE, CPU, DEMO, Feature, MESH, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::picture::Backend;
+use glint_core::scene::{blocks, blocks_of};
 use glint_core::shape::Shape;
 use litex_pac::raymarch::Kind;
 
-use crate::scene::{Scene, Steer};
+use crate::scene::Scene;
 
 /// Lanes of a raymarcher for which no scene states them.
 const LANES: u8 = 2;
@@ -53,44 +54,18 @@ impl Scene {
     pub fn needs(&self) -> Needs {
         if !self.scenes().is_empty() {
             let mut needs = Needs::of(self.scenes());
+            needs.features.insert(DEMO);
             if let (Some(fields), Some(lanes)) = (&mut needs.fields, self.lanes) {
                 fields.lanes = lanes;
             }
             return needs;
         }
-        let mut blocks = BTreeSet::from([Block::Scanout]);
-        if matches!(self.steer(), Steer::Command(command) if command.starts_with("gesture")) {
-            blocks.insert(Block::Gesture);
-        }
-        let features = self.features();
         let commands: Vec<Command> = self.commands().collect();
-        let is_on_cpu = |command: &Command| {
-            matches!(
-                command,
-                Command::Backend {
-                    backend: Some(Backend::Cpu)
-                }
-            )
-        };
-        if commands.iter().any(is_on_cpu) {
-            return Needs {
-                blocks,
-                features,
-                ..Needs::default()
-            };
-        }
+        let bits = blocks(self.parsed());
+        let blocks: BTreeSet<Block> = blocks_of(bits).collect();
         let (mut smooth, mut stereo, mut prepass, mut shown) = (false, false, false, None);
         for command in &commands {
             match command {
-                Command::Scene { .. } | Command::Object { .. } => {
-                    blocks.insert(Block::Triangle);
-                }
-                Command::Program { .. }
-                | Command::Edges {
-                    edges: Some(Some(_)),
-                } => {
-                    blocks.extend([Block::Triangle, Block::Line]);
-                }
                 Command::Shading { shading } => smooth = *shading == Some(Shading::Smooth),
                 Command::Stereo { eyes } => stereo = matches!(eyes, Some(Some(_))),
                 Command::Prepass { on } => prepass = *on,
@@ -98,42 +73,41 @@ impl Scene {
                 _ => {}
             }
         }
-        let fields = shown.map(|field| {
-            blocks.insert(Block::Raymarch);
-            Fields {
-                lanes: self.lanes.unwrap_or(LANES),
-                stereo,
-                prepass,
-                ..Fields::of(&field)
-            }
+        let has = |block| blocks.contains(&block);
+        let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
+        let fields = shown.filter(|_| has_fields).map(|field| Fields {
+            lanes: self.lanes.unwrap_or(LANES),
+            stereo,
+            prepass,
+            ..Fields::of(&field)
         });
         Needs {
-            blocks,
-            features,
-            smooth,
+            features: self.features(),
+            smooth: smooth && has_triangles,
             fields,
+            blocks,
         }
+    }
+
+    /// All commands, parsed.
+    fn parsed(&self) -> impl Iterator<Item = Command<'_>> {
+        // The lines have been checked.
+        self.lines()
+            .filter_map(|line| Command::parse(line).ok().flatten())
     }
 
     /// The parts of the firmware that execute the scene's lines and draw its picture.
     fn features(&self) -> BTreeSet<Feature> {
         let mut features = BTreeSet::new();
-        // The lines have been checked.
-        let commands = self
-            .lines()
-            .filter_map(|line| Command::parse(line).ok().flatten());
-        for command in commands {
+        for command in self.parsed() {
             features.insert(command.feature());
-            match command {
-                Command::Scene { name: Some(mesh) }
-                | Command::Object {
-                    action: Some(ObjectAction::Add { mesh, .. }),
-                } => {
-                    features.insert(MESH);
-                    if !Shape::NAMES.contains(&mesh) {
-                        features.insert(UPLOAD);
-                    }
+            if let Some(mesh) = command.mesh() {
+                features.insert(MESH);
+                if !Shape::NAMES.contains(&mesh) {
+                    features.insert(UPLOAD);
                 }
+            }
+            match command {
                 // The soft core makes the descriptors of such meshes, or the whole picture.
                 Command::Backend {
                     backend: Some(Backend::Cpu),

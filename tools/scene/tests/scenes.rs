@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use glint_core::block::Block;
+use glint_core::scene::commands;
 use glint_scene::{NAMES, Needs, Scene, Steer, built_in, keys};
 
 fn parse(text: &str) -> Result<Scene, String> {
@@ -30,6 +31,15 @@ fn the_files_of_the_folder_are_built_in() {
         let text = fs::read_to_string(&path).unwrap();
         let scene = Scene::parse(&name, &path.display().to_string(), &text).unwrap();
         assert!(scene.lines().count() > 0, "{name}");
+        // As a board reads the lines.
+        let lines: String = scene.lines().map(|line| format!("{line}\n")).collect();
+        let read: Result<Vec<_>, _> = commands(&lines).collect();
+        let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert!(
+            read.into_iter()
+                .map(|(line, _)| line)
+                .eq(1..=scene.lines().count())
+        );
         assert!(built_in(&name).is_some(), "{name}");
         name
     });

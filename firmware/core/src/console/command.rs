@@ -8,8 +8,8 @@ use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::{commands, part};
 use super::values::{
-    FieldOfView, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name, Sensitivity, Size,
-    Upload, View, Whole,
+    DemoAction, FieldOfView, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name,
+    Sensitivity, Size, Upload, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
@@ -53,6 +53,7 @@ commands! {
         field Field(field: Option<Or<Off, Field>>) in FIELD: "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>) in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Option<Or<Off, Stereo>>) in FIELD: "show or set the two eyes of a field; off is one eye";
+        demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
 
     /// Commands of objects: several meshes in a frame, each with a place of its own.

@@ -271,7 +271,11 @@ impl LineEditor {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
 
-    fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
+    /// Writes prompt and line again, in place of the terminal's line.
+    ///
+    /// # Errors
+    /// Those of `echo`.
+    pub fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
         write!(echo, "\r\x1B[K{PROMPT}{}", self.before())?;
         self.write_tail(echo)
     }

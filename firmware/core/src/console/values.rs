@@ -405,3 +405,29 @@ choices!(GestureAction {
     Mark: "mark",
     Unmark: "unmark",
 });
+
+/// An action of the command `demo`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DemoAction {
+    /// Start with the first scene.
+    On,
+    /// Stop; the shown scene stays.
+    Off,
+    /// Show the next scene.
+    Next,
+    /// Show the previous scene.
+    Previous,
+    /// Keep the shown scene.
+    Hold,
+    /// Go on after `hold`.
+    Run,
+}
+
+choices!(DemoAction {
+    On: "on",
+    Off: "off",
+    Next: "next",
+    Previous: "previous",
+    Hold: "hold",
+    Run: "run",
+});

@@ -2,5 +2,6 @@
 
 mod commands;
 mod editor;
+mod effects;
 mod errors;
 mod help;

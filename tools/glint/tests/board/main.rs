@@ -2,6 +2,7 @@
 //!
 //! Needs the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
 
+mod alone;
 mod attitudes;
 mod both;
 mod common;

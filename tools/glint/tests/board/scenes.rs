@@ -75,7 +75,10 @@ fn refused_scenes() {
     let mut console = console(&mut board);
     for (command, expected) in [
         ("scene gear", "or objects or poor-mans-vr"),
-        ("load 16 0 menger", "built-in scene, expected another name"),
+        (
+            "load 16 0 menger",
+            "the name of a scene, expected another name",
+        ),
         (
             "object show",
             "no objects, expected `object add MESH` first",

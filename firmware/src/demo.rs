@@ -1,0 +1,105 @@
+//! The demo: a board that runs alone shows the scenes of a list in turn.
+
+use glint_core::demo::{Demo as Turns, Move};
+use glint_core::feature::DEMO;
+use glint_core::flash::FlashError;
+
+use crate::job::Orbit;
+use crate::scenes::{Library, List};
+
+/// Button 0: the next scene.
+const NEXT: u8 = 1 << 0;
+/// Button 1: the previous scene.
+const PREVIOUS: u8 = 1 << 1;
+/// Button 2, where no motion sensor steers the camera: keep the scene, or go on.
+const HOLD: u8 = 1 << 2;
+
+/// Number of the error that the contents of the flash are damaged (docs/boards.md).
+const CONTENTS: u8 = 1;
+/// Number of the error that a list of the flash is damaged.
+const ITEM: u8 = 2;
+
+/// The list of scenes, whose turn it is, and the last error.
+pub struct Demo {
+    /// Whose turn it is.
+    pub turns: Turns,
+    list: List,
+    /// The turn of the camera that the shown scene has begun.
+    pub orbit: Option<Orbit>,
+    error: Option<u8>,
+}
+
+impl Default for Demo {
+    fn default() -> Self {
+        Self {
+            turns: Turns::default(),
+            list: List::BuiltIn(&[]),
+            orbit: None,
+            error: None,
+        }
+    }
+}
+
+impl Demo {
+    /// Starts after reset, if the flash has a list or damaged contents. Returns the damage.
+    pub fn power_up(&mut self, library: &Library) -> Option<(&'static str, FlashError)> {
+        if let Some(error) = library.error() {
+            self.start(library);
+            self.error = Some(CONTENTS);
+            return Some(("flash", error));
+        }
+        let list = library.first_list()?;
+        self.start(library);
+        let error = list.text().err()?;
+        self.error = Some(ITEM);
+        Some((list.name, error))
+    }
+
+    /// Starts with the first scene of the first list of the flash, or of the built-in list.
+    pub fn start(&mut self, library: &Library) {
+        let list = library.first_list().and_then(|list| list.text().ok());
+        self.list = list.map_or_else(List::built_in, List::Flash);
+        self.turns.start(self.list.len());
+        self.orbit = None;
+        self.error = None;
+    }
+
+    /// Stops. The shown scene stays.
+    pub fn stop(&mut self) {
+        self.turns.stop();
+        self.orbit = None;
+    }
+
+    /// Whether the demo is on.
+    pub const fn is_on(&self) -> bool {
+        DEMO.is_built && self.turns.is_on()
+    }
+
+    /// The name of the scene whose turn it is.
+    pub fn scene(&self) -> Option<&'static str> {
+        self.list.name(self.turns.number()?)
+    }
+
+    /// The number of the last error since the demo was started.
+    pub const fn error(&self) -> Option<u8> {
+        self.error
+    }
+
+    /// Stores the number of an error. Returns whether it is another one than before.
+    pub fn set_error(&mut self, number: u8) -> bool {
+        self.error.replace(number) != Some(number)
+    }
+
+    /// Acts on pressed buttons, one bit each. `steers` is whether the motion sensor steers the camera, which has buttons 2 and 3.
+    pub fn press(&mut self, pressed: u8, steers: bool, now: u64) {
+        if pressed & NEXT != 0 {
+            self.turns.go(Move::Next);
+        }
+        if pressed & PREVIOUS != 0 {
+            self.turns.go(Move::Previous);
+        }
+        if pressed & HOLD != 0 && !steers {
+            self.turns.hold(now, !self.turns.is_held());
+        }
+    }
+}

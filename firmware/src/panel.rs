@@ -1,0 +1,71 @@
+//! Switches, LEDs and displays of digits of the board.
+
+use glint_core::digits::Display;
+
+use crate::demo::Demo;
+use crate::scene::Scene;
+
+/// Switch 2: the text over the picture.
+const OVERLAY: u16 = 1 << 2;
+/// Switch 3: the demo keeps the shown scene, which has all buttons.
+pub const HOLD: u16 = 1 << 3;
+
+/// LED 0 blinks.
+const BEAT: u16 = 1 << 0;
+/// LED 1: the demo is on.
+const ON: u16 = 1 << 1;
+/// LED 2: the demo keeps the shown scene.
+const HELD: u16 = 1 << 2;
+/// LED 3: the demo has had an error.
+const ERROR: u16 = 1 << 3;
+/// The first of the LEDs 4 to 7, which show the number of the scene, from 1.
+const SCENE: u16 = 4;
+
+/// The switches at the last look.
+#[derive(Default)]
+pub struct Switches(u16);
+
+impl Switches {
+    /// Acts on switches that have changed since the last call. They are off at start.
+    pub fn take(&mut self, switches: u16, demo: &mut Demo, scene: &mut Scene, now: u64) {
+        let changed = core::mem::replace(&mut self.0, switches) ^ switches;
+        if changed & OVERLAY != 0 {
+            scene.set_overlay(switches & OVERLAY != 0);
+        }
+        if changed & HOLD != 0 && demo.is_on() {
+            demo.turns.hold(now, switches & HOLD != 0);
+        }
+    }
+}
+
+/// The levels of the LEDs. `blinks` is the level of the first one.
+pub fn leds(demo: &Demo, blinks: bool) -> u16 {
+    let mut leds = if blinks { BEAT } else { 0 };
+    if let Some(number) = demo.turns.number() {
+        // Four LEDs.
+        leds |= ON | ((number as u16 + 1) & 0xf) << SCENE;
+    }
+    if demo.turns.is_held() {
+        leds |= HELD;
+    }
+    if demo.error().is_some() {
+        leds |= ERROR;
+    }
+    leds
+}
+
+/// Segments of the digits: frames a second at the left, and at the right the number of the demo's scene, in turn with that of the last
+/// error.
+pub fn digits(demo: &Demo, rate: Option<u64>, errors_turn: bool) -> [u8; 8] {
+    let left = rate.map(Display::number).unwrap_or_default();
+    let number = demo.turns.number().map(|number| number as u64 + 1);
+    let right = match (number, demo.error()) {
+        (number, Some(error)) if errors_turn || number.is_none() => Display::error(error),
+        (Some(number), _) => Display::number(number),
+        (None, _) => Display::default(),
+    };
+    let digits = [left.digits(), right.digits()];
+    let mut segments = [0; 8];
+    segments.copy_from_slice(digits.as_flattened());
+    segments
+}

@@ -1,0 +1,209 @@
+//! Tests of a board that runs alone: the demo, and buttons, switches, LEDs and digits.
+
+use glint::board::{EmulatedBoard, built_firmware};
+use glint_core::console::PROMPT;
+use glint_core::demo::TURN_MS;
+use glint_core::digits::Display;
+
+/// Cycles within which a command is done.
+const LIMIT: u64 = 60_000_000;
+
+/// Cycles of a millisecond.
+const MS: u64 = 81_250;
+/// Time in which the digits and LEDs follow: they change each half second.
+const PANEL: u64 = 600 * MS;
+
+/// The built-in list.
+const SCENES: [&str; 5] = [
+    "holoforge",
+    "wireframe",
+    "simplegpu",
+    "poor-mans-vr",
+    "cubes",
+];
+
+/// A board that has started without a list in its flash.
+fn started() -> EmulatedBoard {
+    let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
+    board.read_until(PROMPT, LIMIT).unwrap();
+    board
+}
+
+/// Sends a line and returns the output up to the next prompt, echo first.
+fn command(board: &mut EmulatedBoard, line: &str) -> String {
+    board.uart_write(format!("{line}\r").as_bytes());
+    board.read_until(PROMPT, LIMIT).unwrap()
+}
+
+/// Presses a button, long enough to count.
+fn press(board: &mut EmulatedBoard, button: u8) {
+    board.set_buttons(1 << button);
+    board.run(40 * MS);
+    board.set_buttons(0);
+    board.run(40 * MS);
+}
+
+/// The scene of the demo, from 1, and the whole answer of `demo`.
+fn turn(board: &mut EmulatedBoard) -> (usize, String) {
+    let answer = command(board, "demo");
+    let line = answer.lines().find_map(|line| line.strip_prefix("scene "));
+    let number = line.and_then(|line| line.split(' ').next()?.parse().ok());
+    (number.unwrap_or_else(|| panic!("{answer}")), answer)
+}
+
+/// What the digits at the right show.
+fn right(board: &EmulatedBoard) -> [u8; 4] {
+    *board.digits().last_chunk().expect("eight digits")
+}
+
+/// A board with the built-in demo, whose first scene is shown.
+fn alone() -> EmulatedBoard {
+    let mut board = started();
+    command(&mut board, "demo on");
+    board.run(100 * MS);
+    board
+}
+
+#[test]
+fn scenes_take_turns() {
+    let mut board = alone();
+    for number in [1, 2, 3, 4, 5, 1] {
+        let (found, answer) = turn(&mut board);
+        let name = SCENES[number - 1];
+        assert_eq!(found, number);
+        assert!(
+            answer.contains(&format!("scene {number} of 5 {name}\r\n")),
+            "{answer}"
+        );
+        assert!(answer.contains("demo on\r\n"), "{answer}");
+        board.run(TURN_MS * MS);
+    }
+    let answer = command(&mut board, "info scene");
+    assert!(answer.contains("scene wireframe"), "{answer}");
+}
+
+#[test]
+fn commands_that_set_the_picture_stop_the_demo() {
+    let mut board = alone();
+    for line in [
+        "info",
+        "help",
+        "stats",
+        "overlay off",
+        "imu",
+        "light",
+        "selftest",
+        "camera",
+    ] {
+        let answer = command(&mut board, line);
+        assert!(answer.contains(line), "{answer}");
+        assert!(
+            command(&mut board, "demo").contains("demo on\r\n"),
+            "after {line}"
+        );
+    }
+    for line in [
+        "scene menger",
+        "camera 3 10 60",
+        "size 320 180",
+        "light 1,2,3",
+    ] {
+        assert!(
+            command(&mut board, line).ends_with("ok\r\nglint> "),
+            "{line}"
+        );
+        let answer = command(&mut board, "demo");
+        assert!(answer.contains("demo off\r\nok"), "{answer} after {line}");
+        assert!(
+            command(&mut board, "demo next").contains("error: demo: off, expected `demo on` first")
+        );
+        command(&mut board, "demo on");
+    }
+    command(&mut board, "demo off");
+    let shown = command(&mut board, "info scene");
+    board.run(2 * TURN_MS * MS);
+    assert_eq!(command(&mut board, "info scene"), shown);
+}
+
+#[test]
+fn buttons_choose_scenes_and_hold_them() {
+    let mut board = alone();
+    press(&mut board, 0);
+    press(&mut board, 0);
+    assert_eq!(turn(&mut board).0, 3);
+    press(&mut board, 1);
+    press(&mut board, 1);
+    press(&mut board, 1);
+    assert_eq!(turn(&mut board).0, 5, "before the first one comes the last");
+    press(&mut board, 2);
+    assert!(turn(&mut board).1.contains("demo held\r\n"));
+    board.run(2 * TURN_MS * MS);
+    assert_eq!(turn(&mut board).0, 5);
+    press(&mut board, 1);
+    assert_eq!(turn(&mut board).0, 4, "a held demo moves by buttons");
+    // The motion sensor steers the camera here, so button 2 calibrates it.
+    press(&mut board, 2);
+    assert!(turn(&mut board).1.contains("demo held\r\n"));
+    command(&mut board, "demo run");
+    board.run((TURN_MS + 100) * MS);
+    assert_eq!(turn(&mut board).0, 5);
+}
+
+#[test]
+fn switches_turn_the_overlay_on_and_give_the_buttons_to_the_scene() {
+    let mut board = alone();
+    board.set_switches(0b100);
+    board.run(100 * MS);
+    assert!(command(&mut board, "overlay").contains("overlay on\r\n"));
+    press(&mut board, 0);
+    assert_eq!(turn(&mut board).0, 2);
+    assert!(command(&mut board, "overlay").contains("overlay on\r\n"));
+    board.set_switches(0b1000);
+    board.run(100 * MS);
+    assert!(command(&mut board, "overlay").contains("overlay off\r\n"));
+    assert!(turn(&mut board).1.contains("demo held\r\n"));
+    // Button 0 is the key up of the wireframe.
+    let before = board.capture();
+    press(&mut board, 0);
+    board.run(100 * MS);
+    assert_eq!(turn(&mut board).0, 2);
+    assert!(board.capture() != before, "the wireframe moves");
+    board.set_switches(0);
+    board.run(100 * MS);
+    press(&mut board, 0);
+    let (number, answer) = turn(&mut board);
+    assert!(number == 3 && answer.contains("demo on\r\n"), "{answer}");
+}
+
+#[test]
+fn leds_and_digits_show_the_state() {
+    let mut board = started();
+    board.run(PANEL);
+    assert_eq!(
+        board.leds() & !1,
+        0,
+        "without the demo only the first LED blinks"
+    );
+    assert_eq!(right(&board), [0; 4]);
+    command(&mut board, "demo on");
+    board.run(100 * MS);
+    press(&mut board, 0);
+    press(&mut board, 0);
+    press(&mut board, 2);
+    board.run(PANEL);
+    assert_eq!(board.leds() & !1, 3 << 4 | 0b110, "scene 3, held, on");
+    assert_eq!(right(&board), Display::number(3).digits());
+    let stats = command(&mut board, "stats");
+    let cycles = stats.lines().find_map(|line| line.strip_prefix("cycles "));
+    let cycles: u64 = cycles.expect("cycles").parse().expect("a number");
+    let rate = Display::number(u64::from(board.clock_hz()) / cycles);
+    assert_eq!(board.digits()[..4], rate.digits());
+    let first = board.leds() & 1;
+    assert!(board.run_until(PANEL, |board| board.leds() & 1 != first));
+    command(&mut board, "leds 0x8000");
+    board.run(2 * PANEL);
+    assert_eq!(board.leds(), 0x8000, "the LEDs are those of the command");
+    command(&mut board, "demo off");
+    board.run(PANEL);
+    assert_eq!(right(&board), [0; 4]);
+}
