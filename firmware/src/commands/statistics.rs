@@ -85,9 +85,9 @@ fn frame_values(
             ("triangles_culled", mesh.culled.into()),
             ("triangles_clipped", mesh.clipped.into()),
             ("triangles_drawn", mesh.drawn.into()),
-            ("pixels_tested", mesh.pixels_tested),
-            ("pixels_covered", mesh.pixels_covered),
         ]);
+        values.extend(mesh.pixels_tested.map(|tested| ("pixels_tested", tested)));
+        let _ = values.push(("pixels_covered", mesh.pixels_covered));
         // The triangle engine's count of drawn pixels includes the pixels of a field, so it is printed only without a field.
         if stats.field.is_none() {
             let _ = values.push(("pixels_drawn", mesh.pixels_drawn));

@@ -331,8 +331,7 @@ impl GatewareRenderer {
         let field = field.map(|field| field.since(&self.start.raymarcher));
         let field_pixels = field.map_or(0, |field| field.items_out);
         let mesh = self.constants[place].mesh().map(|_| Stats {
-            // In each clock that `cycles_walking` counts, the walker tests a group of eight pixels.
-            pixels_tested: 8 * u64::from(counters.cycles_walking),
+            pixels_tested: None,
             pixels_covered: counters.pixels_covered.wrapping_sub(field_pixels).into(),
             pixels_drawn: counters.pixels_drawn.into(),
             ..self.buffers[place].stats

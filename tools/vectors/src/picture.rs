@@ -82,7 +82,7 @@ impl Picture {
         assert_eq!(stats.triangles_in, mesh.triangle_count());
         assert_eq!(stats.culled + stats.drawn, stats.triangles_in);
         assert!(
-            stats.pixels_tested >= stats.pixels_covered
+            stats.pixels_tested >= Some(stats.pixels_covered)
                 && stats.pixels_covered >= stats.pixels_drawn
         );
         picture.stats = stats;

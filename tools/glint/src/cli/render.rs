@@ -398,13 +398,14 @@ pub fn print_stats(stats: &Stats) -> anyhow::Result<()> {
             counts.triangles_clipped,
             counts.triangles_drawn
         ))?;
-        let drawn = counts.pixels_drawn.map(|drawn| format!(", {drawn} drawn"));
-        say(format_args!(
-            "pixels     {} tested, {} covered{}",
-            counts.pixels_tested,
-            counts.pixels_covered,
-            drawn.unwrap_or_default()
-        ))?;
+        let tested = counts.pixels_tested.map(|tested| (tested, "tested"));
+        let drawn = counts.pixels_drawn.map(|drawn| (drawn, "drawn"));
+        let pixels = [tested, Some((counts.pixels_covered, "covered")), drawn];
+        let pixels = pixels.iter().flatten();
+        let pixels: Vec<_> = pixels
+            .map(|(count, what)| format!("{count} {what}"))
+            .collect();
+        say(format_args!("pixels     {}", pixels.join(", ")))?;
     }
     if let Some(counts) = &stats.rays {
         say(format_args!(

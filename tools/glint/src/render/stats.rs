@@ -44,8 +44,9 @@ pub struct TriangleCounts {
     pub triangles_clipped: u32,
     /// Triangles that reached the walker.
     pub triangles_drawn: u32,
-    /// Pixels tested by the walker. The gateware's walker tests eight at a time.
-    pub pixels_tested: u64,
+    /// Pixels tested by the walker; `None` from the gateware, whose walker tests groups of eight: `cycles_walking` counts those.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels_tested: Option<u64>,
     /// Pixels covered by triangles, and by lines of edges; a pixel under several of them counts for each.
     pub pixels_covered: u64,
     /// Pixels written; `None` for a mesh in a field, where the gateware does not count the mesh's pixels apart from the field's.

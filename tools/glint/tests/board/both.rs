@@ -6,9 +6,7 @@ use glint::board::{SimulatedBoard, Simulation};
 use glint::console::value;
 use glint::gesture::image_sensor;
 use glint::object::Description;
-use glint::render::{
-    Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject, TriangleCounts,
-};
+use glint::render::{Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject};
 use glint::view;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -73,13 +71,9 @@ fn both_boards_draw_the_same() {
                 .iter()
                 .map(|name| stats.engine.get(name).unwrap())
                 .collect();
-            // Pixels that the walker tests are an estimate.
-            let mesh = stats.mesh.clone().map(|counts| TriangleCounts {
-                pixels_tested: 0,
-                ..counts
-            });
+            assert_eq!(stats.triangles().pixels_tested, None);
             let others = (stats.rays.clone(), stats.edges.clone());
-            (stats.backend.clone(), mesh, others, engine)
+            (stats.backend.clone(), stats.mesh.clone(), others, engine)
         };
         assert_eq!(counts(found), counts(expected), "{name}");
         // The cycles are an estimate.
