@@ -43,7 +43,7 @@ const fn bytes() -> [u8; LENGTH] {
         at: 0,
     };
     writer = writer
-        .word(u32::from_le_bytes(*b"GLM1"))
+        .word(u32::from_le_bytes(*b"GLM2"))
         .word(LENGTH as u32)
         .word(1);
     writer = writer

@@ -2,6 +2,7 @@
 //!
 //! [`Mesh::new_checked`] checks every byte once and returns a view whose accessors do not fail.
 
+mod checksum;
 #[cfg(feature = "alloc")]
 mod encode;
 mod turned;
@@ -9,11 +10,12 @@ mod turned;
 use core::fmt;
 
 pub use crate::colour::Rgb565;
+pub use checksum::{checksum, set_checksum, stated_checksum};
 #[cfg(feature = "alloc")]
 pub use encode::{EncodeError, IndexedTriangle, encode};
 
 /// The first four bytes of a mesh.
-pub const MAGIC: [u8; 4] = *b"GLM1";
+pub const MAGIC: [u8; 4] = *b"GLM2";
 /// Largest length of a mesh in bytes.
 pub const MAX_BYTES: u32 = 32 << 20;
 /// Largest length of a mesh's name in bytes.
@@ -46,7 +48,7 @@ pub struct Mesh<'a> {
 
 impl<'a> Mesh<'a> {
     /// Checks every length, count, index and reserved field of a mesh, and that the sphere about the origin with the radius in
-    /// the header contains all vertices.
+    /// the header contains all vertices. The checksum is not checked: it protects files, and [`checksum()`] computes it.
     ///
     /// # Errors
     /// The first deviation from the format, with its place.
@@ -78,7 +80,8 @@ impl<'a> Mesh<'a> {
             vertices,
             triangles,
             radius,
-            reserved @ ..,
+            _,
+            reserved,
         ] = words::<8>(header);
         expect(
             0,
@@ -99,7 +102,7 @@ impl<'a> Mesh<'a> {
             radius,
             radius <= MAX_RADIUS,
         )?;
-        expect_zeros(24, reserved)?;
+        expect_zeros(28, [reserved])?;
 
         let mut walk = Walk {
             rest: records,

@@ -1,7 +1,8 @@
 //! Tests of meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
-    EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, encode,
+    EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, checksum,
+    encode, set_checksum, stated_checksum,
 };
 use proptest::prelude::*;
 
@@ -94,8 +95,8 @@ fn the_layout_is_that_of_the_formats() {
     }];
     #[rustfmt::skip]
     let expected = [
-        b'G', b'L', b'M', b'1', 80, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
-        1, 0, 0, 0, 4, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+        b'G', b'L', b'M', b'2', 80, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0,
+        1, 0, 0, 0, 4, 0, 0, 0, 250, 169, 58, 19, 0, 0, 0, 0,
         1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
         1, 0, 0xFE, 0xFF, 3, 0, 0xFC, 0xFF, 5, 0, 0, 0x40, 0x1F, 0xF8, 0, 0,
         0, 0, 0, 0, 0, 0, 0xE0, 0x07, 0, 0x40, 0, 0, 0xFF, 0xFF, 0, 0,
@@ -184,6 +185,23 @@ fn the_largest_radius_holds_every_position() {
     );
 }
 
+/// One flipped bit of any byte, that of the checksum too, is found; nothing else changes the checksum.
+#[test]
+fn the_checksum_covers_every_byte() {
+    let good = small();
+    assert_eq!(stated_checksum(&good), Some(checksum(&good)));
+    for at in 0..good.len() {
+        let mut bytes = good.clone();
+        bytes[at] ^= 1 << (at % 8);
+        assert_ne!(stated_checksum(&bytes), Some(checksum(&bytes)), "{at}");
+        set_checksum(&mut bytes);
+        assert_eq!(stated_checksum(&bytes), Some(checksum(&bytes)), "{at}");
+    }
+    let mut short = good[..31].to_vec();
+    set_checksum(&mut short);
+    assert_eq!((stated_checksum(&short), &short[..]), (None, &good[..31]));
+}
+
 #[track_caller]
 fn assert_refused(spoil: impl FnOnce(&mut Vec<u8>), offset: u32, expected: Expected, found: u32) {
     let mut bytes = small();
@@ -265,8 +283,7 @@ fn every_field_is_checked() {
         AtMost("radius in 2^-14", MAX_RADIUS),
         MAX_RADIUS + 1,
     );
-    assert_refused(set(24, 1), 24, Exactly("(reserved)", 0), 1);
-    assert_refused(set(28, 1 << 31), 24, Exactly("(reserved)", 0), 1 << 31);
+    assert_refused(set(28, 1 << 31), 28, Exactly("(reserved)", 0), 1 << 31);
     assert_refused(set(32, 0), 32, AtLeast("vertices in a chunk", 1), 0);
     assert_refused(
         set(32, 65_536),
@@ -341,11 +358,11 @@ fn errors_say_where_what_was_expected_and_what_came() {
     };
     assert_eq!(
         message(&|bytes| bytes[3] = b'9'),
-        "mesh byte 0: expected \"GLM1\", found \"GLM9\""
+        "mesh byte 0: expected \"GLM2\", found \"GLM9\""
     );
     assert_eq!(
         message(&|bytes| bytes[0] = 0xFF),
-        "mesh byte 0: expected \"GLM1\", found \"\\xffLM1\""
+        "mesh byte 0: expected \"GLM2\", found \"\\xffLM2\""
     );
     assert_eq!(
         message(&|bytes| bytes[112] = 9),

@@ -40,7 +40,7 @@ pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
     if !is_generated(name) && Format::of(path)? == Format::Glm {
         let mesh = formats::read_file(path)?;
-        glm::check(&mesh).map_err(|error| error.in_path(path))?;
+        glm::check_file(&mesh).map_err(|error| error.in_path(path))?;
         return Ok(Model { mesh, report: None });
     }
     let (mesh, report) =

@@ -59,7 +59,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
         .fold(0.0, f64::max)
         .sqrt()
         .ceil();
-    let mut bytes = b"GLM1".to_vec();
+    let mut bytes = b"GLM2".to_vec();
     let length = 32 + body.len();
     for word in [
         length,

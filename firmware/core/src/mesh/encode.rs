@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex};
+use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex, set_checksum};
 
 /// A triangle of an indexed mesh of any size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -139,6 +139,7 @@ impl Writer {
         bytes.extend(MAGIC);
         bytes.extend(header.into_iter().flat_map(u32::to_le_bytes));
         bytes.extend(self.records.as_flattened());
+        set_checksum(&mut bytes);
         bytes
     }
 }

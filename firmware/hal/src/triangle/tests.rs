@@ -23,7 +23,7 @@ fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
 
 /// A mesh of one chunk with one triangle.
 fn mesh() -> Vec<u8> {
-    let mut bytes = b"GLM1".to_vec();
+    let mut bytes = b"GLM2".to_vec();
     let mut put = |words: &[u32]| bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
     put(&[112, 1, 3, 1, 1 << 15, 0, 0]);
     put(&[3, 1, 0, 0]);

@@ -2,14 +2,14 @@
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
-use glint_core::mesh::{Mesh, Rgb565};
+use glint_core::mesh::{Mesh, Rgb565, checksum, stated_checksum};
 
 /// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are joined.
 ///
 /// # Errors
-/// [`Mesh::new_checked`] rejects the mesh, or the mesh has no triangles.
+/// As [`check_file`], or the mesh has no triangles.
 pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
-    let mesh = check(bytes)?;
+    let mesh = check_file(bytes)?;
     let world = |q: [i16; 3]| q.map(|c| f64::from(c) / 16384.0);
     let rgb8 = |colour: Rgb565| Rgb8(colour.to_rgb888());
     let mut polygons = Polygons::default();
@@ -36,7 +36,32 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     Ok(polygons)
 }
 
-/// Checks a GLM, and returns it as a mesh.
+/// First four bytes of the format before this one, without a checksum.
+const WITHOUT_CHECKSUM: &[u8] = b"GLM1";
+
+/// Checks the bytes of a file with its checksum, and returns them as a mesh.
+///
+/// # Errors
+/// The file is of another version, [`Mesh::new_checked`] rejects it, or its checksum is that of other bytes.
+pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
+    if bytes.starts_with(WITHOUT_CHECKSUM) {
+        let expected = "\"GLM2\", a mesh with a checksum";
+        let found = "'GLM1', written by an earlier glint: convert the original file again";
+        return Err(FormatError::new(Place::Byte(0), expected, found));
+    }
+    let mesh = check(bytes)?;
+    let needed = checksum(bytes);
+    match stated_checksum(bytes) {
+        Some(stated) if stated == needed => Ok(mesh),
+        stated => Err(FormatError::new(
+            Place::Byte(24),
+            format!("the CRC-32 {needed:08x} of the other bytes"),
+            format!("{:08x}: the file is damaged", stated.unwrap_or_default()),
+        )),
+    }
+}
+
+/// Checks the bytes of a mesh but their checksum, and returns them as a mesh.
 ///
 /// # Errors
 /// [`Mesh::new_checked`] rejects the mesh.

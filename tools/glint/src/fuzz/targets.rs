@@ -9,6 +9,7 @@ use crate::wireframe::{self, Form};
 use clap::ValueEnum;
 use glint_core::calibration::Units;
 use glint_core::console::{Command, Event, LineEditor, write_help};
+use glint_core::mesh;
 use glint_core::orientation::log as image;
 use glint_core::picture::Size;
 use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
@@ -155,6 +156,7 @@ impl Target {
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&length.to_le_bytes());
                 }
+                mesh::set_checksum(input);
             }
             Self::Replay => {
                 // Sets the number of samples that matches the log's length.
@@ -230,7 +232,10 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
                 "the rounding is to nearest: {}",
                 report.error_max_lsb
             );
-            assert!(glm::check(&mesh).is_ok(), "a conversion gives a valid mesh");
+            assert!(
+                glm::check_file(&mesh).is_ok(),
+                "a conversion gives a valid mesh"
+            );
             Verdict::Accepted
         }
         Err(_) => Verdict::Rejected,

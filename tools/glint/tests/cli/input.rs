@@ -1,6 +1,6 @@
 //! Bad input: one line of error, exit code 2, and no output file.
 
-use crate::common::{SQUARE, VIEW, folder, glint, refused};
+use crate::common::{SQUARE, VIEW, folder, glint, refused, succeed};
 
 #[test]
 fn bad_meshes() {
@@ -119,7 +119,7 @@ fn bad_meshes() {
         (
             "magic.glm",
             [0; 64].to_vec(),
-            "byte 0: expected \"GLM1\", found '\\x00\\x00\\x00\\x00'",
+            "byte 0: expected \"GLM2\", found '\\x00\\x00\\x00\\x00'",
         ),
     ];
     for (name, contents, message) in cases {
@@ -320,5 +320,47 @@ fn failures_other_than_bad_input() {
             error.starts_with(message) && error.lines().count() == 1,
             "{error}"
         );
+    }
+}
+
+/// A damaged `.glm` is refused by its checksum, where the damage leaves a valid mesh, and so is the format without a checksum.
+#[test]
+fn a_damaged_glm_is_refused() {
+    let folder = folder("damaged_glm");
+    succeed(&folder, &["model", "icosphere:2", "good.glm"]);
+    succeed(&folder, &["render", "good.glm", "--out", "good.png"]);
+    let good = std::fs::read(folder.join("good.glm")).unwrap();
+    let damaged = |at: usize, bit: u8| {
+        let mut bytes = good.clone();
+        bytes[at] ^= bit;
+        bytes
+    };
+    for (name, contents, message) in [
+        // The colour of the first vertex.
+        (
+            "colour.glm",
+            damaged(60, 4),
+            "byte 24: expected the CRC-32 ",
+        ),
+        (
+            "checksum.glm",
+            damaged(25, 1),
+            "byte 24: expected the CRC-32 ",
+        ),
+        (
+            "old.glm",
+            damaged(3, b'1' ^ b'2'),
+            "byte 0: expected \"GLM2\", a mesh with a checksum, found 'GLM1', written by an earlier glint: convert",
+        ),
+    ] {
+        std::fs::write(folder.join(name), contents).unwrap();
+        for arguments in [
+            &["convert", name, "out.obj"][..],
+            &["render", name, "--out", "out.png"],
+        ] {
+            let error = refused(&folder, arguments);
+            let expected = format!("error: {name}: {message}");
+            assert!(error.starts_with(&expected), "{error}");
+        }
     }
 }

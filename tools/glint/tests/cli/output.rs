@@ -240,7 +240,7 @@ fn a_link_stays_and_permissions_too() {
     symlink(&file, &link).unwrap();
     succeed(&folder, &["model", "cube", "link.glm"]);
     assert!(link.is_symlink());
-    assert!(fs::read(&file).unwrap().starts_with(b"GLM1"));
+    assert!(fs::read(&file).unwrap().starts_with(b"GLM2"));
     assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
     assert_eq!(names(&folder), ["file.glm", "link.glm"]);
 }
