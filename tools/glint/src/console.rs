@@ -31,6 +31,18 @@ pub enum ConsoleError {
         /// The end of the received text.
         last: String,
     },
+    /// The board keeps sending, but not what is awaited.
+    #[error(
+        "expected {expected}, found more than {limit} bytes of other text; the last lines were {last:?}"
+    )]
+    Endless {
+        /// The awaited text.
+        expected: String,
+        /// The number of bytes that the text may have.
+        limit: usize,
+        /// The end of the received text.
+        last: String,
+    },
     /// A reply that does not have the expected form.
     #[error("the reply to `{command}`: expected {expected}, found {found:?}")]
     Reply {
@@ -46,6 +58,11 @@ pub enum ConsoleError {
 /// Time-out of a reply in milliseconds of the board's time: longer than the slowest frame of a board without accelerators.
 pub const PATIENCE_MS: u64 = 30_000;
 
+/// Maximum length of a line in bytes.
+const MAX_LINE: usize = 64 << 10;
+/// Maximum length in bytes of a reply, with what the board still has to say before it.
+const MAX_REPLY: usize = 1 << 20;
+
 /// Number of times that [`Console::synchronise`] asks for an answer.
 const ATTEMPTS: u32 = 3;
 
@@ -55,6 +72,8 @@ pub struct Console<'b, B: ?Sized = dyn Board> {
     /// Received bytes that have not been used yet.
     pending: Vec<u8>,
     patience_ms: u64,
+    /// Number of bytes that may come until the reply to the present command is complete.
+    allowance: usize,
 }
 
 impl<'b, B: Board + ?Sized> Console<'b, B> {
@@ -64,6 +83,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
             board,
             pending: Vec::new(),
             patience_ms: PATIENCE_MS,
+            allowance: MAX_REPLY,
         }
     }
 
@@ -74,6 +94,11 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
             patience_ms,
             ..self
         }
+    }
+
+    /// Allows the reply to the command that was sent last this number of bytes more than the usual 1 MiB.
+    pub fn allow(&mut self, bytes: usize) {
+        self.allowance = self.allowance.saturating_add(bytes);
     }
 
     /// Adds bytes that other code has read from the board to those that the console has received.
@@ -129,6 +154,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
 
     /// Asks the board to print a word. Returns whether it has, and false if it has ended a transfer or a command in error first.
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
+        self.allowance = MAX_REPLY;
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
@@ -244,6 +270,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// # Errors
     /// The board does not answer.
     pub fn send(&mut self, command: &str) -> Result<(), ConsoleError> {
+        self.allowance = MAX_REPLY;
         // The board discards an unfinished input line when it receives a zero byte.
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
@@ -275,15 +302,30 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     fn receive(&mut self, expected: &str, said: &str) -> Result<(), ConsoleError> {
         let before = self.pending.len();
         self.board.read(&mut self.pending, self.patience_ms)?;
-        if self.pending.len() > before {
+        let received = self.pending.len().saturating_sub(before);
+        let left = self.allowance.checked_sub(received);
+        let is_endless = left.is_none() || before > MAX_LINE;
+        self.allowance = left.unwrap_or(0);
+        if received > 0 && !is_endless {
             return Ok(());
         }
         let all = format!("{said}{}", plain(&self.pending));
         let start = all.char_indices().rev().nth(199).map_or(0, |(at, _)| at);
-        Err(ConsoleError::Silence {
-            expected: expected.to_owned(),
-            waited_ms: self.patience_ms,
-            last: all[start..].to_owned(),
+        let (expected, last) = (expected.to_owned(), all[start..].to_owned());
+        Err(if is_endless {
+            let limit = if left.is_none() { MAX_REPLY } else { MAX_LINE };
+            self.pending.clear();
+            ConsoleError::Endless {
+                expected,
+                limit,
+                last,
+            }
+        } else {
+            ConsoleError::Silence {
+                expected,
+                waited_ms: self.patience_ms,
+                last,
+            }
         })
     }
 }
@@ -355,81 +397,4 @@ fn plain(bytes: &[u8]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::VecDeque;
-
-    /// A simulated board that answers each line it receives with the next of its prepared replies.
-    struct Script {
-        replies: VecDeque<&'static str>,
-        output: Vec<u8>,
-        now_ms: u64,
-    }
-
-    impl Board for Script {
-        fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-            assert!(bytes.ends_with(b"\r"));
-            self.output
-                .extend(self.replies.pop_front().unwrap_or_default().bytes());
-            Ok(())
-        }
-
-        fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-            // Each read returns one byte, so that every line arrives in parts.
-            if self.output.is_empty() {
-                self.now_ms += wait_ms;
-            } else {
-                bytes.push(self.output.remove(0));
-            }
-            Ok(())
-        }
-
-        fn now_ms(&self) -> u64 {
-            self.now_ms
-        }
-    }
-
-    fn script(start: &str, replies: &[&'static str]) -> Script {
-        Script {
-            replies: replies.iter().copied().collect(),
-            output: start.into(),
-            now_ms: 0,
-        }
-    }
-
-    #[test]
-    fn replies() {
-        let mut board = script(
-            "banner\r\nglint> ",
-            &[
-                "info\r\nversion 1\r\ntriangles 12\r\nok\r\nglint> ",
-                "noise\r\nglint> \x1b[2Kleds x\r\nerror: leds `x`: expected a number\r\nglint> ",
-                "load 1 2\r\nready\r\n",
-                "load 1 2\r\nok\r\nglint> ",
-                "hello",
-            ],
-        );
-        let mut console = Console::new(&mut board);
-        assert_eq!(console.greet().unwrap(), "banner\n");
-        let lines = console.command("info").unwrap();
-        assert_eq!(lines, ["version 1", "triangles 12"]);
-        assert_eq!(value::<u32>("info", &lines, "triangles").unwrap(), 12);
-        assert!(value::<u32>("info", &lines, "tri").is_err());
-        let refused = console.command("leds x").unwrap_err().to_string();
-        assert_eq!(
-            refused,
-            "the board refused `leds x`: leds `x`: expected a number"
-        );
-        let mut start = || console.command_with_transfer("load 1 2", &mut |_| {});
-        assert!(start().is_ok());
-        assert_eq!(
-            start().unwrap_err().to_string(),
-            "the reply to `load 1 2`: expected `ready`, found \"`ok`\""
-        );
-        let silence = console.command("hello").unwrap_err();
-        assert!(
-            matches!(silence, ConsoleError::Silence { ref last, .. } if last == "glint> hello"),
-            "{silence}"
-        );
-    }
-}
+mod tests;

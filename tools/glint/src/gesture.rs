@@ -134,6 +134,9 @@ impl Mask {
     }
 }
 
+/// Largest width and height of a mask; an OV5640 has 2592 pixels in a line.
+const MAX_SIDE: u32 = 4096;
+
 /// Width and height, parsed from a text in which a space separates them.
 struct Dimensions([u32; 2]);
 
@@ -160,12 +163,23 @@ pub fn mask<B: Board + ?Sized>(
     let mut lines = Vec::new();
     console.command_with_transfer(COMMAND, &mut |line| lines.push(line.to_owned()))?;
     let Dimensions([width, height]) = console::value(COMMAND, &lines, "mask")?;
+    if !(width % 8 == 0 && width <= MAX_SIDE && height <= MAX_SIDE) {
+        let expected =
+            format!("a mask of at most {MAX_SIDE} lines, each a multiple of 8 and as many pixels");
+        let found = format!("{width} {height}");
+        console.reset_transfer()?;
+        return Err(console::unexpected(COMMAND, &expected, &found).into());
+    }
     let mut bits = vec![0; (width * height / 8) as usize];
     let (board, pending) = console.line();
     let received = transfer::receive(board, pending, &mut bits, progress);
     let reply = console.reply(COMMAND);
-    bits.truncate(received?);
+    let received = received?;
     reply?;
+    if received != bits.len() {
+        let expected = format!("{} bytes", bits.len());
+        return Err(console::unexpected(COMMAND, &expected, &received.to_string()).into());
+    }
     Ok(Mask {
         width,
         height,

@@ -43,5 +43,6 @@ tests! {
     wireframe_text: WireframeText,
     wireframe_words: WireframeWords,
     scene: Scene,
-    flash: Flash
+    flash: Flash,
+    host: Host
 }

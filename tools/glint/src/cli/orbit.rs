@@ -88,8 +88,11 @@ impl OrbitArguments {
         if let (Some(frame), Some(first)) = (frames.first(), drawn.first()) {
             remarks(frame, &first.stats)?.iter().for_each(warn);
         }
-        let cycles: Option<u64> = drawn.iter().map(|drawn| drawn.stats.cycles).sum();
-        let cycles = cycles.map(|cycles| cycles / u64::from(self.frames));
+        let cycles: Option<Vec<u64>> = drawn.iter().map(|drawn| drawn.stats.cycles).collect();
+        let cycles = cycles.map(|cycles| {
+            let sum: u128 = cycles.into_iter().map(u128::from).sum();
+            (sum / u128::from(self.frames)) as u64
+        });
         let images: Vec<Image> = drawn.into_iter().map(|drawn| drawn.image).collect();
         let is_gif = self
             .out

@@ -14,6 +14,8 @@ const MAX_BATCH: usize = 64;
 const PROMPT_MS: u64 = 2;
 /// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
+/// Time in milliseconds after which the host no longer waits for a quiet line: what sends as long is a program.
+const LOUD_MS: u64 = 5_000;
 /// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;
 /// Maximum number of bytes that the BIOS answers to one frame: `C` for a wrong checksum and, after the time-out of a surplus
@@ -166,11 +168,16 @@ impl<'b> Link<'b> {
         })
     }
 
-    /// Waits until the line is quiet and the BIOS expects a new frame; returns the bytes received meanwhile.
+    /// Waits until the line is quiet and the BIOS expects a new frame; returns the first bytes received meanwhile.
     fn settle(&mut self) -> Result<Vec<u8>, BoardError> {
-        let mut last = self.board.now_ms();
+        const KEPT: usize = 64 << 10;
+        let start = self.board.now_ms();
+        let mut last = start;
         let mut rest = Vec::new();
-        while self.board.now_ms().saturating_sub(last) < QUIET_MS {
+        while self.board.now_ms().saturating_sub(last) < QUIET_MS
+            && last.saturating_sub(start) < LOUD_MS
+        {
+            rest.truncate(KEPT);
             let before = rest.len();
             self.board.read(&mut rest, QUIET_MS)?;
             if rest.len() > before {

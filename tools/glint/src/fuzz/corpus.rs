@@ -2,6 +2,7 @@
 
 use super::mutate::MAX_INPUT;
 use super::targets::Target;
+use super::{host, transfer};
 use crate::convert::{self, Options};
 use crate::error::Place;
 use crate::formats::write;
@@ -14,14 +15,14 @@ use glint_core::calibration::Units;
 use glint_core::flash::CONTENTS;
 use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
-use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
 use glint_core::wireframe::text::assemble;
 use glint_scene::{NAMES, Scene, built_in};
 
 /// Returns the seeds of a target. None exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     let seeds = match target {
-        Target::Upload => transfers(),
+        Target::Upload => transfer::seeds(),
+        Target::Host => host::seeds(),
         Target::Console => texts(CONSOLE),
         Target::Obj => texts(OBJ).into_iter().chain(written(write::obj)).collect(),
         Target::Stl => texts(STL).into_iter().chain(written(write::stl)).collect(),
@@ -116,34 +117,6 @@ fn meshes() -> Vec<Vec<u8>> {
         .filter_map(|polygons| convert::convert(polygons, Options::default()).ok())
         .map(|(mesh, _)| mesh)
         .collect()
-}
-
-/// Byte streams of whole transfers, of the sender and of the receiver. The first three bytes of each seed select how the fuzz
-/// target delivers the stream to the other side.
-fn transfers() -> Vec<Vec<u8>> {
-    let mut seeds = Vec::new();
-    for length in [0, 1, 16, 100, 1500] {
-        let data = super::targets::upload_data(length);
-        let mut buffer = vec![0; length];
-        let mut sender = Sender::new(&data, 5, Timing::HOST, 0);
-        let mut receiver =
-            Receiver::new(&mut buffer, Some(Manifest::of(&data)), Timing::CONSOLE, 0);
-        let (mut from_sender, mut from_receiver) = (vec![0, 0, 40], vec![1, 0, 40]);
-        let mut frame = [0; MAX_FRAME];
-        for now in 0..1000 {
-            let sent = sender.poll(now, &mut frame);
-            from_sender.extend(&frame[..sent]);
-            receiver.on_bytes(now, &frame[..sent]);
-            let answered = receiver.poll(now, &mut frame);
-            from_receiver.extend(&frame[..answered]);
-            sender.on_bytes(now, &frame[..answered]);
-            if sender.state() != State::Running {
-                break;
-            }
-        }
-        seeds.extend([from_sender, from_receiver]);
-    }
-    seeds
 }
 
 /// A log of a sensor at rest, long enough for a calibration.

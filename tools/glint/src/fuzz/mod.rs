@@ -5,8 +5,10 @@
 mod corpus;
 mod flash;
 mod gltf;
+mod host;
 mod mutate;
 mod targets;
+mod transfer;
 
 pub use corpus::{TWO_MESHES, as_binary};
 pub use mutate::{MAX_INPUT, Random};

@@ -1,6 +1,6 @@
 //! Fuzz targets.
 
-use super::flash;
+use super::{flash, host, transfer};
 use crate::convert::{self, Options};
 use crate::formats::{glm, gltf, obj, ply, stl};
 use crate::imu::{log, replay};
@@ -12,7 +12,6 @@ use glint_core::console::{Command, Event, LineEditor, write_help};
 use glint_core::mesh;
 use glint_core::orientation::log as image;
 use glint_core::picture::Size;
-use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc32};
 use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
 use glint_scene::Scene;
 
@@ -45,6 +44,8 @@ pub enum Target {
     Scene,
     /// The contents of flash images, and a firmware with its header.
     Flash,
+    /// The host's side of a board's line: replies of the console, transfers and the serial boot, from a board that sends anything.
+    Host,
 }
 
 /// Result of a target on an input.
@@ -58,7 +59,7 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -72,6 +73,7 @@ impl Target {
         Self::WireframeWords,
         Self::Scene,
         Self::Flash,
+        Self::Host,
     ];
 
     /// Words with a meaning in the target's format, for the mutator to insert.
@@ -113,6 +115,7 @@ impl Target {
                 "endsolid", "COLOR=",
             ],
             Self::Gltf => super::gltf::WORDS,
+            Self::Host => host::WORDS,
             Self::Ply => &[
                 "element",
                 "property",
@@ -140,7 +143,7 @@ impl Target {
     /// Corrects the checksums and lengths in the input. With wrong ones the parser would reject nearly every mutation.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
-            Self::Upload => repair_frames(input),
+            Self::Upload | Self::Host => transfer::repair(input),
             Self::Stl => {
                 // Sets the number of triangles that matches the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
@@ -186,7 +189,8 @@ impl Target {
     /// Runs the target. A panic is a bug.
     pub fn run(self, input: &[u8]) -> Verdict {
         match self {
-            Self::Upload => run_transfer(input),
+            Self::Upload => verdict(transfer::run(input)),
+            Self::Host => verdict(host::run(input)),
             Self::Console => run_console(input),
             // An OBJ or a glTF also serves as each further file that it names.
             Self::Obj => run_mesh(obj::parse(input, &mut |_| Some(input.to_vec()))),
@@ -206,9 +210,15 @@ impl Target {
             Self::WireframeText => run_program(Form::Text, input),
             Self::WireframeWords => run_program(Form::Binary, input),
             Self::Scene => run_scene(input),
-            Self::Flash if flash::run(input) => Verdict::Accepted,
-            Self::Flash => Verdict::Rejected,
+            Self::Flash => verdict(flash::run(input)),
         }
+    }
+}
+
+fn verdict(accepted: bool) -> Verdict {
+    match accepted {
+        true => Verdict::Accepted,
+        false => Verdict::Rejected,
     }
 }
 
@@ -395,106 +405,4 @@ fn run_console(input: &[u8]) -> Verdict {
         echo.clear();
     }
     verdict
-}
-
-/// The data that the transfers of the corpus send.
-pub fn upload_data(length: usize) -> Vec<u8> {
-    (0..length).map(|i| (i * 7 / 3) as u8).collect()
-}
-
-/// Feeds the input to the sender or the receiver of a transfer in pieces, while time passes. The first three bytes select the
-/// side, the time between two pieces and the length of a piece.
-fn run_transfer(input: &[u8]) -> Verdict {
-    let &[side, pace, piece, ref stream @ ..] = input else {
-        return Verdict::Rejected;
-    };
-    let data = upload_data(1500);
-    let mut frame = [0; MAX_FRAME];
-    let mut now = 0;
-    if side & 1 == 0 {
-        let mut buffer = vec![0; 2000];
-        let announced = match side >> 1 & 3 {
-            0 => None,
-            n => Some(Manifest::of(&data[..[0, 100, 1500, 16][usize::from(n)]])),
-        };
-        let mut receiver = Receiver::new(&mut buffer, announced, Timing::CONSOLE, now);
-        for bytes in stream.chunks(usize::from(piece) + 1) {
-            let taken = receiver.on_bytes(now, bytes);
-            assert!(taken <= bytes.len());
-            assert!(receiver.poll(now, &mut frame) <= MAX_FRAME);
-            now += u64::from(pace) * 4;
-        }
-        let verdict = ended(receiver.state());
-        match (verdict, receiver.received(), announced) {
-            (Verdict::Accepted, None, _) => panic!("done without data"),
-            (Verdict::Rejected, Some(_), _) => panic!("data without being done"),
-            (_, Some(got), Some(manifest)) => {
-                assert_eq!(
-                    (got.len() as u32, crc32(got)),
-                    (manifest.length, manifest.crc32)
-                );
-            }
-            _ => {}
-        }
-        for _ in 0..3 {
-            now += 10_000;
-            receiver.poll(now, &mut frame);
-        }
-        assert_ne!(
-            receiver.state(),
-            State::Running,
-            "a silent line ends a transfer"
-        );
-        verdict
-    } else {
-        let length = [1500, 0, 100, 16][usize::from(side >> 1 & 3)];
-        let mut sender = Sender::new(&data[..length], 5, Timing::HOST, now);
-        for bytes in stream.chunks(usize::from(piece) + 1) {
-            while sender.poll(now, &mut frame) > 0 {}
-            let taken = sender.on_bytes(now, bytes);
-            assert!(taken <= bytes.len());
-            now += u64::from(pace) * 4;
-        }
-        while sender.poll(now, &mut frame) > 0 {}
-        let verdict = ended(sender.state());
-        for _ in 0..5 {
-            now += 30_000;
-            while sender.poll(now, &mut frame) > 0 {}
-        }
-        assert_ne!(
-            sender.state(),
-            State::Running,
-            "a silent line ends a transfer"
-        );
-        verdict
-    }
-}
-
-fn ended(state: State) -> Verdict {
-    if state == State::Done {
-        Verdict::Accepted
-    } else {
-        Verdict::Rejected
-    }
-}
-
-/// Corrects the CRC-16 of every frame of a stream.
-fn repair_frames(input: &mut Vec<u8>) {
-    const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
-    let Some((head, stream)) = input.split_at_checked(3) else {
-        return;
-    };
-    let mut repaired = head.to_vec();
-    for frame in stream.split(|&byte| byte == 0) {
-        match cobs::decode_vec(frame) {
-            Ok(body) if body.len() > 2 => {
-                let body = &body[..body.len() - 2];
-                let with_crc = [body, &CRC.checksum(body).to_le_bytes()].concat();
-                repaired.extend(cobs::encode_vec(&with_crc));
-            }
-            _ => repaired.extend(frame),
-        }
-        repaired.push(0);
-    }
-    *input = repaired;
 }

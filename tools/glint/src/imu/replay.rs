@@ -64,8 +64,8 @@ impl Stamps<'_> {
 /// A log in the format that boards replay, and the calibration at its start.
 #[derive(Clone, Debug)]
 pub struct Prepared {
-    image: Vec<u8>,
-    samples: usize,
+    pub(crate) image: Vec<u8>,
+    pub(crate) samples: usize,
     calibration: Option<Report>,
 }
 

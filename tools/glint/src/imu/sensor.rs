@@ -10,6 +10,9 @@ const START_MS: u64 = 1_000;
 /// Header of the output of `imu stream`, and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
 
+/// Maximum length of a sample's line in bytes.
+const MAX_SAMPLE: usize = 64;
+
 /// An error of a sensor, or of the board that has it.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -59,6 +62,7 @@ pub fn stream<B: Board + ?Sized>(
 ) -> Result<(), Error> {
     let command = format!("imu stream {samples}");
     console.send(&command)?;
+    console.allow((samples as usize).saturating_mul(MAX_SAMPLE));
     let mut clock = ExtendedTime::default();
     let mut malformed = None;
     console.lines(&command, &mut |line| {
