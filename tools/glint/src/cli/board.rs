@@ -1,6 +1,7 @@
 //! `glint board`.
 
-use super::common::{LineArguments, say, warn};
+use super::common::LineArguments;
+use super::messages::{say, warn};
 use super::output::Output;
 use super::terminal::interact;
 use anyhow::Context;
@@ -22,14 +23,14 @@ pub struct BoardArguments {
     /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File to write the port's path to, when programs can use the board.
+    /// File to write the port's path to, when programs can use the board; an earlier one is removed at the start.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
     #[arg(long)]
     bios: bool,
-    /// Kind of board: `virtual` (the verilated SoC), or `emulated`, which is faster.
-    #[arg(long, default_value = "virtual", value_parser = ["virtual", "emulated"], value_name = "BOARD")]
+    /// Kind of board: `emulated` (the firmware in an emulator), or `virtual` (the verilated SoC), which is slower.
+    #[arg(long, default_value = "emulated", value_parser = ["emulated", "virtual"], value_name = "BOARD")]
     board: String,
     #[command(flatten)]
     line: LineArguments,
@@ -38,10 +39,10 @@ pub struct BoardArguments {
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
         match (self.board.as_str(), self.bios) {
-            ("emulated", true) => self.stay(SimulatedBoard::emulated_bios),
-            ("emulated", false) => self.stay(|| self.line.emulated_board()),
-            (_, true) => self.stay(SimulatedBoard::full),
-            (_, false) => self.stay(|| self.line.virtual_board()),
+            ("virtual", true) => self.stay(SimulatedBoard::full),
+            ("virtual", false) => self.stay(|| self.line.virtual_board()),
+            (_, true) => self.stay(SimulatedBoard::emulated_bios),
+            (_, false) => self.stay(|| self.line.emulated_board()),
         }
     }
 
@@ -50,6 +51,9 @@ impl BoardArguments {
         start: impl FnOnce() -> Result<B, E>,
     ) -> anyhow::Result<()> {
         let ready = self.ready_file.as_deref();
+        if let Some(earlier) = ready.filter(|ready| ready.is_file()) {
+            std::fs::remove_file(earlier).with_context(|| earlier.display().to_string())?;
+        }
         let ready = ready.map(|path| Output::open(path, &[], [""; 0]));
         let ready = ready.transpose()?;
         let (end, ended) = channel();
@@ -67,7 +71,7 @@ impl BoardArguments {
         }
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
-            return interact(&mut SerialBoard::open(&port, self.line.baud)?);
+            return interact(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
         }
         Ok(ended.recv()?)
     }
