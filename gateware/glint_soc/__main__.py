@@ -31,7 +31,7 @@ def main():
     parser.add_argument("--board", choices=["virtual", "urbana", "ulx3s"], required=True)
     parser.add_argument("--output", type=Path, required=True, help="directory to write to")
     parser.add_argument("--blocks", nargs="*", choices=sorted(OPTIONAL_BLOCKS),
-                        help="optional blocks of this build (default: all; for the ulx3s: all but raymarch)")
+                        help="optional blocks of this build (default: all; for the ulx3s: all but flash and raymarch)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
                                          "an FPGA: faces)")

@@ -57,6 +57,12 @@ DESCRIPTOR_BYTES = {"flat": 48, "smooth": 96}
 CONES = (160, 90)
 """Number of cones of the raymarcher across and down, for one eye at a size above the first. Otherwise half of each number."""
 
+FLASH_BYTES = 16 << 20
+"""Bytes of the window of the SPI flash."""
+
+FLASH_FIRMWARE = 3 << 20
+"""Offset of the firmware in the SPI flash."""
+
 for _size, _code in zip(SIZES, range(3)):
     if _size.width * _size.band_lines > BAND_PIXELS or _size.height % _size.band_lines or \
             (_size.width, _size.height) != (SIZES[0].width << _code, SIZES[0].height << _code):
@@ -75,6 +81,7 @@ def describe():
         "list_gap_words": LIST_GAP_WORDS,
         "flat_descriptor_bytes": DESCRIPTOR_BYTES["flat"],
         "smooth_descriptor_bytes": DESCRIPTOR_BYTES["smooth"],
+        "flash_firmware": FLASH_FIRMWARE,
     }
 
 

@@ -47,7 +47,7 @@ BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 MEMORY_SPECIFIC = ("sdram",)
 
 # The optional blocks, each with the number of its bit in the register `identity_blocks`.
-OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2, "line": 3, "gesture": 4}
+OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2, "line": 3, "gesture": 4, "flash": 5}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 

@@ -13,7 +13,9 @@ from litex.soc.integration.soc_core import SoCCore
 from litex.soc.interconnect import csr_bus, wishbone
 from migen import Cat, Constant, Signal, log2_int
 
+from .constants import FLASH_BYTES, FLASH_FIRMWARE
 from .digits import Digits
+from .flash import FlashReader
 from .gesture import GestureEngine
 from .i2c import I2CMaster
 from .identity import Identity
@@ -33,6 +35,9 @@ SYS_CLK_FREQ = 81.25e6
 CLOCK_UNIT = 250e3
 """The firmware converts between time and cycles with a whole number of cycles in 4 µs: the clock must be a multiple of this."""
 
+_FLASH = 0x4000_0000 - FLASH_BYTES
+"""Address of the window of the SPI flash. Main memory follows, so the BIOS reads a memory whatever length of the firmware it finds."""
+
 _PORT_BITS = 128
 """Width of the memory ports of the accelerators."""
 
@@ -40,7 +45,7 @@ _PORT_BITS = 128
 class GlintSoC(SoCCore):
     """VexRiscv `full` with BIOS in ROM, main memory without a second cache level, and Glint's peripherals.
 
-    `blocks` names the optional accelerators of this build, a subset of `OPTIONAL_BLOCKS`. With the raymarcher but without the
+    `blocks` names the optional blocks of this build. With the raymarcher but without the
     triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
     registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the
     full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine. `fields` are the build
@@ -48,14 +53,16 @@ class GlintSoC(SoCCore):
     """
 
     csr_map = CSR_MAP
-    default_blocks = frozenset(OPTIONAL_BLOCKS)
-    """The optional accelerators of a build that names none."""
+    possible_blocks = frozenset(OPTIONAL_BLOCKS)
+    """The optional blocks that the board has pins for."""
+    default_blocks = possible_blocks
+    """The optional blocks of a build that names none."""
 
     def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ,
                  mode=CEA_1280X720):
-        unknown = set(blocks) - set(OPTIONAL_BLOCKS)
+        unknown = set(blocks) - self.possible_blocks
         if unknown:
-            raise ValueError(f"unknown blocks {sorted(unknown)}, expected some of {sorted(OPTIONAL_BLOCKS)}")
+            raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
         if "line" in blocks and "triangle" not in blocks:
             raise ValueError("the block 'line' is a part of the triangle engine: expected 'triangle' too")
         if sys_clk_freq % CLOCK_UNIT:
@@ -76,16 +83,19 @@ class GlintSoC(SoCCore):
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
             cpu_type="vexriscv", cpu_variant="full",
-            integrated_rom_size=0x10000, integrated_sram_size=0x2000,
+            integrated_rom_size=0x8000, integrated_sram_size=0x2000,
             csr_paging=CSR_PAGING,
             uart_name=uart_name, uart_baudrate=115200,
             timer_uptime=True,
         )
-        # A build time in the BIOS would make every build different.
-        self.add_config("BIOS_NO_BUILD_TIME")
+        # The serial line would take 60 ms for the BIOS's greeting, whose build time would make every build different.
+        self.add_config("BIOS_NO_PROMPT")
         # The interrupt handler of the BIOS drops bytes that do not fit its buffer. With polling, unread bytes stay in the UART
         # and stall the sender.
         self.add_constant("UART_POLLING")
+        # The BIOS tests 2 MiB of memory by default, which takes most of a second.
+        self.add_constant("MEMTEST_DATA_SIZE", 8 * 1024)
+        self.add_constant("MEMTEST_ADDR_SIZE", 8 * 1024)
         self.add_constant("BUILD_ID", build_id)
 
         enabled = sum(1 << OPTIONAL_BLOCKS[name] for name in set(blocks))
@@ -97,6 +107,11 @@ class GlintSoC(SoCCore):
         self.digits = Digits(platform.request("digits", loose=True))
         if "gesture" in self.blocks:
             self.gesture = GestureEngine(platform, platform.request("camera"), sys_clk_freq)
+        if "flash" in self.blocks:
+            self.flash = FlashReader(platform, platform.request("flash"))
+            self.bus.add_slave("flash", self.flash.bus, SoCRegion(origin=_FLASH, size=FLASH_BYTES, mode="rx"))
+            # The BIOS starts the firmware there, if no host answers.
+            self.add_constant("FLASH_BOOT_ADDRESS", _FLASH + FLASH_FIRMWARE)
 
     def do_finalize(self):
         # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.

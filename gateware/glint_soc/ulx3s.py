@@ -70,8 +70,10 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
+    # Nothing tells the flash of this board to use four lines: the FPGA loads from it on one.
+    possible_blocks = GlintSoC.possible_blocks - {"flash"}
     # With the raymarcher nextpnr takes twice the time, and ends late (see docs/boards.md).
-    default_blocks = GlintSoC.default_blocks - {"raymarch"}
+    default_blocks = possible_blocks - {"raymarch"}
 
     def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()

@@ -53,11 +53,11 @@ _io = [
         IOStandard("LVCMOS33")),
 
     # The clock of the flash has no entry: it is the pin CCLK, reached through the primitive STARTUPE2.
-    ("spiflash4x", 0,
+    ("flash", 0,
         Subsignal("cs_n", Pins("M13")),
-        Subsignal("dq", Pins("K17 K18 L14 M15")),
+        Subsignal("dq", Pins("K17 K18 L14 M15"), Misc("PULLUP=TRUE")),
+        Subsignal("reset_n", Pins("N13")),
         IOStandard("LVCMOS33")),
-    ("spiflash_reset_n", 0, Pins("N13"), IOStandard("LVCMOS33")),
 
     ("hdmi_out", 0,
         Subsignal("clk_p", Pins("U16")),
@@ -100,6 +100,8 @@ class Platform(Xilinx7SeriesPlatform):
             "CFGBVS VCCO",
             "CONFIG_VOLTAGE 3.3",
             "BITSTREAM.CONFIG.SPI_BUSWIDTH 4",
+            # MHz. With the default of 3, the configuration takes up to 1.5 s.
+            "BITSTREAM.CONFIG.CONFIGRATE 33",
             "BITSTREAM.GENERAL.COMPRESS TRUE",
         ):
             self.add_platform_command(f"set_property {setting} [current_design]")

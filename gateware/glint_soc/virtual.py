@@ -38,6 +38,9 @@ _io = [
     ("digits", 0,
         Subsignal("left_digits_n", Pins(4)), Subsignal("left_segments_n", Pins(8)),
         Subsignal("right_digits_n", Pins(4)), Subsignal("right_segments_n", Pins(8))),
+    # The lines of the flash are high where nothing drives them.
+    ("flash", 0,
+        Subsignal("cs_n", Pins(1)), Subsignal("clk", Pins(1)), Subsignal("dq_out", Pins(4)), Subsignal("dq_in", Pins(4))),
     ("vga", 0,
         Subsignal("hsync", Pins(1)), Subsignal("vsync", Pins(1)), Subsignal("de", Pins(1)),
         Subsignal("r", Pins(8)), Subsignal("g", Pins(8)), Subsignal("b", Pins(8))),
@@ -111,12 +114,10 @@ class VirtualSoC(GlintSoC):
             block = getattr(self, name)
             self.specials += Instance("clock_gate", name=f"{name}_clock",
                 i_clk=self.crg.cd_sys.clk, i_enable=block.clock_enable, o_gated=block.clk)
-        # The BIOS tests 2 MiB of memory by default, which would take minutes in the simulation.
-        self.add_constant("MEMTEST_DATA_SIZE", 8 * 1024)
-        self.add_constant("MEMTEST_ADDR_SIZE", 8 * 1024)
-        # The pins of the video and of the image sensor exist in every build, so that one harness fits all builds.
-        if "gesture" not in self.blocks:
-            platform.request("camera")
+        # These pins and those of the video exist in every build, so that one harness fits all builds.
+        for block, pins in (("gesture", "camera"), ("flash", "flash")):
+            if block not in self.blocks:
+                platform.request(pins)
         pads = platform.request("vga")
         if "scanout" in self.blocks:
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))

@@ -47,6 +47,7 @@ MODULES = [
     Module(top="fifo", variants={"fifo_2": {"DEPTH": 2}, "fifo_block": {"BLOCK": 1}}),
     # In the build i2c_engine_hasty, the time-out for a device that holds SCL low is 2^15 clocks, 0.4 ms.
     Module(top="i2c_engine", variants={"i2c_engine_hasty": {"STRETCH_BITS": 15}}, measured=("i2c_engine",)),
+    Module(top="flash_reader"),
     Module(top="band_buffer", variants={"band_buffer_stereo": {"STEREO": 1}}),
     Module(top="binner"),
     Module(top="vertex_stage"),

@@ -10,7 +10,6 @@ from migen import Signal, run_simulation
 
 from ecp5.netlist import Netlist
 from glint_soc.ecp5_hdmi import Serializer
-from glint_soc.register_map import OPTIONAL_BLOCKS
 from glint_soc.ulx3s import Ulx3sSoC
 
 import boards
@@ -36,7 +35,7 @@ _IDENTITY = {"clock": 40_000_000, "main_ram": 32 << 20}
 
 def generate():
     """Elaborates the board (no BIOS, no synthesis) and returns its constraints, Verilog and Yosys script as text."""
-    soc = Ulx3sSoC(build_id=0, blocks=OPTIONAL_BLOCKS)
+    soc = Ulx3sSoC(build_id=0, blocks=Ulx3sSoC.possible_blocks)
     Builder(soc, output_dir=str(_OUTPUT), compile_software=False, compile_gateware=False).build()
     return tuple((_GATEWARE / f"{_TOP}.{kind}").read_text() for kind in ("lpf", "v", "ys"))
 
@@ -63,7 +62,7 @@ def check_constraints(lpf, verilog, script):
 
 def check_identity(*_files):
     """Checks the clock frequency and the size of memory that the board states for the firmware."""
-    identity = Ulx3sSoC(build_id=0, blocks=OPTIONAL_BLOCKS).identity
+    identity = Ulx3sSoC(build_id=0, blocks=Ulx3sSoC.possible_blocks).identity
     stated = {name: getattr(identity, name).status.reset.value for name in _IDENTITY}
     return [] if stated == _IDENTITY else [f"expected {_IDENTITY}, got {stated}"]
 

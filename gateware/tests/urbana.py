@@ -37,6 +37,7 @@ _CONSTRAINTS = [
     "set_property CFGBVS VCCO [current_design]",
     "set_property CONFIG_VOLTAGE 3.3 [current_design]",
     "set_property BITSTREAM.CONFIG.SPI_BUSWIDTH 4 [current_design]",
+    "set_property BITSTREAM.CONFIG.CONFIGRATE 33 [current_design]",
     "set_clock_groups -group [get_clocks -include_generated_clocks -of [get_nets sys_clk]] "
     "-group [get_clocks -include_generated_clocks -of [get_nets pix_clk]] -asynchronous",
 ]

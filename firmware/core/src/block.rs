@@ -15,6 +15,8 @@ pub enum Block {
     Line,
     /// The gesture engine.
     Gesture,
+    /// The SPI flash in a window of memory.
+    Flash,
 }
 
 choices!(Block {
@@ -23,6 +25,7 @@ choices!(Block {
     Raymarch: "raymarch",
     Line: "line",
     Gesture: "gesture",
+    Flash: "flash",
 });
 
 impl Block {

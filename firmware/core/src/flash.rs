@@ -10,6 +10,7 @@ mod error;
 use core::str;
 
 use crate::console::LINE_MAX;
+use crate::machine;
 use crate::mesh::is_name;
 use crate::wire::crc32;
 
@@ -18,7 +19,7 @@ pub use encode::{EncodeError, Piece, encode};
 pub use error::{Expected, FlashError};
 
 /// Offset of the firmware in bytes, after the slot of the bitstream.
-pub const FIRMWARE: usize = 3 << 20;
+pub const FIRMWARE: usize = machine::FLASH_FIRMWARE as usize;
 /// Offset of the contents in bytes.
 pub const CONTENTS: usize = 4 << 20;
 /// Largest length of an image in bytes.

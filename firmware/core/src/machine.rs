@@ -33,3 +33,6 @@ pub const FLAT_DESCRIPTOR_BYTES: u32 = 48;
 
 /// Bytes of a descriptor for gateware with smooth shading.
 pub const SMOOTH_DESCRIPTOR_BYTES: u32 = 96;
+
+/// Offset of the firmware in the SPI flash.
+pub const FLASH_FIRMWARE: u32 = 0x0030_0000;

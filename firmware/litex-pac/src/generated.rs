@@ -49,6 +49,8 @@ pub mod constants {
     pub const CONFIG_CSR_ALIGNMENT: u32 = 32;
     /// `config_csr_data_width`.
     pub const CONFIG_CSR_DATA_WIDTH: u32 = 32;
+    /// `flash_boot_address`.
+    pub const FLASH_BOOT_ADDRESS: u32 = 1_060_110_336;
 }
 
 /// Memories on the bus.
@@ -56,9 +58,11 @@ pub mod memories {
     use crate::Memory;
 
     /// `rom`.
-    pub const ROM: Memory = Memory { base: 0x0, size: 0x0001_0000 };
+    pub const ROM: Memory = Memory { base: 0x0, size: 0x8000 };
     /// `sram`.
     pub const SRAM: Memory = Memory { base: 0x1000_0000, size: 0x2000 };
+    /// `flash`.
+    pub const FLASH: Memory = Memory { base: 0x3f00_0000, size: 0x0100_0000 };
     /// `main_ram`.
     pub const MAIN_RAM: Memory = Memory { base: 0x4000_0000, size: 0x0800_0000 };
 }
@@ -256,7 +260,7 @@ pub mod identity {
             unsafe { Register::at(0xf000_0800) }
         }
 
-        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`, 4 `gesture`.
+        /// `blocks`, 32 bits: Optional blocks of this build, a bit each: 0 `scanout`, 1 `triangle`, 2 `raymarch`, 3 `line`, 4 `gesture`, 5 `flash`.
         #[inline]
         #[must_use]
         pub const fn blocks(&self) -> Register<u32, ReadOnly> {

@@ -2,6 +2,7 @@
 
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
+use virtual_flash::Flash;
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
@@ -188,6 +189,12 @@ impl EmulatedBoard {
     /// Disconnects the sensor from the I2C bus, and returns it.
     pub fn unplug(&mut self) -> Option<Wires> {
         self.bus.devices.i2c.sensor.take()
+    }
+
+    /// Connects a flash instead of the present one; a board is made with an erased one.
+    pub fn plug_flash(&mut self, flash: Flash) {
+        self.bus.flash = flash;
+        self.cpu.forget_code();
     }
 
     /// Connects an image sensor instead of the present one, if any.

@@ -1,7 +1,8 @@
 //! The CPU's bus: memories and windows of registers.
 
 use litex_pac::Memory;
-use litex_pac::memories::{ROM, SRAM};
+use litex_pac::memories::{FLASH, ROM, SRAM};
+use virtual_flash::Flash;
 
 use crate::MainMemory;
 use crate::devices::{Devices, REGISTERS};
@@ -38,16 +39,19 @@ pub struct Bus {
     pub ram: MainMemory,
     /// The devices.
     pub devices: Devices,
+    /// The SPI flash.
+    pub flash: Flash,
     rom: Vec<u8>,
     sram: Vec<u8>,
 }
 
 impl Bus {
-    /// Memories that are all 0, and `devices`.
+    /// Memories that are all 0, an erased flash, and `devices`.
     pub fn new(devices: Devices) -> Self {
         Self {
             ram: MainMemory::new(),
             devices,
+            flash: Flash::new(Vec::new()),
             rom: vec![0; ROM.size as usize],
             sram: vec![0; SRAM.size as usize],
         }
@@ -66,6 +70,7 @@ impl Bus {
         let bytes = match place(address) {
             Place::Rom(offset) => self.rom.get(offset..)?.first_chunk(),
             Place::Sram(offset) => self.sram.get(offset..)?.first_chunk(),
+            Place::Flash(offset) => return Some(self.flash.word(offset)),
             _ => return self.ram.word(address),
         };
         bytes.copied().map(u32::from_le_bytes)
@@ -90,8 +95,8 @@ impl Bus {
     /// Stores the low `size` bytes of `value` at `address`, a multiple of `size`, outside main memory.
     pub fn store(&mut self, address: u32, value: u32, size: usize, now: u64) -> Access {
         match place(address) {
-            // A write to the ROM has no effect.
-            Place::Rom(_) => Access::memory(0),
+            // A write to these has no effect.
+            Place::Rom(_) | Place::Flash(_) => Access::memory(0),
             Place::Sram(offset) => {
                 if let Some(bytes) = self.sram.get_mut(offset..offset + size) {
                     bytes.copy_from_slice(&value.to_le_bytes()[..size]);
@@ -130,6 +135,7 @@ impl Bus {
 enum Place {
     Rom(usize),
     Sram(usize),
+    Flash(usize),
     Register(u32),
     Unused,
 }
@@ -143,6 +149,8 @@ fn place(address: u32) -> Place {
         Place::Rom(offset as usize)
     } else if let Some(offset) = within(SRAM) {
         Place::Sram(offset as usize)
+    } else if let Some(offset) = within(FLASH) {
+        Place::Flash(offset as usize)
     } else if let Some(offset) = within(REGISTERS) {
         Place::Register(offset)
     } else {

@@ -31,9 +31,6 @@ constexpr uint32_t PIXEL_TICKS = 74'250'000 / CLOCK_UNIT;
 constexpr uint32_t PIXEL_PERIOD = CONFIG_CLOCK_FREQUENCY / CLOCK_UNIT;
 static_assert(CONFIG_CLOCK_FREQUENCY % CLOCK_UNIT == 0 && PIXEL_TICKS < PIXEL_PERIOD);
 
-// Cycles after which a store of the CPU has reached memory, even behind a line fill of the instruction cache and a refresh.
-constexpr uint64_t SETTLE_CYCLES = 1000;
-
 // LiteDRAM maps addresses ROW_BANK_COL: above the 16 bytes of a word come 7 bits of column, 3 of bank, 13 of row.
 // A bank's memory is indexed by row and column.
 constexpr size_t WORD_BYTES = 16;
@@ -45,6 +42,9 @@ constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in 
 constexpr uint16_t CAMERA_STILL = 1 << 10;
 constexpr uint16_t CAMERA_INVERTED = 1 << 11;
 constexpr int CAMERA_OUTPUTS = 2;
+
+// Levels of the flash's data lines while nothing drives them.
+constexpr uint8_t FLASH_RELEASED = 0xf;
 
 // Half a period of sys_clk in picoseconds, the unit of time in waveforms.
 constexpr uint64_t HALF_PERIOD_PS = 500'000'000'000ull / CONFIG_CLOCK_FREQUENCY;
@@ -74,6 +74,7 @@ struct Soc : Harness {
         top.i2c_sda_in = 1;
         top.camera_scl_in = 1;
         top.camera_sda_in = 1;
+        top.flash_dq_in = FLASH_RELEASED;
         rom_write(glint_bios, static_cast<size_t>(glint_bios_end - glint_bios));
     }
 
@@ -134,7 +135,7 @@ struct Soc : Harness {
     // Outputs to devices that answer edge by edge, coded as for soc_outputs.
     uint8_t outputs() const {
         return top.i2c_scl_out | top.i2c_sda_out << 1 | top.camera_scl_out << 2 | top.camera_sda_out << 3 |
-               top.camera_reset_n << 4 | top.camera_power_down << 5;
+               top.camera_reset_n << 4 | top.camera_power_down << 5 | top.flash_cs_n << 6 | top.flash_clk << 7;
     }
 
     uint8_t i2c_wires() const {
@@ -211,16 +212,11 @@ struct Soc : Harness {
         }
     }
 
-    // Empties both caches of the CPU. Must not be called while a line is filled, because old data would arrive in it afterwards.
+    // Empties both caches of the CPU, while no line is filled: see soc_ddr_write.
     void drop_caches() {
         // The lowest bit of a tag is its valid bit.
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__dataCache_1__DOT__ways_0_tags.m_storage) tag = 0;
         for (auto &tag : top.rootp->glint_virtual__DOT__VexRiscv__DOT__IBusCachedPlugin_cache__DOT__ways_0_tags.m_storage) tag = 0;
-    }
-
-    // Runs the SoC until all stores of the CPU so far have reached memory.
-    void settle() {
-        if (cycles > 0) run(SETTLE_CYCLES);
     }
 
     bool filling() const {
@@ -277,16 +273,17 @@ const uint32_t *soc_video_samples(const Soc *soc, size_t *count) {
 }
 void soc_video_clear(Soc *soc) { soc->video.clear(); }
 
+void soc_flash_drive(Soc *soc, uint8_t lines) { soc->top.flash_dq_in = lines & FLASH_RELEASED; }
+uint8_t soc_flash_lines(const Soc *soc) { return soc->top.flash_dq_out; }
+
+int soc_filling(const Soc *soc) { return soc->filling(); }
 void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length) {
-    soc->settle();
     soc->for_each_run(offset, length, [bytes](const uint8_t *memory, size_t at, size_t count) {
         std::memcpy(bytes + at, memory, count);
     });
 }
 
 void soc_ddr_write(Soc *soc, uint32_t offset, const uint8_t *bytes, size_t length) {
-    soc->settle();
-    while (soc->filling()) soc->cycle();
     soc->for_each_run(offset, length, [bytes](uint8_t *memory, size_t at, size_t count) {
         std::memcpy(memory, bytes + at, count);
     });

@@ -42,7 +42,8 @@ void soc_i2c_drive(Soc *soc, uint8_t released);
 /* Levels of the I2C wires: SCL in bit 0, SDA in bit 1. */
 uint8_t soc_i2c_wires(const Soc *soc);
 /* Outputs of the SoC to devices that answer each edge. Bits 0 and 1: SCL and SDA of the I2C bus, bits 2 and 3: SCL and SDA of the
- * image sensor's SCCB bus, each coded as for soc_i2c_drive. Bit 4: the image sensor's RESET_N, bit 5: its PWDN. */
+ * image sensor's SCCB bus, each coded as for soc_i2c_drive. Bit 4: the image sensor's RESET_N, bit 5: its PWDN. Bit 6: CS# of the
+ * flash, bit 7: its clock. */
 uint8_t soc_outputs(const Soc *soc);
 /* Runs as soc_run does, but stops after the first cycle in which the value of soc_outputs changes. Returns the number of
  * cycles run. */
@@ -60,6 +61,11 @@ void soc_camera_clear(Soc *soc);
 /* Periods of the master clock XCLK that the SoC has sent to the image sensor so far. */
 uint64_t soc_camera_clocks(const Soc *soc);
 
+/* Sets the levels of the flash's four data lines as the SoC sees them; all are high at first. */
+void soc_flash_drive(Soc *soc, uint8_t lines);
+/* Levels with which the SoC drives these lines, high where it does not. */
+uint8_t soc_flash_lines(const Soc *soc);
+
 /* Turns the recording of the video pins on or off; it is off at first. */
 void soc_video_record(Soc *soc, int on);
 /* Samples of the video pins since the last call of soc_video_clear, one per tick of pix_clk:
@@ -67,13 +73,15 @@ void soc_video_record(Soc *soc, int on);
 const uint32_t *soc_video_samples(const Soc *soc, size_t *count);
 void soc_video_clear(Soc *soc);
 
-/* Reads or writes DDR3, `offset` bytes into main RAM; offset + length must be at most 128 MiB. If the
- * SoC has run before, both functions first run it for about a thousand cycles, so that pending stores reach memory. A write
- * empties the CPU's caches, so that later loads and fetches of instructions see the new data. */
+/* Whether the CPU fills a line of a cache, which holds old data of the line. */
+int soc_filling(const Soc *soc);
+/* Reads or writes DDR3, `offset` bytes into main RAM; offset + length must be at most 128 MiB. A store of the CPU reaches memory within a
+ * thousand cycles. A write empties the CPU's caches, so that later loads and fetches of instructions see the new data; it must not be
+ * called while soc_filling. */
 void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length);
 void soc_ddr_write(Soc *soc, uint32_t offset, const uint8_t *bytes, size_t length);
 
-/* Replaces the whole ROM, zero after `length`, which must be at most 64 KiB; before the first cycle. */
+/* Replaces the whole ROM, zero after `length`, which must be at most that of the ROM; before the first cycle. */
 void soc_rom_write(Soc *soc, const uint8_t *bytes, size_t length);
 
 #pragma GCC visibility pop

@@ -1,20 +1,26 @@
 //! The virtual board: clock, pins, devices, and the back door to DDR3.
 
-use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use litex_pac::memories::MAIN_RAM;
-
+use virtual_flash::{Flash, Pins};
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
 use crate::digits::Digits;
 use crate::library::Soc;
+use crate::memory::main_ram_offset;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
 /// Cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
+
+/// Cycles after which a store of the CPU has reached memory, even behind a line fill of the instruction cache and a refresh.
+const SETTLE: u64 = 1000;
+
+/// Levels of the flash's data lines while nothing drives them.
+const FLASH_RELEASED: u8 = 0xf;
 
 /// Periods of PCLK that are queued for the image sensor's port at least, so that none is late: a slice has fewer.
 const PORT_QUEUE: usize = 2 * SLICE as usize;
@@ -91,6 +97,7 @@ impl<'a> Builder<'a> {
         let mut board = VirtualBoard {
             soc,
             monitor: Monitor::default(),
+            flash: None,
             sensor: None,
             image_sensor: None,
             camera_clock: (0, 0),
@@ -123,6 +130,7 @@ fn built_libraries() -> PathBuf {
 pub struct VirtualBoard {
     soc: Soc,
     monitor: Monitor,
+    flash: Option<Flash>,
     sensor: Option<Wires>,
     image_sensor: Option<ImageSensor>,
     /// Periods of the image sensor's master clock so far, and the cycle in which this number was seen to change.
@@ -147,12 +155,15 @@ impl VirtualBoard {
         let mut left = cycles;
         while left > 0 {
             let slice = left.min(SLICE);
-            left -= if self.sensor.is_none() && self.image_sensor.is_none() {
+            let has_devices =
+                self.sensor.is_some() || self.image_sensor.is_some() || self.flash.is_some();
+            left -= if has_devices {
+                self.soc.run_to_edge(slice)
+            } else {
                 self.soc.run(slice);
                 slice
-            } else {
-                self.soc.run_to_edge(slice)
             };
+            self.update_flash();
             self.update_wires();
             self.update_image_sensor();
             self.collect();
@@ -182,6 +193,20 @@ impl VirtualBoard {
             }
             self.run(left.min(SLICE));
         }
+    }
+
+    /// Passes the SoC's outputs to the flash, and the flash's data to the SoC.
+    fn update_flash(&mut self) {
+        let Some(flash) = &mut self.flash else {
+            return;
+        };
+        let (outputs, lines) = (self.soc.outputs(), self.soc.flash_lines());
+        let sent = flash.update(Pins {
+            cs_n: outputs.flash_cs_n,
+            clk: outputs.flash_clk,
+            lines,
+        });
+        self.soc.flash_drive(sent.unwrap_or(FLASH_RELEASED));
     }
 
     /// Passes the SoC's I2C outputs to the sensor, and the sensor's outputs to the SoC.
@@ -348,6 +373,11 @@ impl VirtualBoard {
         self.sensor.take()
     }
 
+    /// Connects a flash instead of the present one, if any. Without a flash its window reads as ones.
+    pub fn plug_flash(&mut self, flash: Flash) {
+        self.flash = Some(flash);
+    }
+
     /// Connects an image sensor instead of the present one, if any.
     pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
         self.soc.camera_clear();
@@ -408,8 +438,8 @@ impl VirtualBoard {
     /// [`Error::Address`] if the range is not within main RAM.
     pub fn ddr_read(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), Error> {
         let offset = main_ram_offset(address, bytes.len())?;
+        self.settle();
         self.soc.ddr_read(offset, bytes);
-        self.collect();
         Ok(())
     }
 
@@ -420,42 +450,19 @@ impl VirtualBoard {
     /// [`Error::Address`] if the range is not within main RAM.
     pub fn ddr_write(&mut self, address: u32, bytes: &[u8]) -> Result<(), Error> {
         let offset = main_ram_offset(address, bytes.len())?;
+        self.settle();
+        // Old data would arrive in the cache after the write.
+        while self.soc.filling() {
+            self.run(1);
+        }
         self.soc.ddr_write(offset, bytes);
-        self.collect();
         Ok(())
     }
-}
 
-/// Checks that `length` bytes at `address` are within main RAM, and returns their offset there.
-fn main_ram_offset(address: u32, length: usize) -> Result<u32, Error> {
-    let ram: Range<u32> = MAIN_RAM.base..MAIN_RAM.base + MAIN_RAM.size;
-    let fits = ram.contains(&address) && length as u64 <= u64::from(ram.end - address);
-    if fits || (length == 0 && address == ram.end) {
-        Ok(address - ram.start)
-    } else {
-        Err(Error::Address {
-            address,
-            length,
-            ram,
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn main_ram_is_checked_to_the_last_byte() {
-        let end = MAIN_RAM.base + MAIN_RAM.size;
-        assert_eq!(
-            main_ram_offset(MAIN_RAM.base, MAIN_RAM.size as usize).unwrap(),
-            0
-        );
-        assert_eq!(main_ram_offset(end - 1, 1).unwrap(), MAIN_RAM.size - 1);
-        assert!(main_ram_offset(end - 1, 2).is_err());
-        assert!(main_ram_offset(MAIN_RAM.base - 1, 1).is_err());
-        assert!(main_ram_offset(end, 1).is_err());
-        assert!(main_ram_offset(u32::MAX, usize::MAX).is_err());
+    /// Runs the SoC until all stores of the CPU so far have reached memory.
+    fn settle(&mut self) {
+        if self.cycles() > 0 {
+            self.run(SETTLE);
+        }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `cargo xtask gateware` compiles the SoC to a shared library. This crate loads it, drives its clocks and pins, and models its
 //! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons,
-//! switches, LEDs, digits, an MPU-6050 ([`VirtualBoard::plug`]), an image sensor ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the
+//! switches, LEDs, digits, a SPI flash ([`VirtualBoard::plug_flash`]), an MPU-6050 ([`VirtualBoard::plug`]), an image sensor ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the
 //! video timing and captures pictures.
 //! A back door reads and writes DDR3 at run time, coherent with the CPU's caches.
 //!
@@ -29,6 +29,7 @@ mod boot;
 mod digits;
 mod error;
 mod library;
+mod memory;
 mod monitor;
 mod picture;
 pub mod pty;
@@ -37,5 +38,6 @@ pub use board::{Builder, Start, VirtualBoard};
 pub use error::Error;
 pub use monitor::{HEIGHT, Monitor, TimingError, WIDTH};
 pub use picture::{Picture, PictureError};
+pub use virtual_flash;
 pub use virtual_image_sensor;
 pub use virtual_mpu6050;

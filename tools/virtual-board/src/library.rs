@@ -51,9 +51,12 @@ functions! {
     camera_queued: fn(Handle) -> usize;
     camera_clear: fn(Handle);
     camera_clocks: fn(Handle) -> u64;
+    flash_drive: fn(Handle, u8);
+    flash_lines: fn(Handle) -> u8;
     video_record: fn(Handle, c_int);
     video_samples: fn(Handle, *mut usize) -> *const u32;
     video_clear: fn(Handle);
+    filling: fn(Handle) -> c_int;
     ddr_read: fn(Handle, u32, *mut u8, usize);
     ddr_write: fn(Handle, u32, *const u8, usize);
     rom_write: fn(Handle, *const u8, usize);
@@ -70,6 +73,10 @@ pub(crate) struct Outputs {
     pub camera_reset_n: bool,
     /// Level of the image sensor's PWDN.
     pub camera_power_down: bool,
+    /// Level of the flash's CS#.
+    pub flash_cs_n: bool,
+    /// Level of the flash's clock.
+    pub flash_clk: bool,
 }
 
 /// One verilated SoC.
@@ -207,6 +214,8 @@ impl Soc {
             camera: [bit(2), bit(3)],
             camera_reset_n: bit(4),
             camera_power_down: bit(5),
+            flash_cs_n: bit(6),
+            flash_clk: bit(7),
         }
     }
 
@@ -245,6 +254,18 @@ impl Soc {
         unsafe { (self.functions.camera_clocks)(self.raw()) }
     }
 
+    /// Levels with which the SoC drives the data lines of the flash, high where it does not.
+    pub fn flash_lines(&self) -> u8 {
+        // SAFETY: the handle belongs to a live SoC.
+        unsafe { (self.functions.flash_lines)(self.raw()) }
+    }
+
+    /// Sets the levels of the flash's data lines as the SoC sees them.
+    pub fn flash_drive(&mut self, lines: u8) {
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
+        unsafe { (self.functions.flash_drive)(self.raw(), lines) }
+    }
+
     pub fn video_record(&mut self, on: bool) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses.
         unsafe { (self.functions.video_record)(self.raw(), on.into()) }
@@ -264,11 +285,18 @@ impl Soc {
         unsafe { (self.functions.video_clear)(self.raw()) }
     }
 
+    /// Whether the CPU fills a line of a cache.
+    pub fn filling(&self) -> bool {
+        // SAFETY: the handle belongs to a live SoC.
+        unsafe { (self.functions.filling)(self.raw()) != 0 }
+    }
+
     pub fn ddr_read(&mut self, offset: u32, bytes: &mut [u8]) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the board has checked the range.
         unsafe { (self.functions.ddr_read)(self.raw(), offset, bytes.as_mut_ptr(), bytes.len()) }
     }
 
+    /// Writes main memory while no line of a cache is filled.
     pub fn ddr_write(&mut self, offset: u32, bytes: &[u8]) {
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the board has checked the range.
         unsafe { (self.functions.ddr_write)(self.raw(), offset, bytes.as_ptr(), bytes.len()) }

@@ -3,7 +3,6 @@
 mod error;
 mod line;
 mod name;
-mod ports;
 mod serial;
 mod simulated;
 
@@ -11,6 +10,5 @@ pub use emulated_board::EmulatedBoard;
 pub use error::BoardError;
 pub use line::{Board, Memory};
 pub use name::{BoardName, ModelOrBoard};
-pub use ports::{Port, ports};
 pub use serial::SerialBoard;
-pub use simulated::{Meter, SimulatedBoard, Simulation, built_firmware};
+pub use simulated::{SimulatedBoard, Simulation, built_firmware};

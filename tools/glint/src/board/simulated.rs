@@ -4,9 +4,8 @@ use super::error::BoardError;
 use super::line::{Board, Memory};
 use emulated_board::EmulatedBoard;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 use virtual_board::pty::Uart;
+use virtual_board::virtual_flash::Flash;
 use virtual_board::virtual_image_sensor::ImageSensor;
 use virtual_board::virtual_mpu6050::Wires;
 use virtual_board::{Start, VirtualBoard, WIDTH};
@@ -49,6 +48,9 @@ pub trait Simulation {
     /// Connects a motion sensor to the I2C bus instead of the present one, if any.
     fn plug(&mut self, sensor: Wires);
 
+    /// Connects a SPI flash instead of the present one, if any.
+    fn plug_flash(&mut self, flash: Flash);
+
     /// Connects an image sensor instead of the present one, if any.
     fn plug_image_sensor(&mut self, sensor: ImageSensor);
 
@@ -62,49 +64,30 @@ pub trait Simulation {
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
 }
 
-/// Methods of [`Simulation`] that a board has under the same names.
-macro_rules! own_methods {
-    () => {
-        fn run(&mut self, cycles: u64) {
-            self.run(cycles);
-        }
-
-        fn cycles(&self) -> u64 {
-            self.cycles()
-        }
-
-        fn clock_hz(&self) -> u32 {
-            self.clock_hz()
-        }
-
-        fn uart_write(&mut self, bytes: &[u8]) {
-            self.uart_write(bytes);
-        }
-
-        fn uart_queued(&self) -> usize {
-            self.uart_queued()
-        }
-
-        fn uart_read(&mut self, output: &mut Vec<u8>) {
-            self.uart_read(output);
-        }
-
-        fn digits(&self) -> [u8; 8] {
-            self.digits()
-        }
-
-        fn plug(&mut self, sensor: Wires) {
-            self.plug(sensor);
-        }
-
-        fn plug_image_sensor(&mut self, sensor: ImageSensor) {
-            self.plug_image_sensor(sensor);
-        }
-    };
-}
-
 impl Simulation for VirtualBoard {
-    own_methods!();
+    fn run(&mut self, cycles: u64) {
+        self.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.clock_hz()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.uart_queued()
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.uart_read(output);
+    }
 
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
         Ok(self.ddr_read(address, bytes)?)
@@ -114,13 +97,51 @@ impl Simulation for VirtualBoard {
         Ok(self.ddr_write(address, bytes)?)
     }
 
+    fn plug(&mut self, sensor: Wires) {
+        self.plug(sensor);
+    }
+
+    fn plug_flash(&mut self, flash: Flash) {
+        self.plug_flash(flash);
+    }
+
+    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
+        self.plug_image_sensor(sensor);
+    }
+
+    fn digits(&self) -> [u8; 8] {
+        self.digits()
+    }
+
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
         Ok(self.capture()?.scaled_back(scale)?)
     }
 }
 
 impl Simulation for EmulatedBoard {
-    own_methods!();
+    fn run(&mut self, cycles: u64) {
+        self.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.clock_hz()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.uart_write(bytes);
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.uart_queued()
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.uart_read(output);
+    }
 
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
         Ok(EmulatedBoard::read_memory(self, address, bytes)?)
@@ -128,6 +149,22 @@ impl Simulation for EmulatedBoard {
 
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
         Ok(self.write_memory(address, bytes)?)
+    }
+
+    fn plug(&mut self, sensor: Wires) {
+        self.plug(sensor);
+    }
+
+    fn plug_flash(&mut self, flash: Flash) {
+        self.plug_flash(flash);
+    }
+
+    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
+        self.plug_image_sensor(sensor);
+    }
+
+    fn digits(&self) -> [u8; 8] {
+        self.digits()
     }
 
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
@@ -140,44 +177,15 @@ impl Simulation for EmulatedBoard {
     }
 }
 
-/// Reads the cycles of a simulated board from another thread.
-#[derive(Clone, Debug)]
-pub struct Meter {
-    cycles: Arc<AtomicU64>,
-    clock_hz: u32,
-}
-
-impl Meter {
-    /// Cycles of the system clock since the start.
-    pub fn cycles(&self) -> u64 {
-        self.cycles.load(Ordering::Relaxed)
-    }
-
-    /// System clock frequency in Hz.
-    pub const fn clock_hz(&self) -> u32 {
-        self.clock_hz
-    }
-}
-
 /// A simulated board with a serial line and direct access to its memory.
 pub struct SimulatedBoard<S = VirtualBoard> {
     board: S,
-    meter: Meter,
 }
 
 impl<S: Simulation> SimulatedBoard<S> {
     /// Wraps a board that the caller has built.
     pub fn new(board: S) -> Self {
-        let meter = Meter {
-            cycles: Arc::default(),
-            clock_hz: board.clock_hz(),
-        };
-        Self { board, meter }
-    }
-
-    /// The cycles that the board has run, for another thread.
-    pub fn meter(&self) -> Meter {
-        self.meter.clone()
+        Self { board }
     }
 
     /// The underlying board, for access to its pins, its monitor and its cycle counter.
@@ -278,8 +286,6 @@ impl<S: Simulation> Board for SimulatedBoard<S> {
         self.board.uart_read(bytes);
         while bytes.len() == before && self.board.cycles() < end {
             self.board.run(SLICE);
-            let cycles = self.board.cycles();
-            self.meter.cycles.store(cycles, Ordering::Relaxed);
             self.board.uart_read(bytes);
         }
         Ok(())

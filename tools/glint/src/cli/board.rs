@@ -1,17 +1,19 @@
 //! `glint board`.
 
-use super::common::LineArguments;
-use super::messages::{say, warn};
+use super::common::{LineArguments, say, warn};
 use super::output::Output;
 use super::terminal::interact;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{SerialBoard, SimulatedBoard};
+use glint::board::{SerialBoard, SimulatedBoard, Simulation};
+use glint::error::FormatError;
+use glint::formats::read_file;
 use rustix::termios::isatty;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::channel;
 use virtual_board::pty::{Pty, Uart};
+use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
 /// Run a simulated board that stays: print its serial port, and run until Ctrl-C.
 ///
@@ -23,14 +25,17 @@ pub struct BoardArguments {
     /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File to write the port's path to, when programs can use the board; an earlier one is removed at the start.
+    /// File to write the port's path to, when programs can use the board.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
     #[arg(long)]
     bios: bool,
-    /// Kind of board: `emulated` (the firmware in an emulator), or `virtual` (the verilated SoC), which is slower.
-    #[arg(long, default_value = "emulated", value_parser = ["emulated", "virtual"], value_name = "BOARD")]
+    /// Start with the BIOS and this image in the flash memory (`glint image make`), as a board at power-up.
+    #[arg(long, value_name = "IMAGE", conflicts_with = "firmware")]
+    flash: Option<PathBuf>,
+    /// Kind of board: `virtual` (the verilated SoC), or `emulated`, which is faster.
+    #[arg(long, default_value = "virtual", value_parser = ["virtual", "emulated"], value_name = "BOARD")]
     board: String,
     #[command(flatten)]
     line: LineArguments,
@@ -38,22 +43,35 @@ pub struct BoardArguments {
 
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        match (self.board.as_str(), self.bios) {
-            ("virtual", true) => self.stay(SimulatedBoard::full),
-            ("virtual", false) => self.stay(|| self.line.virtual_board()),
-            (_, true) => self.stay(SimulatedBoard::emulated_bios),
-            (_, false) => self.stay(|| self.line.emulated_board()),
+        let bios = self.bios || self.flash.is_some();
+        match (self.board.as_str(), bios) {
+            ("emulated", true) => self.stay(|| self.powered(SimulatedBoard::emulated_bios()?)),
+            ("emulated", false) => self.stay(|| self.line.emulated_board()),
+            (_, true) => self.stay(|| self.powered(SimulatedBoard::full()?)),
+            (_, false) => self.stay(|| self.line.virtual_board()),
         }
     }
 
-    fn stay<B: Uart, E: Into<anyhow::Error>>(
+    /// A board that starts with the BIOS, with its flash.
+    fn powered<S: Simulation>(
         &self,
-        start: impl FnOnce() -> Result<B, E>,
-    ) -> anyhow::Result<()> {
-        let ready = self.ready_file.as_deref();
-        if let Some(earlier) = ready.filter(|ready| ready.is_file()) {
-            std::fs::remove_file(earlier).with_context(|| earlier.display().to_string())?;
+        mut board: SimulatedBoard<S>,
+    ) -> anyhow::Result<SimulatedBoard<S>> {
+        if let Some(path) = &self.flash {
+            let image = read_file(path)?;
+            let (found, limit) = (image.len(), MAX_BYTES);
+            if found > limit {
+                let expected = format!("at most {limit} bytes of an image");
+                let error = FormatError::whole(expected, format!("{found} bytes"));
+                return Err(error.in_path(path).into());
+            }
+            board.inner().plug_flash(Flash::new(image));
         }
+        Ok(board)
+    }
+
+    fn stay<B: Uart>(&self, start: impl FnOnce() -> anyhow::Result<B>) -> anyhow::Result<()> {
+        let ready = self.ready_file.as_deref();
         let ready = ready.map(|path| Output::open(path, &[], [""; 0]));
         let ready = ready.transpose()?;
         let (end, ended) = channel();
@@ -61,7 +79,7 @@ impl BoardArguments {
             // Without a receiver the program ends already.
             let _ = end.send(());
         })?;
-        let pty = Pty::start(start().map_err(Into::into)?)?;
+        let pty = Pty::start(start()?)?;
         let port = pty.path();
         let link = self.pty.as_deref().map(|link| Link::new(link, port));
         let _link = link.transpose()?;
@@ -71,7 +89,7 @@ impl BoardArguments {
         }
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
-            return interact(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
+            return interact(&mut SerialBoard::open(&port, self.line.baud)?);
         }
         Ok(ended.recv()?)
     }

@@ -1,6 +1,6 @@
 //! `glint completions`.
 
-use super::messages::say;
+use super::common::say;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 

@@ -1,10 +1,7 @@
 //! `glint gesture`.
 
-use super::common::{LineArguments, named};
-use super::config::BoardChoice;
-use super::messages::say;
+use super::common::{LineArguments, advance, bar, named, say, spinner};
 use super::output::{Output, PICTURE};
-use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::board::{Board, BoardName};
@@ -30,11 +27,12 @@ impl GestureCommand {
     }
 }
 
-/// Options of a board with an image sensor: simulated boards have a virtual OV7670.
+/// Options of a board with an image sensor.
 #[derive(Args)]
 struct SensorArguments {
-    #[command(flatten)]
-    board: BoardChoice,
+    /// Board of the image sensor: `emulated` or `virtual` (the verilated SoC), both with a virtual OV7670, or a serial port.
+    #[arg(long)]
+    board: BoardName,
     /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
@@ -70,8 +68,7 @@ impl SensorArguments {
     }
 
     fn open(&self) -> anyhow::Result<Box<dyn Board>> {
-        let name = self.board.name()?;
-        match &name {
+        match &self.board {
             BoardName::Emulated => {
                 let mut board = self.line.emulated_board()?;
                 board.inner().plug_image_sensor(self.sensor()?);
@@ -110,8 +107,8 @@ impl MaskArguments {
         let spinner = spinner("the image sensor is set up");
         let bar = bar("mask");
         let mask = gesture::mask(&mut Console::new(board.as_mut()), &mut advance(&bar));
-        spinner.finish();
-        bar.finish();
+        spinner.finish_and_clear();
+        bar.finish_and_clear();
         let mask = mask.context("mask")?;
         out.write(|out| mask.write(out))?;
         let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();

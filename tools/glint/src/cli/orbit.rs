@@ -1,11 +1,9 @@
 //! `glint orbit`.
 
 use super::camera::LensArguments;
-use super::common::{TransferArguments, named, size};
+use super::common::{TransferArguments, count_bar, named, print_json, say, size, warn};
 use super::convert::load;
-use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
-use super::progress::count_bar;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
@@ -24,9 +22,9 @@ use std::path::PathBuf;
 /// Render an animation in which the camera goes once around a model.
 #[derive(Args)]
 pub struct OrbitArguments {
-    /// A mesh file, `-` for one from standard input, or a generator's name.
+    /// A mesh file or a generator's name.
     model: String,
-    /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame. `-` is standard output, for a PNG.
+    /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
     out: PathBuf,
     /// Number of frames.
@@ -137,13 +135,13 @@ impl OrbitArguments {
                 .iter()
                 .map(|frame| {
                     let drawn = on_model(frame)?;
-                    bar.inc();
+                    bar.inc(1);
                     Ok(drawn)
                 })
                 .collect(),
-            ModelOrBoard::Board(name) => self.draw_on(name, frames, &mut || bar.inc()),
+            ModelOrBoard::Board(name) => self.draw_on(name, frames, &mut || bar.inc(1)),
         };
-        bar.finish();
+        bar.finish_and_clear();
         drawn
     }
 

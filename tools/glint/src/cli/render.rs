@@ -1,12 +1,12 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{TransferArguments, bad_value, named, size};
+use super::common::{
+    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner, warn,
+};
 use super::convert::load;
 use super::field::FieldArguments;
-use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
-use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
@@ -33,7 +33,7 @@ use std::path::PathBuf;
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
+    /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
     #[arg(required_unless_present_any = ["field", "object", "scene"])]
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md). It states camera and size, which the
@@ -58,7 +58,7 @@ pub struct RenderArguments {
     /// Size of the picture: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Picture file to write; `-` is standard output.
+    /// Picture file to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
     /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 a pixel, +inf where no
@@ -314,7 +314,7 @@ impl RenderArguments {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
                 let rendered = self.render_by(&mut ModelRenderer, frame, &mut |_, _| {})?;
-                spinner.finish();
+                spinner.finish_and_clear();
                 Ok(rendered)
             }
             ModelOrBoard::Board(name @ BoardName::Emulated) => {
@@ -358,7 +358,7 @@ impl RenderArguments {
             .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
         let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;
-        bar.finish();
+        bar.finish_and_clear();
         Ok(rendered)
     }
 
@@ -384,7 +384,7 @@ fn from_monitor<S: Simulation>(
     let spinner = spinner("capturing a frame of the monitor");
     let scale = virtual_board::WIDTH / size.width() as usize;
     let colours = board.inner().monitor_frame(scale)?;
-    spinner.finish();
+    spinner.finish_and_clear();
     Ok(colours)
 }
 

@@ -1,8 +1,6 @@
 //! `glint console`.
 
-use super::common::LineArguments;
-use super::config;
-use super::messages::{print_json, say};
+use super::common::{LineArguments, print_json, say};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{Board, BoardName};
@@ -24,9 +22,9 @@ const LOOK_MS: u64 = 10;
 /// from standard input if that is no terminal; the first one that fails ends the program.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of
-    /// the configuration file, or emulated].
-    board: Option<BoardName>,
+    /// Board: `emulated`, `virtual` or a serial port.
+    #[arg(default_value = "emulated")]
+    board: BoardName,
     /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     send: Vec<String>,
@@ -42,7 +40,6 @@ pub struct ConsoleArguments {
 
 impl ConsoleArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let board = config::board(self.board.as_ref())?;
         let script: Box<dyn Iterator<Item = io::Result<String>>> = match &self.file {
             Some(path) if path != Path::new("-") => {
                 let file = File::open(path).with_context(|| path.display().to_string())?;
@@ -51,11 +48,11 @@ impl ConsoleArguments {
             None if !self.send.is_empty() => Box::new(self.send.iter().cloned().map(Ok)),
             None if isatty(std::io::stdin()) => {
                 anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
-                return interact(&mut *self.line.unsynchronised_board(&board)?);
+                return interact(&mut *self.line.unsynchronised_board(&self.board)?);
             }
             _ => Box::new(std::io::stdin().lines()),
         };
-        let mut board = self.line.board(&board)?;
+        let mut board = self.line.board(&self.board)?;
         let mut replies = Vec::new();
         let result = self.execute(script, &mut Console::new(&mut *board), &mut replies);
         if self.json {

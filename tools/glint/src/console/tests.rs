@@ -99,8 +99,6 @@ impl Board for Endless {
     }
 }
 
-type Conversation = fn(&mut Console<Endless>) -> Result<(), ConsoleError>;
-
 #[test]
 fn a_board_that_never_stops_is_given_up() {
     for (text, limit) in [
@@ -108,13 +106,13 @@ fn a_board_that_never_stops_is_given_up() {
         (b"a line without an end ", MAX_LINE),
     ] {
         let mut board = Endless { text, sent: 0 };
-        let conversations: [Conversation; 4] = [
-            |console| console.greet().map(drop),
-            |console| console.synchronise(),
-            |console| console.command("info").map(drop),
-            |console| console.reply("info").map(drop),
+        let mut conversations: [Box<dyn FnMut(&mut Console<Endless>) -> _>; 4] = [
+            Box::new(|console| console.greet().map(drop)),
+            Box::new(|console| console.synchronise()),
+            Box::new(|console| console.command("info").map(drop)),
+            Box::new(|console| console.reply("info").map(drop)),
         ];
-        for converse in conversations {
+        for converse in &mut conversations {
             board.sent = 0;
             let error = converse(&mut Console::new(&mut board)).unwrap_err();
             assert!(

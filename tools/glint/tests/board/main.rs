@@ -12,6 +12,7 @@ mod fields;
 mod gesture;
 mod meshes;
 mod objects;
+mod power_up;
 mod scenes;
 mod sensor;
 mod serial_boot;

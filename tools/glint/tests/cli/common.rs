@@ -17,16 +17,7 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Runs the program with 256 MiB of address space, so that unbounded use of memory fails.
 pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
-    glint_in(folder, arguments, &[])
-}
-
-/// Runs the program with variables of the environment in which it finds its settings.
-pub fn glint_in(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
     Command::new("sh")
-        .env_remove("GLINT_BOARD")
-        .env_remove("GLINT_BAUD")
-        .env("XDG_CONFIG_HOME", folder)
-        .envs(variables.iter().copied())
         .args([
             "-c",
             "ulimit -v 262144; exec \"$0\" \"$@\"",
@@ -38,9 +29,8 @@ pub fn glint_in(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -
         .unwrap()
 }
 
-/// Runs the program, which replaces what it has written before, and returns what it prints.
 pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = glint(folder, &[arguments, &["--force"]].concat());
+    let output = glint(folder, arguments);
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {error}");
     String::from_utf8(output.stdout).unwrap()

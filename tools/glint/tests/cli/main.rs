@@ -11,6 +11,5 @@ mod meshes;
 mod orbits;
 mod output;
 mod package;
-mod settings;
 mod tolerance;
 mod wireframes;

@@ -23,6 +23,7 @@ pub struct Machine {
     pub list_gap_words: u32,
     pub flat_descriptor_bytes: u32,
     pub smooth_descriptor_bytes: u32,
+    pub flash_firmware: u32,
 }
 
 /// A size of a picture.

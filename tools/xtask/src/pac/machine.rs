@@ -1,6 +1,7 @@
 //! Prints the numbers that gateware, firmware and host share, as the module `machine` of glint-core.
 
 use super::description::{Machine, Size};
+use super::rust::text::hex;
 
 /// The text of `machine.rs`.
 pub fn print(machine: &Machine) -> String {
@@ -52,6 +53,9 @@ pub const FLAT_DESCRIPTOR_BYTES: u32 = {flat_descriptor_bytes};
 
 /// Bytes of a descriptor for gateware with smooth shading.
 pub const SMOOTH_DESCRIPTOR_BYTES: u32 = {smooth_descriptor_bytes};
+
+/// Offset of the firmware in the SPI flash.
+pub const FLASH_FIRMWARE: u32 = {flash_firmware};
 ",
         count = machine.sizes.len(),
         group = machine.group,
@@ -59,5 +63,6 @@ pub const SMOOTH_DESCRIPTOR_BYTES: u32 = {smooth_descriptor_bytes};
         list_gap_words = machine.list_gap_words,
         flat_descriptor_bytes = machine.flat_descriptor_bytes,
         smooth_descriptor_bytes = machine.smooth_descriptor_bytes,
+        flash_firmware = hex(machine.flash_firmware),
     )
 }

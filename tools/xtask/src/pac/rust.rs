@@ -3,7 +3,7 @@
 mod counters;
 mod enumeration;
 mod peripheral;
-mod text;
+pub mod text;
 
 use std::fmt::{self, Write};
 

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use crate::paths;
 
 /// This project's own blocks. The block that takes longest to measure comes first.
-pub const OWN: [&str; 10] = [
+pub const OWN: [&str; 11] = [
     "ring_lane",
     "setup",
     "triangle_raster",
@@ -18,6 +18,7 @@ pub const OWN: [&str; 10] = [
     "line_raster",
     "gesture_engine",
     "i2c_engine",
+    "flash_reader",
 ];
 
 /// Engines that consist of the blocks in `OWN`, in several builds, and parts of the raymarcher. The tables list them, but they
@@ -66,9 +67,10 @@ pub const FLAT: &str = "flat_build";
 pub const SOC: &str = "soc";
 
 /// The blocks in the order of their rows in the tables. Other measured modules come after them.
-pub const ROWS: [&str; 25] = [
+pub const ROWS: [&str; 26] = [
     "scanout",
     "i2c_engine",
+    "flash_reader",
     "vertex_stage",
     "setup",
     "triangle_raster",

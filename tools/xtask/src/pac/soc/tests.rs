@@ -36,7 +36,7 @@ fn descriptions() -> (String, String, String) {
     let description = r#"{"machine": {
         "sizes": [{"width": 320, "height": 180, "band_lines": 45}],
         "group": 8, "list_table_words": 16, "list_gap_words": 128,
-        "flat_descriptor_bytes": 48, "smooth_descriptor_bytes": 96
+        "flat_descriptor_bytes": 48, "smooth_descriptor_bytes": 96, "flash_firmware": 3145728
     }, "blocks": {"timer0": {
         "registers": [
             {"name": "load", "width": 8, "fields": []},
