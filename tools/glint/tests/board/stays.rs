@@ -20,7 +20,12 @@ struct Stay {
 
 impl Stay {
     fn start() -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-stays");
+        Self::start_with("board-stays", &[])
+    }
+
+    /// Starts the board in a folder of this name, with further arguments.
+    fn start_with(folder: &str, arguments: &[&str]) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
         std::fs::create_dir_all(&folder).unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args([
@@ -32,6 +37,7 @@ impl Stay {
                 "--ready-file",
                 "ready",
             ])
+            .args(arguments)
             .current_dir(&folder)
             .stdout(Stdio::piped())
             .spawn()
@@ -157,4 +163,20 @@ fn programs_use_one_board_in_turn() {
     assert!(Command::new("kill").arg(pid).status().unwrap().success());
     assert!(stay.child.wait().unwrap().success());
     assert!(!port.is_symlink());
+}
+
+#[test]
+fn a_board_starts_from_an_image() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let firmware = root.join("target/firmware/glint.bin");
+    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join("start.bin");
+    let (firmware, image) = (firmware.to_str().unwrap(), image.to_str().unwrap());
+    let made = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["image", "make", "--firmware", firmware, "--scene", "demo"])
+        .args(["--out", image])
+        .status();
+    assert!(made.unwrap().success());
+    let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
+    let info = stay.succeed(&["console", "port", "--send", "info"], "");
+    assert!(info.contains("triangles 12"), "{info}");
 }
