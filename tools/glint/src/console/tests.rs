@@ -99,6 +99,9 @@ impl Board for Endless {
     }
 }
 
+/// A conversation with an endless board.
+type Conversation = Box<dyn FnMut(&mut Console<'_, Endless>) -> Result<(), ConsoleError>>;
+
 #[test]
 fn a_board_that_never_stops_is_given_up() {
     for (text, limit) in [
@@ -106,7 +109,7 @@ fn a_board_that_never_stops_is_given_up() {
         (b"a line without an end ", MAX_LINE),
     ] {
         let mut board = Endless { text, sent: 0 };
-        let mut conversations: [Box<dyn FnMut(&mut Console<Endless>) -> _>; 4] = [
+        let mut conversations: [Conversation; 4] = [
             Box::new(|console| console.greet().map(drop)),
             Box::new(|console| console.synchronise()),
             Box::new(|console| console.command("info").map(drop)),
