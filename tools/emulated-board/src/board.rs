@@ -212,19 +212,7 @@ impl EmulatedBoard {
     pub fn capture(&mut self) -> Frame {
         let blanking = self.bus.devices.scanout.next_blanking();
         self.run(blanking + 1 - self.cycles);
-        self.shown()
-    }
-
-    /// The frame that is shown now, as [`capture`](Self::capture) returns it, without running.
-    #[must_use]
-    pub fn shown(&self) -> Frame {
         self.bus.devices.scanout.frame(&self.bus.ram)
-    }
-
-    /// Number of vertical blankings since the start, at each of which the shown frame may change.
-    #[must_use]
-    pub fn blankings(&self) -> u64 {
-        self.bus.devices.scanout.blankings()
     }
 
     /// Reads main memory from `address` on, an address of the CPU.
