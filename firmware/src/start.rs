@@ -4,10 +4,12 @@ use core::fmt::{self, Write as _};
 
 use glint_core::camera::ViewError;
 use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
+use glint_core::flash::CONTENTS;
 use glint_core::mesh::MeshError;
 use glint_core::picture::Backend;
 use glint_core::wireframe::{CUBE, Program, ProgramError};
 use glint_hal::digits::Digits;
+use glint_hal::flash;
 use glint_hal::frequency::{Frequency, NotAFrequency};
 use glint_hal::gesture::GestureEngine;
 use glint_hal::gpio::{InputPort, OutputPort};
@@ -28,6 +30,7 @@ use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scene::Scene;
+use crate::scenes::Library;
 
 /// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
 #[unsafe(no_mangle)]
@@ -151,6 +154,10 @@ pub fn machine() -> Result<Machine, StartError> {
     } else {
         (None, None, None, None, None)
     };
+    let contents = identity
+        .matches()
+        .then(|| flash::bytes(&peripherals.identity)?.get(CONTENTS..))
+        .flatten();
     interrupts::start(Present {
         devices: devices.is_some(),
         scanout: scanout.is_some(),
@@ -187,6 +194,7 @@ pub fn machine() -> Result<Machine, StartError> {
         devices,
         peripherals.ctrl,
     );
+    machine.library = Library::new(contents);
     machine.gesture = gesture.map(|engine| Gesture::new(engine, clock));
     Ok(machine)
 }

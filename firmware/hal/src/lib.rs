@@ -8,6 +8,7 @@
 //! | [`i2c`] | `i2c`, by queued commands | [`I2c`](embedded_hal::i2c::I2c), blocking, and [`I2c`](embedded_hal_async::i2c::I2c), async |
 //! | [`gpio`] | `buttons`, `switches`, `leds` | [`InputPin`](embedded_hal::digital::InputPin), [`StatefulOutputPin`](embedded_hal::digital::StatefulOutputPin) |
 //! | [`digits`] | `digits`, two displays of four digits | |
+//! | [`flash`] | the window of the SPI flash | |
 //! | [`interrupt`] | the CPU's interrupt lines | |
 //! | [`scanout`] | `scanout` and its two frames | |
 //! | [`triangle`] | `triangle`, the engine that draws meshes | |
@@ -23,6 +24,7 @@ extern crate std;
 
 mod absent;
 pub mod digits;
+pub mod flash;
 pub mod frequency;
 pub mod gesture;
 pub mod gpio;

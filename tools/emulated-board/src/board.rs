@@ -197,6 +197,11 @@ impl EmulatedBoard {
         self.cpu.forget_code();
     }
 
+    /// Sets the block enable bits that the gateware states, as one without some blocks does. The blocks stay.
+    pub fn state_blocks(&mut self, blocks: u32) {
+        self.bus.devices.identity.blocks = blocks;
+    }
+
     /// Connects an image sensor instead of the present one, if any.
     pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
         self.bus.devices.gesture.plug(image_sensor);
@@ -212,7 +217,19 @@ impl EmulatedBoard {
     pub fn capture(&mut self) -> Frame {
         let blanking = self.bus.devices.scanout.next_blanking();
         self.run(blanking + 1 - self.cycles);
+        self.shown()
+    }
+
+    /// The frame that is shown now, as [`capture`](Self::capture) returns it, without running.
+    #[must_use]
+    pub fn shown(&self) -> Frame {
         self.bus.devices.scanout.frame(&self.bus.ram)
+    }
+
+    /// Number of vertical blankings since the start, at each of which the shown frame may change.
+    #[must_use]
+    pub fn blankings(&self) -> u64 {
+        self.bus.devices.scanout.blankings()
     }
 
     /// Reads main memory from `address` on, an address of the CPU.

@@ -53,7 +53,8 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
 pub struct Devices {
     /// Reset and bus errors.
     pub controller: Controller,
-    identity: Identity,
+    /// Build id and blocks.
+    pub identity: Identity,
     /// The UART.
     pub uart: Uart,
     timer: Timer,

@@ -13,6 +13,7 @@
 //! | [`wireframe`] | programs of the wireframe simulator |
 //! | [`imu`] | logs of a gyroscope and an accelerometer, and their attitudes |
 //! | [`gesture`] | the hand in front of a board's camera, and the camera of the virtual board |
+//! | [`web`] | the live page: a board in a web browser |
 //! | [`fuzz`] | fuzz targets for everything that parses external bytes |
 #![forbid(unsafe_code)]
 
@@ -40,4 +41,5 @@ pub mod scene;
 pub mod transfer;
 pub mod triangulate;
 pub mod view;
+pub mod web;
 pub mod wireframe;

@@ -8,7 +8,8 @@ use anyhow::{Context, Result, bail};
 use crate::{paths, run};
 
 /// Debian packages and their purposes.
-const PACKAGES: [(&str, &str); 4] = [
+const PACKAGES: [(&str, &str); 5] = [
+    ("chromium", "opens the live page in tests"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     ("g++", "compiles the verilated SoC and meshoptimizer"),
     ("make", "builds the LiteX BIOS"),

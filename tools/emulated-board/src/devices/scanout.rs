@@ -113,21 +113,33 @@ impl Scanout {
         self.events.raise(VBLANK);
     }
 
+    /// Number of vertical blankings since the start of the board.
+    pub fn blankings(&self) -> u64 {
+        self.blanking
+    }
+
     /// The frame that is shown; black while the picture is switched off, like pixels outside main memory.
     pub fn frame(&self, ram: &MainMemory) -> Frame {
-        let (width, height) = (
-            u32::from(WIDTH) / self.scale_current,
-            u32::from(HEIGHT) / self.scale_current,
-        );
-        let pixels = (0..width * height).map(|number| {
-            let address = self.current.wrapping_add(2 * number);
-            let colour = ram.array(address).filter(|_| self.enabled);
+        let [width, height] = [WIDTH, HEIGHT].map(|length| u32::from(length) / self.scale_current);
+        let size = (width * height) as usize;
+        let colour = |number: usize| {
+            let colour = ram.array(self.current.wrapping_add(2 * number as u32));
             colour.map_or(0, u16::from_le_bytes)
-        });
+        };
+        let pixels = match ram.bytes(self.current, 2 * size) {
+            _ if !self.enabled => vec![0; size],
+            Some(bytes) => bytes
+                .as_chunks()
+                .0
+                .iter()
+                .map(|&colour| u16::from_le_bytes(colour))
+                .collect(),
+            None => (0..size).map(colour).collect(),
+        };
         Frame {
             width: width as usize,
             height: height as usize,
-            pixels: pixels.collect(),
+            pixels,
         }
     }
 }

@@ -6,7 +6,7 @@ mod name;
 mod serial;
 mod simulated;
 
-pub use emulated_board::EmulatedBoard;
+pub use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
 pub use error::BoardError;
 pub use line::{Board, Memory};
 pub use name::{BoardName, ModelOrBoard};

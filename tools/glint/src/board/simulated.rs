@@ -2,7 +2,7 @@
 
 use super::error::BoardError;
 use super::line::{Board, Memory};
-use emulated_board::EmulatedBoard;
+use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
 use std::path::{Path, PathBuf};
 use virtual_board::pty::Uart;
 use virtual_board::virtual_flash::Flash;
@@ -56,6 +56,22 @@ pub trait Simulation {
 
     /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
     fn digits(&self) -> [u8; 8];
+
+    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
+    fn set_buttons(&mut self, pressed: u8);
+
+    /// Sets the 16 switches, one bit each.
+    fn set_switches(&mut self, on: u16);
+
+    /// The 16 LEDs, one bit each.
+    fn leds(&self) -> u16;
+
+    /// The last whole frame on the monitor, if one has been shown since the call that returned the blanking number `last`, with its own
+    /// number. The first call is made with 0.
+    ///
+    /// # Errors
+    /// The picture on the monitor is not that of a frame.
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, MonitorFrame)>, BoardError>;
 
     /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
     ///
@@ -113,6 +129,38 @@ impl Simulation for VirtualBoard {
         self.digits()
     }
 
+    fn set_buttons(&mut self, pressed: u8) {
+        self.set_buttons(pressed);
+    }
+
+    fn set_switches(&mut self, on: u16) {
+        self.set_switches(on);
+    }
+
+    fn leds(&self) -> u16 {
+        self.leds()
+    }
+
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, MonitorFrame)>, BoardError> {
+        self.monitor().turn_on();
+        let Some(picture) = self.monitor().take_picture() else {
+            return Ok(None);
+        };
+        // Larger blocks of equal pixels are pixels of a smaller frame.
+        let mut scales = [4, 2].into_iter();
+        let smaller = scales.find_map(|scale| Some((scale, picture.scaled_back(scale).ok()?)));
+        let (scale, pixels) = match smaller {
+            Some(found) => found,
+            None => (1, picture.scaled_back(1)?),
+        };
+        let frame = MonitorFrame {
+            width: picture.width() / scale,
+            height: picture.height() / scale,
+            pixels,
+        };
+        Ok(Some((last + 1, frame)))
+    }
+
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {
         Ok(self.capture()?.scaled_back(scale)?)
     }
@@ -165,6 +213,23 @@ impl Simulation for EmulatedBoard {
 
     fn digits(&self) -> [u8; 8] {
         self.digits()
+    }
+
+    fn set_buttons(&mut self, pressed: u8) {
+        self.set_buttons(pressed);
+    }
+
+    fn set_switches(&mut self, on: u16) {
+        self.set_switches(on);
+    }
+
+    fn leds(&self) -> u16 {
+        self.leds()
+    }
+
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, MonitorFrame)>, BoardError> {
+        let number = self.blankings();
+        Ok((number != last).then(|| (number, self.shown())))
     }
 
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError> {

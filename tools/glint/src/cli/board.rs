@@ -1,23 +1,27 @@
 //! `glint board`.
 
-use super::common::{LineArguments, say, warn};
+use super::common::{LineArguments, bad_value, say, warn};
 use super::output::Output;
 use super::terminal::interact;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{SerialBoard, SimulatedBoard, Simulation};
-use glint::error::FormatError;
+use glint::board::{BoardName, SerialBoard, SimulatedBoard, Simulation};
+use glint::error::{FormatError, quote};
 use glint::formats::read_file;
+use glint::web::{Live, LiveSerial, LiveSimulation, Server};
 use rustix::termios::isatty;
+use std::net::SocketAddr;
 use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::channel;
 use virtual_board::pty::{Pty, Uart};
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
-/// Run a simulated board that stays: print its serial port, and run until Ctrl-C.
+/// Run a board that stays, for programs or in a web page: print its serial port or the page's address, and run until Ctrl-C.
 ///
-/// Every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a script. Several
+/// Without --web every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a script. Several
 /// boards run side by side. On a terminal without --pty and --ready-file, the board's console opens at once; Ctrl-] ends it and
 /// the board.
 #[derive(Args)]
@@ -25,7 +29,7 @@ pub struct BoardArguments {
     /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File to write the port's path to, when programs can use the board.
+    /// File to write the port's path or the page's address to, when the board can be used.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
@@ -34,22 +38,63 @@ pub struct BoardArguments {
     /// Start with the BIOS and this image in the flash memory (`glint image make`), as a board at power-up.
     #[arg(long, value_name = "IMAGE", conflicts_with = "firmware")]
     flash: Option<PathBuf>,
-    /// Kind of board: `virtual` (the verilated SoC), or `emulated`, which is faster.
-    #[arg(long, default_value = "virtual", value_parser = ["virtual", "emulated"], value_name = "BOARD")]
-    board: String,
+    /// Serve the live page at this address, a web page with the board's monitor, console, buttons, switches, LEDs and digits, instead of
+    /// a serial port; port 0 selects a free one. The address that is printed opens the page [default: 127.0.0.1:0].
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", conflicts_with_all = ["pty", "bios", "flash"])]
+    web: Option<SocketAddr>,
+    /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web also a serial port.
+    #[arg(long, default_value = "emulated")]
+    board: BoardName,
     #[command(flatten)]
     line: LineArguments,
 }
 
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let bios = self.bios || self.flash.is_some();
-        match (self.board.as_str(), bios) {
-            ("emulated", true) => self.stay(|| self.powered(SimulatedBoard::emulated_bios()?)),
-            ("emulated", false) => self.stay(|| self.line.emulated_board()),
-            (_, true) => self.stay(|| self.powered(SimulatedBoard::full()?)),
-            (_, false) => self.stay(|| self.line.virtual_board()),
+        if let Some(address) = self.web {
+            return self.serve(address);
         }
+        let bios = self.bios || self.flash.is_some();
+        match (&self.board, bios) {
+            (BoardName::Emulated, true) => {
+                self.stay(|| self.powered(SimulatedBoard::emulated_bios()?))
+            }
+            (BoardName::Emulated, false) => self.stay(|| self.line.emulated_board()),
+            (BoardName::Virtual, true) => self.stay(|| self.powered(SimulatedBoard::full()?)),
+            (BoardName::Virtual, false) => self.stay(|| self.line.virtual_board()),
+            (BoardName::Serial(port), _) => {
+                let expected = "emulated or virtual, or --web";
+                Err(bad_value("--board", expected, quote(port.as_bytes())).into())
+            }
+        }
+    }
+
+    /// The file of `--ready-file`, opened.
+    fn ready(&self) -> anyhow::Result<Option<Output>> {
+        let ready = self.ready_file.as_deref();
+        ready
+            .map(|path| Output::open(path, &[], [""; 0]))
+            .transpose()
+    }
+
+    /// Serves the live page.
+    fn serve(&self, address: SocketAddr) -> anyhow::Result<()> {
+        let ready = self.ready()?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let ended = Arc::clone(&stop);
+        ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
+        let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
+        let mut board: Box<dyn Live> = match &self.board {
+            BoardName::Emulated => Box::new(LiveSimulation::new(self.line.emulated_board()?, 250)),
+            BoardName::Virtual => Box::new(LiveSimulation::new(self.line.virtual_board()?, 2000)),
+            BoardName::Serial(port) => Box::new(LiveSerial(self.line.serial_board(port)?)),
+        };
+        let url = server.url()?;
+        say(&url)?;
+        if let Some(ready) = ready {
+            ready.write(|out| writeln!(out, "{url}"))?;
+        }
+        Ok(server.run(&mut *board, &self.board.to_string(), &stop)?)
     }
 
     /// A board that starts with the BIOS, with its flash.
@@ -71,9 +116,7 @@ impl BoardArguments {
     }
 
     fn stay<B: Uart>(&self, start: impl FnOnce() -> anyhow::Result<B>) -> anyhow::Result<()> {
-        let ready = self.ready_file.as_deref();
-        let ready = ready.map(|path| Output::open(path, &[], [""; 0]));
-        let ready = ready.transpose()?;
+        let ready = self.ready()?;
         let (end, ended) = channel();
         ctrlc::set_handler(move || {
             // Without a receiver the program ends already.

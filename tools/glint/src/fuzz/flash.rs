@@ -1,7 +1,9 @@
 //! The fuzz target of flash images.
 
 use crate::image::check_contents;
-use glint_core::flash::{self, Contents};
+use glint_core::demo::{Demo, Move};
+use glint_core::flash::{self, Contents, Kind};
+use glint_core::scene::{blocks, blocks_of, commands};
 use glint_core::wire::crc32;
 
 /// Reads a firmware with its header, and contents with all items. Returns whether the contents are valid.
@@ -15,7 +17,11 @@ pub fn run(input: &[u8]) -> bool {
         assert!(lengths.sum::<usize>() <= input.len());
         for item in contents.items() {
             assert!(contents.find(item.kind, item.name).is_some());
-            let _ = item.text();
+            match item.kind {
+                Kind::Mesh => drop(item.checked()),
+                Kind::Scene => drop(item.text().map(run_scene)),
+                Kind::List => drop(item.text().map(run_list)),
+            }
         }
         check_contents(&contents)
     });
@@ -23,6 +29,37 @@ pub fn run(input: &[u8]) -> bool {
         Ok(Ok(())) => true,
         Ok(Err(error)) => rejected(&error.to_string()),
         Err(error) => rejected(&error.to_string()),
+    }
+}
+
+/// Reads a scene as a board does before it shows the scene.
+fn run_scene(text: &str) {
+    for command in commands(text) {
+        match command {
+            Ok((_, command)) => assert!(command.mesh().is_none_or(|mesh| text.contains(mesh))),
+            Err(error) => drop(rejected(&error.to_string())),
+        }
+    }
+    let bits = blocks(commands(text).flatten().map(|(_, command)| command));
+    assert!(blocks_of(bits).count() > 0);
+}
+
+/// Shows the scenes of a list as a board does, with moves and holds, which the text determines.
+fn run_list(text: &str) {
+    let count = text.lines().count();
+    let mut demo = Demo::default();
+    demo.start(count);
+    let mut now = 0;
+    for byte in text.bytes() {
+        match byte % 8 {
+            0 => demo.go(Move::Next),
+            1 => demo.go(Move::Previous),
+            2 => demo.hold(now, true),
+            3 => demo.hold(now, false),
+            _ => now += u64::from(byte) << 6,
+        }
+        let number = demo.poll(now).or(demo.number());
+        assert!(number.is_none_or(|number| text.lines().nth(number).is_some()));
     }
 }
 

@@ -6,12 +6,12 @@ use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 
 /// Cycles within which a command is done.
-const LIMIT: u64 = 60_000_000;
+pub const LIMIT: u64 = 60_000_000;
 
 /// Cycles of a millisecond.
-const MS: u64 = 81_250;
+pub const MS: u64 = 81_250;
 /// Time in which the digits and LEDs follow: they change each half second.
-const PANEL: u64 = 600 * MS;
+pub const PANEL: u64 = 600 * MS;
 
 /// The built-in list.
 const SCENES: [&str; 5] = [
@@ -30,13 +30,13 @@ fn started() -> EmulatedBoard {
 }
 
 /// Sends a line and returns the output up to the next prompt, echo first.
-fn command(board: &mut EmulatedBoard, line: &str) -> String {
+pub fn command(board: &mut EmulatedBoard, line: &str) -> String {
     board.uart_write(format!("{line}\r").as_bytes());
     board.read_until(PROMPT, LIMIT).unwrap()
 }
 
 /// Presses a button, long enough to count.
-fn press(board: &mut EmulatedBoard, button: u8) {
+pub fn press(board: &mut EmulatedBoard, button: u8) {
     board.set_buttons(1 << button);
     board.run(40 * MS);
     board.set_buttons(0);
@@ -44,7 +44,7 @@ fn press(board: &mut EmulatedBoard, button: u8) {
 }
 
 /// The scene of the demo, from 1, and the whole answer of `demo`.
-fn turn(board: &mut EmulatedBoard) -> (usize, String) {
+pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     let answer = command(board, "demo");
     let line = answer.lines().find_map(|line| line.strip_prefix("scene "));
     let number = line.and_then(|line| line.split(' ').next()?.parse().ok());
@@ -52,7 +52,7 @@ fn turn(board: &mut EmulatedBoard) -> (usize, String) {
 }
 
 /// What the digits at the right show.
-fn right(board: &EmulatedBoard) -> [u8; 4] {
+pub fn right(board: &EmulatedBoard) -> [u8; 4] {
     *board.digits().last_chunk().expect("eight digits")
 }
 

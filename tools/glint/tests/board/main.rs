@@ -9,6 +9,7 @@ mod common;
 mod conversations;
 mod edges;
 mod fields;
+mod from_flash;
 mod gesture;
 mod meshes;
 mod objects;

@@ -1,0 +1,163 @@
+//! Boards in real time, with their monitor and pins.
+
+use super::inputs::{Hold, Levels};
+use super::message::Pins;
+use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
+use std::time::{Duration, Instant};
+
+/// Time of the board in ms that it runs at once.
+const SLICE_MS: u64 = 1;
+
+/// Delay of the board behind real time that it catches up. A longer delay stays.
+const MAX_DELAY: Duration = Duration::from_millis(50);
+
+/// A board for the live page. A read from its line passes time in which the board runs, at most as fast as in reality.
+pub trait Live: Board {
+    /// Whether the host reaches the monitor and the pins.
+    fn has_pins(&self) -> bool;
+
+    /// Sets buttons and switches, and returns the levels of all pins; `None` for a board without access to its pins.
+    fn pins(&mut self, levels: Levels) -> Option<Pins>;
+
+    /// The picture on the monitor, if it has changed since the last call.
+    ///
+    /// # Errors
+    /// The monitor shows no frame.
+    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError>;
+
+    /// Time in ms between two measurements on the console.
+    fn sample_period(&self) -> u64;
+}
+
+/// A simulated board in real time.
+pub struct LiveSimulation<S> {
+    board: SimulatedBoard<S>,
+    sample_period: u64,
+    hold: Hold,
+    /// A time, and the cycle of the board that belongs to it.
+    origin: (Instant, u64),
+    /// The number of the last vertical blanking that was looked at, and the picture shown then.
+    shown: (u64, Option<MonitorFrame>),
+}
+
+impl<S: Simulation> LiveSimulation<S> {
+    /// Takes a board that runs its firmware. `sample_period` is the time in ms between two measurements on its console.
+    pub fn new(mut board: SimulatedBoard<S>, sample_period: u64) -> Self {
+        let cycle = board.inner().cycles();
+        Self {
+            board,
+            sample_period,
+            hold: Hold::default(),
+            origin: (Instant::now(), cycle),
+            shown: (0, None),
+        }
+    }
+
+    /// Runs the board for a slice, when it is due.
+    fn step(&mut self) {
+        let simulation = self.board.inner();
+        let clock = u64::from(simulation.clock_hz());
+        let (start, cycle) = self.origin;
+        let board_time =
+            Duration::from_secs_f64((simulation.cycles() - cycle) as f64 / clock as f64);
+        let time = start.elapsed();
+        if board_time > time {
+            std::thread::sleep(board_time - time);
+        } else if time > board_time + MAX_DELAY {
+            self.origin = (Instant::now(), simulation.cycles());
+        }
+        simulation.run(clock / 1000 * SLICE_MS);
+    }
+}
+
+impl<S: Simulation> Board for LiveSimulation<S> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let before = bytes.len();
+        let end = self.now_ms() + wait_ms;
+        loop {
+            self.board.read(bytes, 0)?;
+            if bytes.len() > before || self.now_ms() >= end {
+                return Ok(());
+            }
+            self.step();
+        }
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+}
+
+impl<S: Simulation> Live for LiveSimulation<S> {
+    fn has_pins(&self) -> bool {
+        true
+    }
+
+    fn pins(&mut self, levels: Levels) -> Option<Pins> {
+        let buttons = self.hold.held(levels.buttons, self.board.now_ms());
+        let simulation = self.board.inner();
+        simulation.set_buttons(buttons);
+        simulation.set_switches(levels.switches);
+        Some(Pins {
+            leds: simulation.leds(),
+            digits: simulation.digits(),
+            buttons,
+            switches: levels.switches,
+        })
+    }
+
+    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError> {
+        let Some((number, frame)) = self.board.inner().new_frame(self.shown.0)? else {
+            return Ok(None);
+        };
+        self.shown.0 = number;
+        if self.shown.1.as_ref() == Some(&frame) {
+            return Ok(None);
+        }
+        self.shown.1 = Some(frame.clone());
+        Ok(Some(frame))
+    }
+
+    fn sample_period(&self) -> u64 {
+        self.sample_period
+    }
+}
+
+/// A board on a serial port: its console, and pictures on request.
+pub struct LiveSerial(pub SerialBoard);
+
+impl Board for LiveSerial {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.0.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        self.0.read(bytes, wait_ms)
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.0.now_ms()
+    }
+}
+
+impl Live for LiveSerial {
+    fn has_pins(&self) -> bool {
+        false
+    }
+
+    fn pins(&mut self, _levels: Levels) -> Option<Pins> {
+        None
+    }
+
+    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError> {
+        Ok(None)
+    }
+
+    fn sample_period(&self) -> u64 {
+        2000
+    }
+}

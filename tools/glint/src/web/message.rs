@@ -1,0 +1,162 @@
+//! Messages between the page and the server: JSON texts, and binary messages for pictures and uploads.
+
+use crate::board::MonitorFrame;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use tungstenite::Message;
+
+/// Bytes of a picture's message before its pixels.
+pub const PICTURE_HEAD: usize = 8;
+
+/// Maximum size of a message from the page in bytes; an upload comes in several messages.
+pub const MAX_MESSAGE: usize = 128 << 10;
+
+/// A command of the console with its purpose.
+#[derive(Clone, Debug, Serialize)]
+pub struct Entry {
+    /// The command.
+    pub name: String,
+    /// The text that the command `help` prints for it.
+    pub text: String,
+}
+
+/// The viewer that has control of the board, as another viewer sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Holder {
+    /// The viewer itself.
+    You,
+    /// Another viewer.
+    Other,
+    /// No viewer.
+    Nobody,
+}
+
+/// A message to the page.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub enum ToPage {
+    /// Properties of the board.
+    Board {
+        /// Name: `emulated`, `virtual` or a serial port.
+        name: String,
+        /// Whether the host reaches the monitor and the pins; otherwise a picture comes on request only.
+        has_pins: bool,
+    },
+    /// The lists of the firmware.
+    Lists {
+        /// Commands of the console.
+        commands: Vec<Entry>,
+        /// Meshes and scenes.
+        scenes: Vec<String>,
+    },
+    /// Output of the console.
+    Console {
+        /// The text, with the control sequences of a terminal.
+        text: String,
+    },
+    /// Levels of the board's pins.
+    Pins(Pins),
+    /// The viewer that has control.
+    Control {
+        /// The viewer.
+        holder: Holder,
+    },
+    /// Measurements of the board.
+    Sample {
+        /// Time of the board in ms.
+        ms: u64,
+        /// Reply to `stats json`; null before the first frame.
+        stats: Value,
+        /// Attitude of the motion sensor as a quaternion w, x, y, z.
+        attitude: Option<[f64; 4]>,
+    },
+    /// Reply to `help COMMAND`.
+    Help {
+        /// The command.
+        command: String,
+        /// Lines of the reply.
+        lines: Vec<String>,
+    },
+    /// Progress of a transfer in bytes.
+    Progress {
+        /// Bytes transferred so far.
+        done: u64,
+        /// Bytes in all.
+        all: u64,
+    },
+    /// A notice for the user.
+    Notice {
+        /// The text.
+        text: String,
+        /// Whether something has failed.
+        is_error: bool,
+    },
+}
+
+/// Levels of the board's pins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Pins {
+    /// The 16 LEDs, one bit each.
+    pub leds: u16,
+    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
+    pub digits: [u8; 8],
+    /// The pressed ones of the buttons 0 to 3, one bit each.
+    pub buttons: u8,
+    /// The 16 switches, one bit each.
+    pub switches: u16,
+}
+
+impl ToPage {
+    /// The message as it is sent.
+    #[must_use]
+    pub fn encoded(&self) -> Message {
+        let text = serde_json::to_string(self).expect("the messages have string keys only");
+        Message::text(text)
+    }
+}
+
+/// The binary message of a picture: width and height as 16-bit words, the picture's number as a 32-bit word, and the RGB565
+/// colours line by line as 16-bit words; little-endian.
+#[must_use]
+pub fn picture(frame: &MonitorFrame, number: u32) -> Message {
+    let mut bytes = Vec::with_capacity(PICTURE_HEAD + 2 * frame.pixels.len());
+    for side in [frame.width, frame.height] {
+        bytes.extend((side as u16).to_le_bytes());
+    }
+    bytes.extend(number.to_le_bytes());
+    bytes.extend(frame.pixels.iter().flat_map(|pixel| pixel.to_le_bytes()));
+    Message::binary(bytes)
+}
+
+/// A message from the page. All but `take`, `release` and `help` need control.
+#[derive(Clone, Debug, Deserialize, PartialEq)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum FromPage {
+    /// Takes control, if no viewer has it.
+    Take,
+    /// Gives control up.
+    Release,
+    /// Types a line on the console.
+    Command {
+        /// The line.
+        line: String,
+    },
+    /// Ends the running command.
+    Interrupt,
+    /// Asks for the description of a command.
+    Help {
+        /// The command.
+        command: String,
+    },
+    /// Sets the buttons.
+    Buttons {
+        /// The pressed ones of the buttons 0 to 3, one bit each.
+        pressed: u8,
+    },
+    /// Sets the switches.
+    Switches {
+        /// The 16 switches, one bit each.
+        on: u16,
+    },
+}

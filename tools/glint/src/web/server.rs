@@ -1,0 +1,369 @@
+//! Listens for browsers, checks their requests, and serves the files of the page.
+
+use super::hub::{Hub, MAX_VIEWERS};
+use super::inputs::Inputs;
+use super::live::Live;
+use super::message::ToPage;
+use super::session;
+use super::viewer::{self, Channels};
+use crate::board::BoardError;
+use std::io::{self, Read, Write};
+use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::sync_channel;
+use std::time::{Duration, Instant};
+use tungstenite::handshake::machine::TryParse;
+use tungstenite::handshake::server::{Request, create_response, write_response};
+use tungstenite::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
+
+/// Maximum size of the head of a request in bytes.
+const MAX_HEAD: usize = 8 << 10;
+/// Time-out of the head of a request.
+const HEAD_TIME: Duration = Duration::from_secs(5);
+/// Maximum number of open connections.
+const MAX_CONNECTIONS: usize = 4 * MAX_VIEWERS;
+/// Maximum number of commands that wait for the board.
+const MAX_REQUESTS: usize = 64;
+
+/// Media types of the files.
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+
+/// The files of the page: name, media type and content.
+const FILES: [(&str, &str, &str); 6] = [
+    ("", HTML, include_str!("../../web/index.html")),
+    ("page.css", CSS, include_str!("../../web/page.css")),
+    ("page.js", SCRIPT, include_str!("../../web/page.js")),
+    ("monitor.js", SCRIPT, include_str!("../../web/monitor.js")),
+    ("console.js", SCRIPT, include_str!("../../web/console.js")),
+    ("panel.js", SCRIPT, include_str!("../../web/panel.js")),
+];
+
+/// Header fields of all files: nothing comes from elsewhere, no other page shows this one, and the address, which has the token,
+/// stays here.
+const HEADER: [(&str, &str); 5] = [
+    (
+        "content-security-policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'; frame-ancestors 'none'; \
+         base-uri 'none'; form-action 'none'",
+    ),
+    ("referrer-policy", "no-referrer"),
+    ("x-content-type-options", "nosniff"),
+    ("cache-control", "no-store"),
+    ("connection", "close"),
+];
+
+/// State that the threads of the connections share.
+struct Shared {
+    channels: Channels,
+    address: SocketAddr,
+    token: String,
+    connections: AtomicUsize,
+}
+
+/// A server of the live page, which listens already.
+pub struct Server {
+    listener: TcpListener,
+    token: String,
+}
+
+impl Server {
+    /// Listens at an address; port 0 selects a free port.
+    ///
+    /// # Errors
+    /// The address is in use, or does not belong to this machine, or the system has no random numbers.
+    pub fn bind(address: SocketAddr) -> io::Result<Self> {
+        let mut token = [0; 16];
+        getrandom::fill(&mut token).map_err(io::Error::other)?;
+        Ok(Self {
+            listener: TcpListener::bind(address)?,
+            token: token.iter().map(|byte| format!("{byte:02x}")).collect(),
+        })
+    }
+
+    /// The address of the page, with the token that opens it.
+    ///
+    /// # Errors
+    /// The system does not tell the port.
+    pub fn url(&self) -> io::Result<String> {
+        Ok(format!(
+            "http://{}/{}/",
+            self.listener.local_addr()?,
+            self.token
+        ))
+    }
+
+    /// Serves the page of the board `name`, which runs its firmware, until `stop` is set.
+    ///
+    /// # Errors
+    /// The line to the board is broken.
+    pub fn run(
+        self,
+        board: &mut dyn Live,
+        name: &str,
+        stop: &AtomicBool,
+    ) -> Result<(), BoardError> {
+        let (requests, queue) = sync_channel(MAX_REQUESTS);
+        let shared = Arc::new(Shared {
+            channels: Channels {
+                hub: Hub::default(),
+                inputs: Inputs::default(),
+                requests,
+            },
+            address: self.listener.local_addr()?,
+            token: self.token,
+            connections: AtomicUsize::new(0),
+        });
+        let channels = &shared.channels;
+        channels.hub.send(&ToPage::Board {
+            name: name.to_owned(),
+            has_pins: board.has_pins(),
+        });
+        let listener = self.listener;
+        let served = Arc::clone(&shared);
+        // The thread ends with the program: it waits in `accept`.
+        std::thread::spawn(move || {
+            for stream in listener.incoming().flatten() {
+                accept(stream, &served);
+            }
+        });
+        session::run(board, &channels.hub, &channels.inputs, &queue, stop)
+    }
+}
+
+/// Serves a connection in a thread of its own. Connections above the limit are closed.
+fn accept(stream: TcpStream, shared: &Arc<Shared>) {
+    if shared.connections.fetch_add(1, Ordering::Relaxed) >= MAX_CONNECTIONS {
+        shared.connections.fetch_sub(1, Ordering::Relaxed);
+        return;
+    }
+    let shared = Arc::clone(shared);
+    std::thread::spawn(move || {
+        // An error concerns this connection only, which is closed.
+        let _ = serve(stream, &shared);
+        shared.connections.fetch_sub(1, Ordering::Relaxed);
+    });
+}
+
+/// A request that is refused: the status, and the reason with what was expected.
+#[derive(Debug, PartialEq, Eq)]
+struct Refused(StatusCode, &'static str);
+
+/// The answer to a request.
+#[derive(Debug, PartialEq, Eq)]
+enum Answer {
+    /// The file of this number.
+    File(usize),
+    /// The connection of a viewer.
+    Socket,
+}
+
+fn serve(mut stream: TcpStream, shared: &Shared) -> tungstenite::Result<()> {
+    stream.set_nodelay(true)?;
+    stream.set_write_timeout(Some(HEAD_TIME))?;
+    let head = read_head(&mut stream)?;
+    let answer = match &head {
+        Ok((request, _)) => answer(request, shared.address, &shared.token),
+        Err(Refused(status, text)) => Err(Refused(*status, text)),
+    };
+    match (answer, head) {
+        (Ok(Answer::File(number)), _) => {
+            let (_, media, content) = FILES[number];
+            write_file(&mut stream, StatusCode::OK, media, content)
+        }
+        (Ok(Answer::Socket), Ok((request, rest))) => match create_response(&request) {
+            Ok(response) => {
+                write_response(&mut stream, &response)?;
+                viewer::serve(stream, rest, &shared.channels)
+            }
+            Err(error) => {
+                let text = format!("expected a WebSocket request: {error}\n");
+                write_file(&mut stream, StatusCode::BAD_REQUEST, "text/plain", &text)
+            }
+        },
+        (Err(Refused(status, text)), _) | (_, Err(Refused(status, text))) => {
+            write_file(&mut stream, status, "text/plain", &format!("{text}\n"))
+        }
+    }
+}
+
+/// Reads the head of a request. Returns the request, and the bytes after its head.
+fn read_head(stream: &mut TcpStream) -> io::Result<Result<(Request, Vec<u8>), Refused>> {
+    let end = Instant::now() + HEAD_TIME;
+    let mut bytes = Vec::new();
+    loop {
+        match Request::try_parse(&bytes) {
+            Ok(Some((length, request))) => return Ok(Ok((request, bytes.split_off(length)))),
+            Ok(None) => {}
+            Err(_) => {
+                let expected = "expected a GET request of HTTP 1.1";
+                return Ok(Err(Refused(StatusCode::BAD_REQUEST, expected)));
+            }
+        }
+        if bytes.len() >= MAX_HEAD {
+            let status = StatusCode::REQUEST_HEADER_FIELDS_TOO_LARGE;
+            return Ok(Err(Refused(status, "expected a head of at most 8 KiB")));
+        }
+        let left = end.saturating_duration_since(Instant::now());
+        stream.set_read_timeout(Some(left.max(Duration::from_millis(1))))?;
+        let mut buffer = [0; 2048];
+        match stream.read(&mut buffer)? {
+            0 => return Err(io::ErrorKind::UnexpectedEof.into()),
+            count => bytes.extend_from_slice(&buffer[..count]),
+        }
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+    }
+}
+
+/// Checks a request to a server at `address`.
+fn answer(request: &Request, address: SocketAddr, token: &str) -> Result<Answer, Refused> {
+    let headers = request.headers();
+    let host = text(headers, header::HOST).unwrap_or_default();
+    if !is_host(host, address) {
+        let expected = "Host: expected the address that glint has printed";
+        return Err(Refused(StatusCode::FORBIDDEN, expected));
+    }
+    let mut parts = request.uri().path().splitn(3, '/').skip(1);
+    if !is_token(parts.next().unwrap_or_default(), token) {
+        let expected = "token: expected the address that glint has printed";
+        return Err(Refused(StatusCode::FORBIDDEN, expected));
+    }
+    let name = parts.next();
+    if name == Some("socket") {
+        let origin = text(headers, header::ORIGIN).unwrap_or_default();
+        if origin.strip_prefix("http://") != Some(host) {
+            let expected = "Origin: expected a page from this address";
+            return Err(Refused(StatusCode::FORBIDDEN, expected));
+        }
+        return Ok(Answer::Socket);
+    }
+    let file = FILES.iter().position(|(file, ..)| name == Some(file));
+    file.map(Answer::File)
+        .ok_or(Refused(StatusCode::NOT_FOUND, "no such file"))
+}
+
+/// The value of a header field that occurs once.
+fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
+    let mut values = headers.get_all(name).iter();
+    let value = values.next()?.to_str().ok()?;
+    values.next().is_none().then_some(value)
+}
+
+/// Whether a browser that was given the server's address sends `host`: this port, and `localhost` or an IP address. Another name may
+/// have been made to point here by another page.
+fn is_host(host: &str, address: SocketAddr) -> bool {
+    let (name, port) = match host.rsplit_once(':') {
+        Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
+        _ => (host, Some(80)),
+    };
+    let number = name.trim_start_matches('[').trim_end_matches(']');
+    let is_number = number
+        .parse::<IpAddr>()
+        .is_ok_and(|ip| address.ip().is_unspecified() || ip == address.ip());
+    port == Some(address.port()) && (name == "localhost" || is_number)
+}
+
+/// Compares in a time that does not depend on the first difference.
+fn is_token(found: &str, token: &str) -> bool {
+    let differences = found
+        .bytes()
+        .zip(token.bytes())
+        .fold(0, |all, (a, b)| all | (a ^ b));
+    found.len() == token.len() && differences == 0
+}
+
+fn write_file(
+    stream: &mut TcpStream,
+    status: StatusCode,
+    media: &'static str,
+    content: &str,
+) -> tungstenite::Result<()> {
+    let mut response = Response::new(());
+    *response.status_mut() = status;
+    let headers = response.headers_mut();
+    headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(media));
+    headers.insert(header::CONTENT_LENGTH, HeaderValue::from(content.len()));
+    for (name, value) in HEADER {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    write_response(&mut *stream, &response)?;
+    stream.write_all(content.as_bytes())?;
+    // What the browser still sends is read, so that the system does not drop the answer.
+    stream.shutdown(std::net::Shutdown::Write)?;
+    let mut rest = [0; 4096];
+    for _ in 0..MAX_CONNECTIONS {
+        if stream.read(&mut rest)? == 0 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn request(path: &str, fields: &[(&'static str, &'static str)]) -> Request {
+        let mut request = Request::new(());
+        *request.uri_mut() = path.parse().unwrap();
+        for (name, value) in fields {
+            let value = HeaderValue::from_static(value);
+            request.headers_mut().append(*name, value);
+        }
+        request
+    }
+
+    #[test]
+    fn requests_are_checked() {
+        let address = "127.0.0.1:8080".parse().unwrap();
+        let asked = |path, fields: &[_]| {
+            answer(&request(path, fields), address, "00ff").map_err(|refused| refused.0)
+        };
+        let host = ("host", "127.0.0.1:8080");
+        let page = ("origin", "http://127.0.0.1:8080");
+        assert_eq!(asked("/00ff/", &[host]), Ok(Answer::File(0)));
+        assert_eq!(asked("/00ff/page.js", &[host]), Ok(Answer::File(2)));
+        assert_eq!(asked("/00ff/socket", &[host, page]), Ok(Answer::Socket));
+        assert_eq!(
+            asked("/00ff/", &[("host", "localhost:8080")]),
+            Ok(Answer::File(0))
+        );
+        assert_eq!(asked("/00ff/other", &[host]), Err(StatusCode::NOT_FOUND));
+        assert_eq!(asked("/00ff", &[host]), Err(StatusCode::NOT_FOUND));
+        let forbidden = Err(StatusCode::FORBIDDEN);
+        for path in ["/", "/00fe/", "/00f/", "/00ff0/", "//00ff/"] {
+            assert_eq!(asked(path, &[host]), forbidden, "{path}");
+        }
+        for other in [
+            "127.0.0.1",
+            "127.0.0.1:8081",
+            "rebound.example:8080",
+            "10.0.0.1:8080",
+            "",
+        ] {
+            assert_eq!(asked("/00ff/", &[("host", other)]), forbidden, "{other}");
+        }
+        assert_eq!(asked("/00ff/", &[host, host]), forbidden);
+        assert_eq!(asked("/00ff/socket", &[host]), forbidden);
+        for origin in [
+            "http://localhost:8080",
+            "https://127.0.0.1:8080",
+            "null",
+            "http://other.example",
+        ] {
+            let asked = asked("/00ff/socket", &[host, ("origin", origin)]);
+            assert_eq!(asked, forbidden, "{origin}");
+        }
+    }
+
+    #[test]
+    fn a_server_on_all_addresses_accepts_each_of_them_but_no_name() {
+        let all = "0.0.0.0:80".parse().unwrap();
+        assert!(is_host("192.168.1.7", all) && is_host("[fe80::1]:80", all));
+        assert!(!is_host("rebound.example", all) && !is_host("192.168.1.7:81", all));
+    }
+}

@@ -1,0 +1,256 @@
+//! Runs the board, its console and its transfers for the page.
+
+use super::hub::Hub;
+use super::inputs::Inputs;
+use super::live::Live;
+use super::message::{Entry, Pins, ToPage};
+use crate::board::{Board, BoardError};
+use crate::console::{self, Console, ConsoleError};
+use glint_core::console::PROMPT;
+use serde_json::Value;
+use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, Instant};
+
+/// Longest time of the board in ms between two looks at the page's wishes.
+const LOOK_MS: u64 = 2;
+
+/// The key Ctrl-C, which ends the running command.
+const INTERRUPT: &[u8] = b"\x03";
+
+/// Time-out of a reply to the server's own commands, in ms of the board's time.
+const PATIENCE_MS: u64 = 3000;
+
+/// A wish of a page.
+#[derive(Debug)]
+pub enum Request {
+    /// Types a line on the console.
+    Command(String),
+    /// Ends the running command.
+    Interrupt,
+    /// Asks for the description of a command.
+    Help(String),
+}
+
+/// A board that shows its picture and its pins while its line is read.
+struct Watched<'a> {
+    board: &'a mut dyn Live,
+    hub: &'a Hub,
+    inputs: &'a Inputs,
+    stop: &'a AtomicBool,
+    pins: Option<Pins>,
+}
+
+impl Watched<'_> {
+    /// Passes levels and pictures.
+    fn exchange(&mut self) -> Result<(), BoardError> {
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(io::Error::from(io::ErrorKind::Interrupted).into());
+        }
+        let pins = self.board.pins(self.inputs.take());
+        if pins != self.pins {
+            self.pins = pins;
+            pins.into_iter().for_each(|pins| self.hub.send_pins(pins));
+        }
+        if let Some(frame) = self.board.picture()? {
+            self.hub.show(&frame);
+        }
+        Ok(())
+    }
+}
+
+impl Board for Watched<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let before = bytes.len();
+        let end = self.now_ms() + wait_ms;
+        loop {
+            self.exchange()?;
+            let left = end.saturating_sub(self.now_ms());
+            self.board.read(bytes, left.min(LOOK_MS))?;
+            if bytes.len() > before || left == 0 {
+                return Ok(());
+            }
+        }
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+}
+
+/// Runs a board whose firmware waits for a command, until `stop` is set.
+///
+/// # Errors
+/// The line to the board is broken.
+pub fn run(
+    board: &mut dyn Live,
+    hub: &Hub,
+    inputs: &Inputs,
+    requests: &Receiver<Request>,
+    stop: &AtomicBool,
+) -> Result<(), BoardError> {
+    let mut session = Session {
+        period: Duration::from_millis(board.sample_period()),
+        board: Watched {
+            board,
+            hub,
+            inputs,
+            stop,
+            pins: None,
+        },
+        hub,
+        sampled: Instant::now(),
+        end: Vec::new(),
+    };
+    match session.serve(requests) {
+        _ if stop.load(Ordering::Relaxed) => Ok(()),
+        result => result,
+    }
+}
+
+struct Session<'a> {
+    board: Watched<'a>,
+    hub: &'a Hub,
+    period: Duration,
+    /// Time of the last measurement.
+    sampled: Instant,
+    /// The end of the console's output; empty after commands of the server, which end with the prompt.
+    end: Vec<u8>,
+}
+
+impl Session<'_> {
+    fn serve(&mut self, requests: &Receiver<Request>) -> Result<(), BoardError> {
+        self.ask(Self::send_lists)?;
+        let mut output = Vec::new();
+        loop {
+            self.board.read(&mut output, LOOK_MS)?;
+            self.pass(&mut output)?;
+            let next = requests.try_recv().ok();
+            if !self.is_idle() {
+                // The user's keys go to the program that runs, as on a terminal.
+                match next {
+                    Some(Request::Command(line)) => self.type_line(&line)?,
+                    Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
+                    Some(Request::Help(_)) | None => {}
+                }
+                continue;
+            }
+            match next {
+                Some(Request::Command(line)) => self.type_line(&line)?,
+                Some(Request::Help(command)) => {
+                    self.ask(|console, hub| send_help(console, hub, command))?;
+                }
+                Some(Request::Interrupt) => {}
+                None if self.sampled.elapsed() >= self.period && self.hub.has_viewers() => {
+                    self.ask(send_sample)?;
+                    self.sampled = Instant::now();
+                }
+                None => {}
+            }
+        }
+    }
+
+    /// Passes output of the console to the viewers.
+    fn pass(&mut self, output: &mut Vec<u8>) -> Result<(), BoardError> {
+        if output.is_empty() {
+            return Ok(());
+        }
+        self.hub.send_console(output);
+        self.end.append(output);
+        // A transfer that was typed by hand has no other side.
+        let is_transfer = self.end.ends_with(b"\nready\r\n");
+        let kept = self.end.len().saturating_sub(2 * PROMPT.len());
+        self.end.drain(..kept);
+        if is_transfer {
+            Console::new(&mut self.board).reset_transfer()?;
+        }
+        Ok(())
+    }
+
+    /// Whether the console waits for a command.
+    fn is_idle(&self) -> bool {
+        self.end.is_empty() || self.end.ends_with(PROMPT.as_bytes())
+    }
+
+    fn type_line(&mut self, line: &str) -> Result<(), BoardError> {
+        self.end = line.into();
+        self.board.write(format!("\0{line}\r").as_bytes())
+    }
+
+    /// Lets the server use the console, whose output the viewers do not see, up to the next prompt.
+    fn ask(
+        &mut self,
+        task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), ConsoleError>,
+    ) -> Result<(), BoardError> {
+        let mut console = Console::new(&mut self.board).patience(PATIENCE_MS);
+        let result = task(&mut console, self.hub).and_then(|()| console.greet().map(drop));
+        self.end.clear();
+        match result {
+            Ok(()) => Ok(()),
+            Err(ConsoleError::Board(error)) => Err(error),
+            Err(error) => {
+                self.hub.notify(error.to_string(), true);
+                Ok(())
+            }
+        }
+    }
+
+    /// Sends the lists of the firmware.
+    fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), ConsoleError> {
+        console.synchronise()?;
+        let entry = |line: &String| {
+            let (name, text) = line.split_once(' ')?;
+            let (name, text) = (name.to_owned(), text.trim().to_owned());
+            (!name.starts_with('`')).then_some(Entry { name, text })
+        };
+        let commands = console.command("help")?.iter().filter_map(entry).collect();
+        let scene =
+            |line: &String| Some(line.strip_prefix("scene ")?.split(' ').next()?.to_owned());
+        let scenes = optional(console.command("scene"))?;
+        let scenes = scenes.iter().filter_map(scene).collect();
+        hub.send(&ToPage::Lists { commands, scenes });
+        Ok(())
+    }
+}
+
+/// The lines of a reply, none if the firmware refuses the command.
+fn optional(reply: Result<Vec<String>, ConsoleError>) -> Result<Vec<String>, ConsoleError> {
+    match reply {
+        Err(ConsoleError::Refused { .. }) => Ok(Vec::new()),
+        reply => reply,
+    }
+}
+
+fn send_help(
+    console: &mut Console<Watched>,
+    hub: &Hub,
+    command: String,
+) -> Result<(), ConsoleError> {
+    let lines = optional(console.command(&format!("help {command}")))?;
+    hub.send(&ToPage::Help { command, lines });
+    Ok(())
+}
+
+fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), ConsoleError> {
+    let stats = optional(console.command("stats json"))?;
+    let stats = stats
+        .first()
+        .and_then(|line| serde_json::from_str(line).ok());
+    let lines = optional(console.command("imu"))?;
+    let attitude: Option<String> = console::value("imu", &lines, "attitude").ok();
+    let attitude = attitude.and_then(|text| {
+        let numbers: Result<Vec<f64>, _> = text.split(' ').map(str::parse).collect();
+        <[f64; 4]>::try_from(numbers.ok()?).ok()
+    });
+    hub.send(&ToPage::Sample {
+        ms: console.board().now_ms(),
+        stats: stats.unwrap_or(Value::Null),
+        attitude,
+    });
+    Ok(())
+}

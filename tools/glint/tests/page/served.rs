@@ -1,0 +1,85 @@
+//! `glint board --web` in a process of its own, with an emulated board.
+
+use std::io::{BufRead, BufReader};
+use std::net::TcpStream;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::http::HeaderValue;
+use tungstenite::{Message, WebSocket};
+
+/// Time-out of an answer.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A board with its page.
+pub struct Served {
+    child: Child,
+    /// Address of the page.
+    pub url: String,
+}
+
+impl Served {
+    /// Starts a board, whose ready file has this name.
+    pub fn start(name: &str) -> Self {
+        let ready = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(["board", "--web", "--ready-file"])
+            .arg(&ready)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let url = lines.next().unwrap().unwrap();
+        Self { child, url }
+    }
+
+    /// Host and port of the page.
+    pub fn host(&self) -> &str {
+        self.url.split('/').nth(2).unwrap()
+    }
+
+    pub fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(self.host()).unwrap();
+        stream.set_read_timeout(Some(PATIENCE)).unwrap();
+        stream.set_write_timeout(Some(PATIENCE)).unwrap();
+        stream
+    }
+
+    /// Opens the page's socket as a program that sends `origin`.
+    pub fn socket(&self, origin: &str) -> tungstenite::Result<WebSocket<TcpStream>> {
+        let url = format!("{}socket", self.url.replace("http:", "ws:"));
+        let mut request = url.into_client_request().unwrap();
+        let origin = HeaderValue::from_str(origin).unwrap();
+        request.headers_mut().insert("origin", origin);
+        match tungstenite::client(request, self.connect()) {
+            Ok((socket, _)) => Ok(socket),
+            Err(tungstenite::HandshakeError::Failure(error)) => Err(error),
+            Err(error) => panic!("{error}"),
+        }
+    }
+
+    /// The page's socket, opened as the page does.
+    pub fn viewer(&self) -> WebSocket<TcpStream> {
+        self.socket(&format!("http://{}", self.host())).unwrap()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        // The program has ended already, if the test has ended it.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Reads texts until one contains `wanted`, and returns it.
+pub fn wait_for(socket: &mut WebSocket<TcpStream>, wanted: &str) -> String {
+    loop {
+        if let Message::Text(text) = socket.read().unwrap()
+            && text.contains(wanted)
+        {
+            return text.to_string();
+        }
+    }
+}

@@ -1,0 +1,93 @@
+// The panel: LEDs, digits, switches and buttons.
+const SVG = "http://www.w3.org/2000/svg";
+// The segments a to g in a box of 60 by 100, and the point.
+const SEGMENTS = [
+  "M14 4H46L40 12H20Z", "M54 8V46L50 50L44 44V18Z", "M54 54V92L44 82V56L50 50Z", "M14 96H46L40 88H20Z",
+  "M6 54V92L16 82V56L10 50Z", "M6 8V46L10 50L16 44V18Z", "M16 46H44L48 50L44 54H16L12 50Z",
+];
+// The purpose of each button, of docs/boards.md.
+const BUTTONS = ["fire 1", "fire 2", "left: calibrate the sensor", "right: recentre the camera"];
+const VALUES = [0x3f, 0x06, 0x5b, 0x4f, 0x66, 0x6d, 0x7d, 0x07, 0x7f, 0x6f, 0x77, 0x7c, 0x39, 0x5e, 0x79, 0x71];
+
+function shape(name, attributes) {
+  const made = document.createElementNS(SVG, name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  return made;
+}
+
+function digit() {
+  const made = shape("svg", { viewBox: "0 0 72 100", "aria-hidden": "true" });
+  made.append(...SEGMENTS.map((d) => shape("path", { d })), shape("circle", { cx: 65, cy: 91, r: 6 }));
+  return made;
+}
+
+// The digits as text: `-` for segments that are no hexadecimal digit.
+function text(segments) {
+  const character = (lit) => (lit & 0x7f ? (VALUES.indexOf(lit & 0x7f).toString(16).replace("-1", "-")) : " ");
+  return segments.map((lit) => character(lit) + (lit & 0x80 ? "." : "")).join("");
+}
+
+export function startPanel(send) {
+  const element = (id) => document.getElementById(id);
+  const digits = Array.from({ length: 8 }, digit);
+  const [left, right] = [document.createElement("div"), document.createElement("div")];
+  left.append(...digits.slice(0, 4));
+  right.append(...digits.slice(4));
+  element("digits").append(left, right);
+  const leds = Array.from({ length: 16 }, () => document.createElement("span"));
+  element("leds").append(...leds.toReversed());
+
+  const switches = Array.from({ length: 16 }, (_, number) => {
+    const box = document.createElement("input");
+    box.type = "checkbox";
+    box.setAttribute("role", "switch");
+    box.setAttribute("aria-label", `switch ${number}`);
+    box.addEventListener("change", () => {
+      const on = switches.reduce((all, box, bit) => all | (box.checked << bit), 0);
+      send({ type: "switches", on });
+    });
+    return box;
+  });
+  for (const [number, box] of [...switches.entries()].toReversed()) {
+    const label = document.createElement("label");
+    label.append(box, String(number));
+    element("switches").append(label);
+  }
+
+  let pressed = 0;
+  const press = (number, isDown) => {
+    const next = isDown ? pressed | (1 << number) : pressed & ~(1 << number);
+    if (next !== pressed) send({ type: "buttons", pressed: (pressed = next) });
+  };
+  const isKey = ({ key }) => key === " " || key === "Enter";
+  const buttons = BUTTONS.map((purpose, number) => {
+    const button = document.createElement("button");
+    button.type = "button";
+    button.textContent = `BTN${number}`;
+    button.title = purpose;
+    button.setAttribute("aria-label", `button ${number}, ${purpose}`);
+    button.addEventListener("pointerdown", (event) => {
+      button.setPointerCapture(event.pointerId);
+      press(number, true);
+    });
+    for (const end of ["pointerup", "pointercancel", "blur"]) button.addEventListener(end, () => press(number, false));
+    button.addEventListener("keydown", (event) => isKey(event) && press(number, true));
+    button.addEventListener("keyup", (event) => isKey(event) && press(number, false));
+    return button;
+  });
+  element("buttons").append(...buttons);
+
+  function show(pins) {
+    leds.forEach((led, bit) => led.classList.toggle("lit", Boolean((pins.leds >> bit) & 1)));
+    const lit = leds.flatMap((_, bit) => ((pins.leds >> bit) & 1 ? [bit] : []));
+    element("leds").setAttribute("aria-label", lit.length ? `LEDs lit: ${lit.join(" ")}` : "LEDs: none lit");
+    pins.digits.forEach((lit, number) => {
+      [...digits[number].children].forEach((segment, bit) => segment.classList.toggle("lit", Boolean((lit >> bit) & 1)));
+    });
+    element("digits").setAttribute("aria-label", `Digits: ${text(pins.digits)}`);
+    switches.forEach((box, bit) => (box.checked = Boolean((pins.switches >> bit) & 1)));
+    buttons.forEach((button, bit) => button.setAttribute("aria-pressed", Boolean((pins.buttons >> bit) & 1)));
+  }
+
+  return { show };
+}
