@@ -38,13 +38,18 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
 /// As [`polygons`] and [`convert::convert`].
 pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
-    if !is_generated(name) && Format::of(path)? == Format::Glm {
-        let mesh = formats::read_file(path)?;
-        glm::check_file(&mesh).map_err(|error| error.in_path(path))?;
-        return Ok(Model { mesh, report: None });
-    }
+    let polygons = if is_generated(name) {
+        polygons(name)?
+    } else {
+        let (format, mesh) = formats::read_mesh(path)?;
+        if format == Format::Glm {
+            glm::check_file(&mesh).map_err(|error| error.in_path(path))?;
+            return Ok(Model { mesh, report: None });
+        }
+        formats::parse(path, format, &mesh)?
+    };
     let (mesh, report) =
-        convert::convert(&polygons(name)?, options).map_err(|error| error.in_path(path))?;
+        convert::convert(&polygons, options).map_err(|error| error.in_path(path))?;
     Ok(Model {
         mesh,
         report: Some(report),

@@ -43,6 +43,29 @@ impl Image {
         Picture::new(self.width as usize, self.height as usize, rgb)
     }
 
+    /// The picture with one pixel for each `factor`×`factor` pixels: the mean of their channels of 8 bits, rounded to nearest. Pixels
+    /// beyond the last whole block are left out.
+    pub fn reduced(&self, factor: usize) -> Picture {
+        let factor = factor.max(1);
+        let (wide, whole) = (self.width as usize, self.picture());
+        let (width, height) = (wide / factor, self.height as usize / factor);
+        let count = (factor * factor) as u32;
+        let mean = |x: usize, y: usize, channel: usize| {
+            let rows = (y * factor..(y + 1) * factor)
+                .map(|row| &whole.rgb()[3 * (row * wide + x * factor)..][..3 * factor]);
+            let sum: u32 = rows
+                .flat_map(|row| row.iter().skip(channel).step_by(3))
+                .map(|&value| u32::from(value))
+                .sum();
+            ((sum + count / 2) / count) as u8
+        };
+        let rgb = (0..height).flat_map(|y| {
+            let mean = &mean;
+            (0..width).flat_map(move |x| (0..3).map(move |channel| mean(x, y, channel)))
+        });
+        Picture::new(width, height, rgb.collect())
+    }
+
     /// Writes the distance along the camera's axis n in world units, as one little-endian f32 a pixel. A pixel without a surface,
     /// whose depth code is 0, gets +inf.
     ///
@@ -110,4 +133,26 @@ fn first(images: &[Image]) -> io::Result<&Image> {
             "expected at least one frame, found none",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Image;
+
+    /// Blocks of 2×2 pixels: all black, all white, and one white of four.
+    #[test]
+    fn a_reduced_picture_has_the_means() {
+        let image = Image {
+            width: 6,
+            height: 2,
+            colour: vec![
+                0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, //
+                0, 0, 0xFFFF, 0xFFFF, 0, 0,
+            ],
+            depth: Vec::new(),
+        };
+        let rgb = [[0; 3], [255; 3], [64; 3]].concat();
+        assert_eq!(image.reduced(2).rgb(), rgb);
+        assert_eq!(image.reduced(1).rgb(), image.picture().rgb());
+    }
 }

@@ -73,6 +73,7 @@ fn the_commands_make_the_pictures() {
         let arguments = words(arguments);
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(&arguments)
+            .arg("--force")
             .current_dir(&folder)
             .output()
             .unwrap();

@@ -56,6 +56,7 @@ fn the_commands_produce_their_pictures() {
         };
         let stats = folder.join("stats.json");
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+            .arg("--force")
             .args(command.iter().map(|word| {
                 if word == value(&command, "--out") {
                     made.as_os_str()

@@ -54,6 +54,7 @@ fn every_picture_shows_something() {
         let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
         let output = command
             .args(arguments)
+            .arg("--force")
             .current_dir(&folder)
             .output()
             .unwrap();

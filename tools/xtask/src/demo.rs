@@ -15,7 +15,15 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     firmware::build(Board::Virtual, &[])?;
-    tool("glint", "glint", "demo", arguments)
+    // The usual folder is the demo's own.
+    let mut arguments = arguments.to_vec();
+    if !arguments
+        .iter()
+        .any(|argument| argument.starts_with("--out"))
+    {
+        arguments.push("--force".to_owned());
+    }
+    tool("glint", "glint", "demo", &arguments)
 }
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. For the page `raymarch` it also

@@ -14,6 +14,7 @@ mod resources;
 mod run;
 mod scenes;
 mod test;
+mod walk;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -103,6 +104,12 @@ enum Task {
         #[arg(long, conflicts_with_all = ["blocks", "tree"])]
         write: bool,
     },
+    /// Build the virtual board for each scene, and with each single block; fail if one does not answer, or does not draw its scene as
+    /// the complete build does, in as many cycles at most
+    Walk {
+        /// Builds to walk: names of scenes, and `only-BLOCK` [default: all]
+        builds: Vec<String>,
+    },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
         /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`; or `pages`: rebuild all pages from their tables
@@ -152,6 +159,7 @@ fn main() -> Result<()> {
         Task::Test { clock: None } => test::test(),
         Task::Test { clock: Some(clock) } => test::test_at_clock(&clock),
         Task::Modules => modules::check(),
+        Task::Walk { builds } => walk::set_up_and_walk(&builds),
         Task::Resources {
             blocks,
             route,

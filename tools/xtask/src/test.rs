@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board};
-use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes};
+use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -37,7 +37,6 @@ pub fn test() -> Result<()> {
             results.add(resources::check_clock_rates().map(|()| 1));
         });
         firmware::build(Board::Virtual, &[])?;
-        firmware::build(Board::Virtual, &["peers"])?;
         results.add(pac::generate(true).map(|()| 1));
         results.add(scenes::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
@@ -54,6 +53,8 @@ pub fn test() -> Result<()> {
                 "glint-firmware",
                 "--target",
                 firmware::TARGET,
+                "--features",
+                "peers",
                 "--",
                 "-D",
                 "warnings",
@@ -61,6 +62,7 @@ pub fn test() -> Result<()> {
         ));
         results.add(documentation());
         results.add(cargo("build of the tests", &["test", "--no-run"]));
+        scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)).map(|()| 1)));
         models.recv().expect("the gateware's checks do not panic");
         results.add(cargo_tests(&[], &[]));
         Ok(())

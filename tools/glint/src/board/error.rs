@@ -21,12 +21,27 @@ pub enum BoardError {
         found: usize,
     },
     /// The serial port cannot be opened.
-    #[error("{port}: expected a serial port, found: {source}")]
+    #[error(
+        "{port}: expected `emulated`, `virtual` or a serial port, found: {source}; this host has {ports}"
+    )]
     Open {
         /// Name of the port.
         port: String,
+        /// The ports of this host.
+        ports: String,
         /// Error of the operating system.
         source: serialport::Error,
+    },
+    /// The serial ports of this host cannot be listed.
+    #[error("the serial ports cannot be listed: {0}")]
+    Ports(serialport::Error),
+    /// No serial port, or more than one, is probably a board's.
+    #[error(
+        "serial: expected one port with the USB bridge of a board, found {found}; --board PORT selects one"
+    )]
+    Guess {
+        /// The ports of this host.
+        found: String,
     },
     /// Reading from or writing to the serial line failed.
     #[error("serial line: {0}")]

@@ -3,6 +3,7 @@
 mod error;
 mod line;
 mod name;
+mod ports;
 mod serial;
 mod simulated;
 
@@ -10,5 +11,6 @@ pub use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
 pub use error::BoardError;
 pub use line::{Board, Memory};
 pub use name::{BoardName, ModelOrBoard};
+pub use ports::{Port, ports};
 pub use serial::SerialBoard;
-pub use simulated::{SimulatedBoard, Simulation, built_firmware};
+pub use simulated::{Meter, SimulatedBoard, Simulation, built_firmware};

@@ -11,7 +11,7 @@ pub enum BoardName {
     Emulated,
     /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any other name: a serial port, such as `/dev/ttyUSB1`.
+    /// Any other name: a serial port, such as `/dev/ttyUSB1`, or `serial` for the one that is probably a board's.
     Serial(String),
 }
 

@@ -2,10 +2,13 @@
 
 use super::error::BoardError;
 use super::line::Board;
+use super::ports;
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
 use std::time::{Duration, Instant};
 
+/// Name that stands for the port that is probably a board's.
+const GUESS: &str = "serial";
 /// Shortest time-out of a read from the port, so that a loop of reads does not keep a core busy.
 const SHORTEST: Duration = Duration::from_millis(1);
 
@@ -16,16 +19,21 @@ pub struct SerialBoard {
 }
 
 impl SerialBoard {
-    /// Opens a port.
+    /// Opens a port; `serial` stands for the one that is probably a board's.
     ///
     /// # Errors
-    /// [`BoardError::Open`] for a port that does not exist or is in use.
+    /// [`BoardError::Open`] for a port that does not exist or is in use, [`BoardError::Guess`] if no port can be guessed.
     pub fn open(name: &str, baud: u32) -> Result<Self, BoardError> {
+        if name == GUESS {
+            return Self::open(&ports::guess()?, baud);
+        }
         let port = serialport::new(name, baud)
             .timeout(SHORTEST)
             .open()
             .map_err(|source| BoardError::Open {
                 port: name.to_owned(),
+                ports: ports::ports()
+                    .map_or_else(|error| error.to_string(), |ports| ports::summary(&ports)),
                 source,
             })?;
         Ok(Self {

@@ -4,6 +4,8 @@ use super::error::BoardError;
 use super::line::{Board, Memory};
 use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use virtual_board::pty::Uart;
 use virtual_board::virtual_flash::Flash;
 use virtual_board::virtual_image_sensor::ImageSensor;
@@ -80,30 +82,65 @@ pub trait Simulation {
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
 }
 
+/// Methods of [`Simulation`] that a board has under the same names.
+macro_rules! own_methods {
+    () => {
+        fn run(&mut self, cycles: u64) {
+            self.run(cycles);
+        }
+
+        fn cycles(&self) -> u64 {
+            self.cycles()
+        }
+
+        fn clock_hz(&self) -> u32 {
+            self.clock_hz()
+        }
+
+        fn uart_write(&mut self, bytes: &[u8]) {
+            self.uart_write(bytes);
+        }
+
+        fn uart_queued(&self) -> usize {
+            self.uart_queued()
+        }
+
+        fn uart_read(&mut self, output: &mut Vec<u8>) {
+            self.uart_read(output);
+        }
+
+        fn digits(&self) -> [u8; 8] {
+            self.digits()
+        }
+
+        fn set_buttons(&mut self, pressed: u8) {
+            self.set_buttons(pressed);
+        }
+
+        fn set_switches(&mut self, on: u16) {
+            self.set_switches(on);
+        }
+
+        fn leds(&self) -> u16 {
+            self.leds()
+        }
+
+        fn plug(&mut self, sensor: Wires) {
+            self.plug(sensor);
+        }
+
+        fn plug_flash(&mut self, flash: Flash) {
+            self.plug_flash(flash);
+        }
+
+        fn plug_image_sensor(&mut self, sensor: ImageSensor) {
+            self.plug_image_sensor(sensor);
+        }
+    };
+}
+
 impl Simulation for VirtualBoard {
-    fn run(&mut self, cycles: u64) {
-        self.run(cycles);
-    }
-
-    fn cycles(&self) -> u64 {
-        self.cycles()
-    }
-
-    fn clock_hz(&self) -> u32 {
-        self.clock_hz()
-    }
-
-    fn uart_write(&mut self, bytes: &[u8]) {
-        self.uart_write(bytes);
-    }
-
-    fn uart_queued(&self) -> usize {
-        self.uart_queued()
-    }
-
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        self.uart_read(output);
-    }
+    own_methods!();
 
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
         Ok(self.ddr_read(address, bytes)?)
@@ -111,34 +148,6 @@ impl Simulation for VirtualBoard {
 
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
         Ok(self.ddr_write(address, bytes)?)
-    }
-
-    fn plug(&mut self, sensor: Wires) {
-        self.plug(sensor);
-    }
-
-    fn plug_flash(&mut self, flash: Flash) {
-        self.plug_flash(flash);
-    }
-
-    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
-        self.plug_image_sensor(sensor);
-    }
-
-    fn digits(&self) -> [u8; 8] {
-        self.digits()
-    }
-
-    fn set_buttons(&mut self, pressed: u8) {
-        self.set_buttons(pressed);
-    }
-
-    fn set_switches(&mut self, on: u16) {
-        self.set_switches(on);
-    }
-
-    fn leds(&self) -> u16 {
-        self.leds()
     }
 
     fn new_frame(&mut self, last: u64) -> Result<Option<(u64, MonitorFrame)>, BoardError> {
@@ -167,29 +176,7 @@ impl Simulation for VirtualBoard {
 }
 
 impl Simulation for EmulatedBoard {
-    fn run(&mut self, cycles: u64) {
-        self.run(cycles);
-    }
-
-    fn cycles(&self) -> u64 {
-        self.cycles()
-    }
-
-    fn clock_hz(&self) -> u32 {
-        self.clock_hz()
-    }
-
-    fn uart_write(&mut self, bytes: &[u8]) {
-        self.uart_write(bytes);
-    }
-
-    fn uart_queued(&self) -> usize {
-        self.uart_queued()
-    }
-
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        self.uart_read(output);
-    }
+    own_methods!();
 
     fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
         Ok(EmulatedBoard::read_memory(self, address, bytes)?)
@@ -197,34 +184,6 @@ impl Simulation for EmulatedBoard {
 
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
         Ok(self.write_memory(address, bytes)?)
-    }
-
-    fn plug(&mut self, sensor: Wires) {
-        self.plug(sensor);
-    }
-
-    fn plug_flash(&mut self, flash: Flash) {
-        self.plug_flash(flash);
-    }
-
-    fn plug_image_sensor(&mut self, sensor: ImageSensor) {
-        self.plug_image_sensor(sensor);
-    }
-
-    fn digits(&self) -> [u8; 8] {
-        self.digits()
-    }
-
-    fn set_buttons(&mut self, pressed: u8) {
-        self.set_buttons(pressed);
-    }
-
-    fn set_switches(&mut self, on: u16) {
-        self.set_switches(on);
-    }
-
-    fn leds(&self) -> u16 {
-        self.leds()
     }
 
     fn new_frame(&mut self, last: u64) -> Result<Option<(u64, MonitorFrame)>, BoardError> {
@@ -242,15 +201,44 @@ impl Simulation for EmulatedBoard {
     }
 }
 
+/// Reads the cycles of a simulated board from another thread.
+#[derive(Clone, Debug)]
+pub struct Meter {
+    cycles: Arc<AtomicU64>,
+    clock_hz: u32,
+}
+
+impl Meter {
+    /// Cycles of the system clock since the start.
+    pub fn cycles(&self) -> u64 {
+        self.cycles.load(Ordering::Relaxed)
+    }
+
+    /// System clock frequency in Hz.
+    pub const fn clock_hz(&self) -> u32 {
+        self.clock_hz
+    }
+}
+
 /// A simulated board with a serial line and direct access to its memory.
 pub struct SimulatedBoard<S = VirtualBoard> {
     board: S,
+    meter: Meter,
 }
 
 impl<S: Simulation> SimulatedBoard<S> {
     /// Wraps a board that the caller has built.
     pub fn new(board: S) -> Self {
-        Self { board }
+        let meter = Meter {
+            cycles: Arc::default(),
+            clock_hz: board.clock_hz(),
+        };
+        Self { board, meter }
+    }
+
+    /// The cycles that the board has run, for another thread.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
     }
 
     /// The underlying board, for access to its pins, its monitor and its cycle counter.
@@ -351,6 +339,8 @@ impl<S: Simulation> Board for SimulatedBoard<S> {
         self.board.uart_read(bytes);
         while bytes.len() == before && self.board.cycles() < end {
             self.board.run(SLICE);
+            let cycles = self.board.cycles();
+            self.meter.cycles.store(cycles, Ordering::Relaxed);
             self.board.uart_read(bytes);
         }
         Ok(())

@@ -1,8 +1,9 @@
 //! `glint board`.
 
-use super::common::{LineArguments, bad_value, say, warn};
+use super::common::{LineArguments, bad_value};
+use super::messages::{say, warn};
 use super::output::Output;
-use super::terminal::interact;
+use super::terminal::talk;
 use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, SerialBoard, SimulatedBoard, Simulation};
@@ -29,7 +30,7 @@ pub struct BoardArguments {
     /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File to write the port's path or the page's address to, when the board can be used.
+    /// File to write the port's path or the page's address to, when the board can be used; an earlier one is removed at the start.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
@@ -69,9 +70,12 @@ impl BoardArguments {
         }
     }
 
-    /// The file of `--ready-file`, opened.
+    /// The file of `--ready-file`, opened. An earlier one is removed, so that its presence tells when the board can be used.
     fn ready(&self) -> anyhow::Result<Option<Output>> {
         let ready = self.ready_file.as_deref();
+        if let Some(earlier) = ready.filter(|ready| ready.is_file()) {
+            std::fs::remove_file(earlier).with_context(|| earlier.display().to_string())?;
+        }
         ready
             .map(|path| Output::open(path, &[], [""; 0]))
             .transpose()
@@ -132,7 +136,7 @@ impl BoardArguments {
         }
         if self.pty.is_none() && self.ready_file.is_none() && isatty(std::io::stdin()) {
             let port = port.to_string_lossy();
-            return interact(&mut SerialBoard::open(&port, self.line.baud)?);
+            return talk(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
         }
         Ok(ended.recv()?)
     }

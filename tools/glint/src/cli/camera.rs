@@ -1,6 +1,7 @@
 //! The options on the command line for the camera.
 
-use super::common::{bad_value, named, note};
+use super::common::{bad_value, named};
+use super::messages::note;
 use clap::Args;
 use glint::framing::Sphere;
 use glint::view;

@@ -1,6 +1,6 @@
 //! `glint completions`.
 
-use super::common::say;
+use super::messages::say;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 

@@ -1,9 +1,11 @@
 //! `glint model` and `glint convert`.
 
-use super::common::{print_json, say, spinner, warn};
-use super::output::{MESH, Output};
+use super::common::bad_value;
+use super::messages::{print_json, say, warn};
+use super::output::{MESH, Output, STDOUT};
+use super::progress::spinner;
 use anyhow::Context;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use glint::convert::{self, Options, Report};
 use glint::error::FormatError;
 use glint::formats::{self, Format, write};
@@ -17,8 +19,11 @@ use std::path::{Path, PathBuf};
 pub struct ModelArguments {
     /// Name of the generator.
     name: String,
-    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
+    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm. `-` is standard output, in the format of --to.
     out: PathBuf,
+    /// Format of the output [default: that of its name].
+    #[arg(long, value_enum)]
+    to: Option<To>,
     /// Keep the generator's coordinates, without scaling.
     #[arg(long)]
     keep_scale: bool,
@@ -34,10 +39,13 @@ pub struct ModelArguments {
 /// (without textures and skins), and GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// Mesh file to read.
+    /// Mesh file to read; `-` is standard input, whose contents tell the format.
     input: PathBuf,
-    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm.
+    /// Output file; the extension selects the format: .obj, .stl, .ply or .glm. `-` is standard output, in the format of --to.
     out: PathBuf,
+    /// Format of the output [default: that of its name].
+    #[arg(long, value_enum)]
+    to: Option<To>,
     /// Keep the coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
@@ -52,6 +60,39 @@ pub struct ConvertArguments {
     json: bool,
 }
 
+/// A format that meshes are written in.
+#[derive(Clone, Copy, ValueEnum)]
+enum To {
+    /// Wavefront OBJ.
+    Obj,
+    /// STL, binary.
+    Stl,
+    /// PLY, binary.
+    Ply,
+    /// The format that boards load.
+    Glm,
+}
+
+impl To {
+    const fn format(self) -> Format {
+        match self {
+            Self::Obj => Format::Obj,
+            Self::Stl => Format::Stl,
+            Self::Ply => Format::Ply,
+            Self::Glm => Format::Glm,
+        }
+    }
+
+    const fn extension(self) -> &'static str {
+        match self {
+            Self::Obj => "obj",
+            Self::Stl => "stl",
+            Self::Ply => "ply",
+            Self::Glm => "glm",
+        }
+    }
+}
+
 impl ModelArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let polygons = generate::named(&self.name).map_err(|error| error.in_file(&self.name))?;
@@ -62,7 +103,7 @@ impl ModelArguments {
         convert_to(
             polygons,
             Path::new(&self.name),
-            &self.out,
+            (&self.out, self.to),
             options,
             self.json,
         )
@@ -73,13 +114,19 @@ impl ConvertArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let spinner = spinner("reading");
         let polygons = formats::read(&self.input)?;
-        spinner.finish_and_clear();
+        spinner.finish();
         let options = Options {
             keep_scale: self.keep_scale,
             keep_order: self.keep_order,
             fix_winding: self.fix_winding,
         };
-        convert_to(polygons, &self.input, &self.out, options, self.json)
+        convert_to(
+            polygons,
+            &self.input,
+            (&self.out, self.to),
+            options,
+            self.json,
+        )
     }
 }
 
@@ -96,19 +143,23 @@ struct Copied {
 fn convert_to(
     mut polygons: Polygons,
     name: &Path,
-    out: &Path,
+    (path, to): (&Path, Option<To>),
     options: Options,
     json: bool,
 ) -> anyhow::Result<()> {
     let in_input = |error: FormatError| error.in_path(name);
-    let path = out;
-    let out = Output::open(path, MESH, [name])?;
-    let format = Format::of(path)?;
+    let (out, format) = match to {
+        Some(to) => (Output::open(path, &[to.extension()], [name])?, to.format()),
+        None if path == Path::new(STDOUT) => {
+            return Err(bad_value("-", "--to with a format", "none").into());
+        }
+        None => (Output::open(path, MESH, [name])?, Format::of(path)?),
+    };
     if format == Format::Glm {
         let spinner = spinner("converting");
         let (mesh, report) = convert::convert(&polygons, options).map_err(in_input)?;
         out.write(|out| out.write_all(&mesh))?;
-        spinner.finish_and_clear();
+        spinner.finish();
         return if json {
             print_json(&report)
         } else {
@@ -195,7 +246,7 @@ pub fn load(name: &str, keep_scale: bool) -> anyhow::Result<model::Model> {
             ..Options::default()
         },
     )?;
-    spinner.finish_and_clear();
+    spinner.finish();
     let report = model.report.as_ref();
     for remark in report.map_or(&[][..], |report| &report.remarks) {
         warn(format_args!("{}: {remark}", name.escape_debug()));

@@ -1,8 +1,9 @@
 //! `glint demo`: a tour of the whole machine.
 
-use super::common::{advance, bar, say, spinner};
 use super::convert::load;
+use super::messages::say;
 use super::output::{Output, PICTURE};
+use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{Board, SimulatedBoard, built_firmware};
@@ -23,7 +24,6 @@ use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::stereo::{Stereo, Tint};
-use indicatif::ProgressBar;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -81,6 +81,7 @@ impl DemoArguments {
     pub fn run(self) -> anyhow::Result<()> {
         std::fs::create_dir_all(&self.out)
             .with_context(|| format!("{}: cannot be created", self.out.display()))?;
+        check_folder(&self.out)?;
         let names: Vec<String> = if self.models.is_empty() {
             MODELS.map(str::to_owned).to_vec()
         } else {
@@ -101,7 +102,7 @@ impl DemoArguments {
             let (others, lines) = second
                 .join()
                 .map_err(|_| anyhow::anyhow!("the second board's thread panicked"))??;
-            waiting.finish_and_clear();
+            waiting.finish();
             rows.extend(others);
             anyhow::Ok((rows, lines))
         })?;
@@ -120,7 +121,7 @@ impl DemoArguments {
         let waiting = spinner("the soft core draws the same frame");
         renderer.console().command("backend cpu")?;
         row.cpu_cycles = renderer.look(&camera(azimuth(0))?)?.cycles;
-        waiting.finish_and_clear();
+        waiting.finish();
         Ok(row)
     }
 
@@ -175,12 +176,12 @@ impl DemoArguments {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
         let subject = Subject::mesh(Mesh::new_checked(&model.mesh)?);
         let frame = Frame::new(subject, camera(azimuth(number))?, SIZE);
-        let bar = match route {
-            Route::Serial => bar(name),
-            Route::Memory => ProgressBar::hidden(),
-        };
-        let stats = renderer.show(&frame, route, &mut advance(&bar))?;
-        bar.finish_and_clear();
+        // The other board, in its thread, shows no progress beside this one.
+        let bar = (route == Route::Serial).then(|| bar(name));
+        let stats = renderer.show(&frame, route, &mut |done, all| {
+            bar.iter().for_each(|bar| advance(bar)(done, all));
+        })?;
+        drop(bar);
         let picture = renderer.board().inner().capture()?;
         let path = self.out.join(file_stem(name)).with_extension("png");
         write_picture(&path, |out| picture.write_png(out))?;
@@ -285,6 +286,20 @@ impl DemoArguments {
     }
 }
 
+/// Refuses a folder with pictures if they may not be replaced.
+fn check_folder(folder: &Path) -> anyhow::Result<()> {
+    let files = folder.read_dir();
+    let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
+    for file in files {
+        let path = file?.path();
+        if path.extension().is_some_and(|extension| extension == "png") {
+            // An error says what to do.
+            Output::open(&path, PICTURE, [""; 0])?;
+        }
+    }
+    Ok(())
+}
+
 fn write_picture(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -376,10 +391,10 @@ fn boot<'b>(
     let (waiting, bar) = (spinner("the BIOS boots"), bar("firmware"));
     let start = Instant::now();
     let report = flash::flash(board, firmware, MAIN_RAM, BOOT_MS, &mut |done, all| {
-        waiting.finish_and_clear();
+        waiting.finish();
         advance(&bar)(done, all);
     })?;
-    bar.finish_and_clear();
+    bar.finish();
     let mut console = Console::new(board);
     console.hear(&report.said);
     let banner = console.greet()?;

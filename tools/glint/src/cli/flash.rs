@@ -1,10 +1,13 @@
 //! `glint flash` and `glint upload`.
 
-use super::common::{LineArguments, advance, bar, print_json, say, spinner};
+use super::common::{Baud, LineArguments};
+use super::config::BoardChoice;
 use super::convert::load;
+use super::messages::{note, print_json, say};
+use super::progress::{advance, bar, show_simulation, spinner};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard};
+use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
 use glint::flash;
 use glint::formats::read_file;
@@ -27,9 +30,8 @@ pub struct FlashArguments {
     /// Write an image to the SPI flash of an Urbana by openFPGALoader.
     #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
     spi: bool,
-    /// Board: `emulated`, `virtual` or a serial port.
-    #[arg(long, default_value = "emulated")]
-    board: BoardName,
+    #[command(flatten)]
+    board: BoardChoice,
     /// Address to load the program at, and to start it at.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
@@ -37,9 +39,8 @@ pub struct FlashArguments {
     /// command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
-    /// Baud rate of a serial port, in bits per second.
-    #[arg(long, default_value_t = 115_200, value_name = "BITS")]
-    baud: u32,
+    #[command(flatten)]
+    baud: Baud,
     /// Print the report as JSON.
     #[arg(long)]
     json: bool,
@@ -54,9 +55,8 @@ pub struct UploadArguments {
     /// without its ending, or `model` for a generator].
     #[arg(long, value_parser = mesh_name)]
     name: Option<String>,
-    /// Board: `emulated`, `virtual` or a serial port.
-    #[arg(long)]
-    board: BoardName,
+    #[command(flatten)]
+    board: BoardChoice,
     /// Keep the model's coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
@@ -81,6 +81,12 @@ fn default_name(model: &str) -> Option<String> {
     Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
+/// A simulated board whose cycles the progress shows.
+fn metered<S: Simulation + 'static>(board: SimulatedBoard<S>) -> Box<dyn Board> {
+    show_simulation(board.meter());
+    Box::new(board)
+}
+
 fn parse_address(text: &str) -> Result<u32, String> {
     let digits = text
         .strip_prefix("0x")
@@ -95,10 +101,10 @@ impl FlashArguments {
         }
         let program = std::fs::read(&self.program)
             .with_context(|| format!("{}: cannot be read", self.program.display()))?;
-        let mut board: Box<dyn Board> = match &self.board {
-            BoardName::Emulated => Box::new(SimulatedBoard::emulated_bios()?),
-            BoardName::Virtual => Box::new(SimulatedBoard::full()?),
-            BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud)?),
+        let mut board: Box<dyn Board> = match &self.board.name()? {
+            BoardName::Emulated => metered(SimulatedBoard::emulated_bios()?),
+            BoardName::Virtual => metered(SimulatedBoard::full()?),
+            BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud.rate()?)?),
         };
         let waiting = spinner("waiting for the BIOS");
         let bar = bar("program");
@@ -108,11 +114,11 @@ impl FlashArguments {
             self.address,
             self.wait * 1000,
             &mut |done, all| {
-                waiting.finish_and_clear();
+                waiting.finish();
                 advance(&bar)(done, all);
             },
         )?;
-        bar.finish_and_clear();
+        bar.finish();
         if self.json {
             return print_json(&report);
         }
@@ -161,7 +167,13 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
 impl UploadArguments {
     pub fn run(self) -> anyhow::Result<()> {
         let model = load(&self.model, self.keep_scale)?;
-        let mut board = self.line.board(&self.board)?;
+        let board = self.board.name()?;
+        if board.is_simulated() {
+            note(
+                "the board ends with this command; `glint board` runs one that stays, on a serial port",
+            );
+        }
+        let mut board = self.line.board(&board)?;
         let name = self.name.or_else(|| default_name(&self.model));
         let start = board.now_ms();
         let bar = bar("mesh");
@@ -171,7 +183,7 @@ impl UploadArguments {
             Route::Serial,
             &mut advance(&bar),
         )?;
-        bar.finish_and_clear();
+        bar.finish();
         let milliseconds = board.now_ms() - start;
         if self.json {
             return print_json(

@@ -1,7 +1,10 @@
 //! `glint gesture`.
 
-use super::common::{LineArguments, advance, bar, named, say, spinner};
+use super::common::{LineArguments, named};
+use super::config::BoardChoice;
+use super::messages::say;
 use super::output::{Output, PICTURE};
+use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::board::{Board, BoardName};
@@ -27,12 +30,11 @@ impl GestureCommand {
     }
 }
 
-/// Options of a board with an image sensor.
+/// Options of a board with an image sensor: simulated boards have a virtual OV7670.
 #[derive(Args)]
 struct SensorArguments {
-    /// Board of the image sensor: `emulated` or `virtual` (the verilated SoC), both with a virtual OV7670, or a serial port.
-    #[arg(long)]
-    board: BoardName,
+    #[command(flatten)]
+    board: BoardChoice,
     /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
@@ -68,7 +70,8 @@ impl SensorArguments {
     }
 
     fn open(&self) -> anyhow::Result<Box<dyn Board>> {
-        match &self.board {
+        let name = self.board.name()?;
+        match &name {
             BoardName::Emulated => {
                 let mut board = self.line.emulated_board()?;
                 board.inner().plug_image_sensor(self.sensor()?);
@@ -107,8 +110,8 @@ impl MaskArguments {
         let spinner = spinner("the image sensor is set up");
         let bar = bar("mask");
         let mask = gesture::mask(&mut Console::new(board.as_mut()), &mut advance(&bar));
-        spinner.finish_and_clear();
-        bar.finish_and_clear();
+        spinner.finish();
+        bar.finish();
         let mask = mask.context("mask")?;
         out.write(|out| mask.write(out))?;
         let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();

@@ -1,6 +1,6 @@
 //! `glint image`.
 
-use super::common::{print_json, say};
+use super::messages::{print_json, say};
 use super::output::{IMAGE, Output};
 use clap::{Args, Subcommand};
 use glint::formats::read_file;

@@ -4,6 +4,7 @@ mod board;
 mod camera;
 mod common;
 mod completions;
+mod config;
 mod convert;
 mod demo;
 mod field;
@@ -11,25 +12,41 @@ mod flash;
 mod gesture;
 mod image;
 mod imu;
+mod info;
+mod man;
+mod messages;
 mod orbit;
 mod output;
+mod ports;
+mod progress;
 mod render;
 mod scene;
 mod terminal;
 mod wireframe;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use messages::{Loudness, set_loudness};
 
 /// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
 /// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,
-/// teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual` or a serial port such as /dev/ttyUSB1. Exit code 2:
+/// teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual`, a serial port such as /dev/ttyUSB1, or `serial`
+/// for the port that `glint ports` guesses. ~/.config/glint/config.toml sets the usual one: `board = "NAME"`, `baud = NUMBER`. Exit code 2:
 /// bad input, with one line that names the place, what was expected and what was found. Exit code 1: any other failure.
 #[derive(Parser)]
 #[command(name = "glint", version, max_term_width = 110)]
 pub struct Arguments {
     #[command(subcommand)]
     command: Command,
+    /// Print no warnings, notes and progress.
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Print each step with its time.
+    #[arg(short, long, global = true, conflicts_with = "quiet")]
+    verbose: bool,
+    /// Replace output files that have contents. Without this they are refused.
+    #[arg(short, long, global = true)]
+    force: bool,
 }
 
 #[derive(Subcommand)]
@@ -42,7 +59,10 @@ enum Command {
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),
     Board(board::BoardArguments),
+    Info(info::InfoArguments),
+    Ports(ports::PortsArguments),
     Completions(completions::CompletionsArguments),
+    Man(man::ManArguments),
     Demo(demo::DemoArguments),
     #[command(subcommand)]
     Imu(imu::ImuCommand),
@@ -59,6 +79,12 @@ enum Command {
 impl Arguments {
     /// Runs the command.
     pub fn run(self) -> anyhow::Result<()> {
+        output::set_replace(self.force);
+        set_loudness(match (self.quiet, self.verbose) {
+            (true, _) => Loudness::Quiet,
+            (_, true) => Loudness::Verbose,
+            _ => Loudness::Usual,
+        });
         match self.command {
             Command::Model(arguments) => arguments.run(),
             Command::Convert(arguments) => arguments.run(),
@@ -68,7 +94,10 @@ impl Arguments {
             Command::Flash(arguments) => arguments.run(),
             Command::Console(arguments) => arguments.run(),
             Command::Board(arguments) => arguments.run(),
+            Command::Info(arguments) => arguments.run(),
+            Command::Ports(arguments) => arguments.run(),
             Command::Completions(arguments) => arguments.run(Self::command()),
+            Command::Man(arguments) => arguments.run(Self::command()),
             Command::Demo(arguments) => arguments.run(),
             Command::Imu(command) => command.run(),
             Command::Gesture(command) => command.run(),

@@ -1,9 +1,11 @@
 //! `glint orbit`.
 
 use super::camera::LensArguments;
-use super::common::{TransferArguments, count_bar, named, print_json, say, size, warn};
+use super::common::{TransferArguments, named, size};
 use super::convert::load;
+use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
+use super::progress::count_bar;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
@@ -22,9 +24,9 @@ use std::path::PathBuf;
 /// Render an animation in which the camera goes once around a model.
 #[derive(Args)]
 pub struct OrbitArguments {
-    /// A mesh file or a generator's name.
+    /// A mesh file, `-` for one from standard input, or a generator's name.
     model: String,
-    /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame.
+    /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame. `-` is standard output, for a PNG.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
     out: PathBuf,
     /// Number of frames.
@@ -135,13 +137,13 @@ impl OrbitArguments {
                 .iter()
                 .map(|frame| {
                     let drawn = on_model(frame)?;
-                    bar.inc(1);
+                    bar.inc();
                     Ok(drawn)
                 })
                 .collect(),
-            ModelOrBoard::Board(name) => self.draw_on(name, frames, &mut || bar.inc(1)),
+            ModelOrBoard::Board(name) => self.draw_on(name, frames, &mut || bar.inc()),
         };
-        bar.finish_and_clear();
+        bar.finish();
         drawn
     }
 

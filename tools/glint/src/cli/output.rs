@@ -1,12 +1,17 @@
-//! Output files. Each is checked before the work begins, and written whole or not at all.
+//! Output files. Each is checked before the work begins, and written whole or not at all. A file with contents is replaced on request
+//! only (`--force`). `-` is standard output.
 
 use super::common::bad_value;
+use super::messages::give_up_stdout;
 use anyhow::Context;
+use rustix::termios::isatty;
 use serde::Serialize;
 use std::fs::{File, Permissions};
 use std::io::{self, BufWriter, Write};
+use std::os::fd::AsFd;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Extensions of a picture.
 pub const PICTURE: &[&str] = &["png"];
@@ -25,6 +30,17 @@ pub const IMAGE: &[&str] = &["bin", "img"];
 /// Extensions of a table.
 pub const TABLE: &[&str] = &["csv"];
 
+/// The name of standard output.
+pub const STDOUT: &str = "-";
+
+/// Whether files with contents are replaced.
+static REPLACE: AtomicBool = AtomicBool::new(false);
+
+/// Sets whether outputs replace files with contents.
+pub fn set_replace(replace: bool) {
+    REPLACE.store(replace, Ordering::Relaxed);
+}
+
 /// An output file that can be written.
 pub struct Output {
     path: PathBuf,
@@ -36,12 +52,16 @@ impl Output {
     /// Checks that the file at `path` can be written, and opens a device or a pipe. `inputs` are the files that the command reads.
     ///
     /// # Errors
-    /// The name has another extension than `extensions`, the file is one of `inputs`, or it cannot be written.
+    /// The name has another extension than `extensions`, the file is one of `inputs`, it has contents and may not be replaced, or it
+    /// cannot be written.
     pub fn open<P: AsRef<Path>>(
         path: &Path,
         extensions: &[&str],
         inputs: impl IntoIterator<Item = P>,
     ) -> anyhow::Result<Self> {
+        if path == Path::new(STDOUT) {
+            return Self::stdout();
+        }
         let present = path.metadata().ok();
         let device = match &present {
             Some(present) if !present.is_file() => {
@@ -65,6 +85,14 @@ impl Output {
                 );
             }
         }
+        if let (None, Some(present)) = (&device, &present)
+            && present.len() > 0
+            && !REPLACE.load(Ordering::Relaxed)
+        {
+            let found = format!("a file of {} bytes", present.len());
+            let expected = "a new file, or --force to replace it";
+            return Err(bad_value(&path.display().to_string(), expected, found).into());
+        }
         if device.is_none() {
             // A file without a name shows that the folder takes new files; it vanishes when it is closed.
             tempfile::tempfile_in(folder(&target(path))).with_context(|| unwritable(path))?;
@@ -73,6 +101,34 @@ impl Output {
             path: path.to_owned(),
             device,
         })
+    }
+
+    /// Standard output as the output; what the command prints goes to standard error instead.
+    fn stdout() -> anyhow::Result<Self> {
+        let stdout = io::stdout();
+        if isatty(&stdout) {
+            let expected = "standard output that is a file or a pipe";
+            return Err(bad_value(STDOUT, expected, "a terminal").into());
+        }
+        if !give_up_stdout() {
+            return Err(bad_value(STDOUT, "one output to standard output", "two").into());
+        }
+        let copy = stdout.as_fd().try_clone_to_owned();
+        Ok(Self {
+            path: STDOUT.into(),
+            device: Some(File::from(copy.context("standard output")?)),
+        })
+    }
+
+    /// The open file, for an output that grows while the command runs, such as a log.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn into_file(self) -> anyhow::Result<File> {
+        match self.device {
+            Some(device) => Ok(device),
+            None => File::create(&self.path).with_context(|| unwritable(&self.path)),
+        }
     }
 
     /// Writes the file whole or not at all: `write` fills a new file beside it, which then takes its place.

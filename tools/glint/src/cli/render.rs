@@ -1,13 +1,14 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{
-    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner, warn,
-};
+use super::common::{TransferArguments, bad_value, named, size};
 use super::convert::load;
 use super::field::FieldArguments;
+use super::messages::{print_json, say, warn};
 use super::output::{DEPTH, Output, PICTURE, STATISTICS};
+use super::progress::{advance, bar, spinner};
 use anyhow::Context;
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
@@ -33,8 +34,7 @@ use std::path::PathBuf;
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file or a generator's name. With --field the mesh is drawn in the field.
-    #[arg(required_unless_present_any = ["field", "object", "scene"])]
+    /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md). It states camera and size, which the
     /// options of the camera and --size replace.
@@ -58,9 +58,13 @@ pub struct RenderArguments {
     /// Size of the picture: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
-    /// Picture file to write.
+    /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
+    /// Draw the picture 2 or 4 times as wide and high, and show the mean of 2×2 or 4×4 pixels as one; up to 1280x720. By the model alone.
+    /// Counts are those of the larger picture.
+    #[arg(long, value_name = "2|4", conflicts_with = "depth", value_parser = PossibleValuesParser::new(["2", "4"]))]
+    supersample: Option<String>,
     /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 a pixel, +inf where no
     /// surface is.
     #[arg(long, value_name = "DEPTH.f32")]
@@ -128,6 +132,13 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        if self.model.is_none()
+            && self.field.name().is_none()
+            && self.object.is_empty()
+            && self.scene.is_none()
+        {
+            return Err(nothing());
+        }
         let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;
@@ -211,9 +222,7 @@ impl RenderArguments {
                 Some(edges) => Subject::edges(mesh, edges),
             },
             (None, Some(field)) => Subject::Field(field),
-            (None, None) => {
-                anyhow::bail!("expected a model, a --field, an --object or a --scene, found none")
-            }
+            (None, None) => return Err(nothing()),
         };
         let frame = Frame {
             lighting: appearance.mesh_lighting(),
@@ -231,9 +240,16 @@ impl RenderArguments {
         let depth = depth.transpose()?;
         let statistics = self.stats.as_deref().map(|path| open(path, STATISTICS));
         let statistics = statistics.transpose()?;
-        let Rendered { image, stats } = self.render(frame, scene)?;
+        let (drawn, factor) = self.supersampled(frame.size)?;
+        let Rendered { image, stats } = self.render(
+            &Frame {
+                size: drawn,
+                ..*frame
+            },
+            scene,
+        )?;
         remarks(frame, &stats)?.iter().for_each(warn);
-        out.write(|out| image.picture().write_png(out))?;
+        out.write(|out| image.reduced(factor).write_png(out))?;
         if let Some(out) = depth {
             let scale = frame.constants()?.depth_scale();
             let scale = scale.context("expected a frame with a subject")?;
@@ -257,6 +273,25 @@ impl RenderArguments {
             return print_json(&outcome);
         }
         print_stats(&stats)
+    }
+
+    /// The size to draw for a picture of this size, and how many of its pixels each way are one of the picture.
+    fn supersampled(&self, size: Size) -> anyhow::Result<(Size, usize)> {
+        let Some(text) = &self.supersample else {
+            return Ok((size, 1));
+        };
+        if self.board != ModelOrBoard::Model {
+            let found = format!("--board {}", self.board);
+            return Err(bad_value("--supersample", "--board model", found).into());
+        }
+        let factor = if text == "2" { 2 } else { 4 };
+        let mut sizes = Size::ALL.into_iter();
+        let drawn = sizes.find(|drawn| drawn.width() == factor * size.width());
+        let drawn = drawn.ok_or_else(|| {
+            let expected = "2 for 320x180 or 640x360, or 4 for 320x180";
+            bad_value("--supersample", expected, format!("{text} for {size}"))
+        });
+        Ok((drawn?, factor as usize))
     }
 
     /// The files that the command reads, with names of generators among them.
@@ -314,7 +349,7 @@ impl RenderArguments {
             ModelOrBoard::Model => {
                 let spinner = spinner("rendering");
                 let rendered = self.render_by(&mut ModelRenderer, frame, &mut |_, _| {})?;
-                spinner.finish_and_clear();
+                spinner.finish();
                 Ok(rendered)
             }
             ModelOrBoard::Board(name @ BoardName::Emulated) => {
@@ -358,7 +393,7 @@ impl RenderArguments {
             .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("mesh and frames");
         let rendered = self.render_by(&mut renderer, frame, &mut advance(&bar))?;
-        bar.finish_and_clear();
+        bar.finish();
         Ok(rendered)
     }
 
@@ -376,6 +411,13 @@ impl RenderArguments {
     }
 }
 
+/// The error for a command that has nothing to draw.
+fn nothing() -> anyhow::Error {
+    let expected =
+        "a mesh file or a generator such as teapot, or --field, --object or --scene in its place";
+    bad_value("MODEL", expected, "none").into()
+}
+
 /// Captures the frame on a board's monitor, scaled back to the frame's own size.
 fn from_monitor<S: Simulation>(
     board: &mut SimulatedBoard<S>,
@@ -384,7 +426,7 @@ fn from_monitor<S: Simulation>(
     let spinner = spinner("capturing a frame of the monitor");
     let scale = virtual_board::WIDTH / size.width() as usize;
     let colours = board.inner().monitor_frame(scale)?;
-    spinner.finish_and_clear();
+    spinner.finish();
     Ok(colours)
 }
 

@@ -1,6 +1,6 @@
 //! `glint scene`.
 
-use super::common::say;
+use super::messages::say;
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};

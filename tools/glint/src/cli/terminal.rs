@@ -1,10 +1,15 @@
 //! `glint console`.
 
-use super::common::{LineArguments, print_json, say};
+use super::common::LineArguments;
+use super::config;
+use super::messages::{print_json, say};
+use super::output::Output;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{Board, BoardName};
+use clap::builder::NonEmptyStringValueParser;
+use glint::board::{Board, BoardError, BoardName, Memory};
 use glint::console::Console;
+use glint::error::quote;
 use rustix::termios::{OptionalActions, Termios, isatty, tcgetattr, tcsetattr};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -19,18 +24,28 @@ const LOOK_MS: u64 = 10;
 /// Open a board's console, or send commands to it.
 ///
 /// On a terminal Ctrl-] ends the session, and Ctrl-C ends what runs on the board. Commands come from --send, from --file, or line by line
-/// from standard input if that is no terminal; the first one that fails ends the program.
+/// from standard input if that is no terminal; the first one that fails ends the program. With --until it ends when the board has printed a
+/// text, with exit code 0.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// Board: `emulated`, `virtual` or a serial port.
-    #[arg(default_value = "emulated")]
-    board: BoardName,
+    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of
+    /// the configuration file, or emulated].
+    board: Option<BoardName>,
     /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     send: Vec<String>,
     /// Send the commands of a file, one a line; `-` is standard input. Empty lines and lines that start with # are skipped.
     #[arg(long, value_name = "SCRIPT", conflicts_with = "send")]
     file: Option<PathBuf>,
+    /// Write all that the board sends to a file, as it comes.
+    #[arg(long, value_name = "FILE")]
+    log: Option<PathBuf>,
+    /// Print what the board sends, after all commands, until this text has come.
+    #[arg(long, value_name = "TEXT", conflicts_with = "json", value_parser = NonEmptyStringValueParser::new())]
+    until: Option<String>,
+    /// Longest wait for the text of --until, in seconds of the board's time [default: none].
+    #[arg(long, value_name = "SECONDS", requires = "until")]
+    timeout: Option<u32>,
     #[command(flatten)]
     line: LineArguments,
     /// Print the replies to commands as JSON: an array of lines for each command that did not fail.
@@ -40,6 +55,11 @@ pub struct ConsoleArguments {
 
 impl ConsoleArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        let board = config::board(self.board.as_ref())?;
+        let inputs = self.file.iter();
+        let log = self.log.as_deref();
+        let log = log.map(|path| Output::open(path, &[], inputs)?.into_file());
+        let log = log.transpose()?;
         let script: Box<dyn Iterator<Item = io::Result<String>>> = match &self.file {
             Some(path) if path != Path::new("-") => {
                 let file = File::open(path).with_context(|| path.display().to_string())?;
@@ -48,24 +68,47 @@ impl ConsoleArguments {
             None if !self.send.is_empty() => Box::new(self.send.iter().cloned().map(Ok)),
             None if isatty(std::io::stdin()) => {
                 anyhow::ensure!(!self.json, "--json: expected commands, found a terminal");
-                return interact(&mut *self.line.unsynchronised_board(&self.board)?);
+                let mut board = self.line.unsynchronised_board(&board)?;
+                let mut heard = self.heard(&mut *board, log);
+                return interact(&mut heard);
             }
             _ => Box::new(std::io::stdin().lines()),
         };
-        let mut board = self.line.board(&self.board)?;
+        let mut board = self.line.board(&board)?;
+        let mut heard = self.heard(&mut *board, log);
         let mut replies = Vec::new();
-        let result = self.execute(script, &mut Console::new(&mut *board), &mut replies);
+        let result = self.execute(script, &mut Console::new(&mut heard), &mut replies);
         if self.json {
             print_json(&replies)?;
         }
-        result
+        result?;
+        if self.until.is_some() {
+            heard.is_printed = true;
+            while !heard.is_over()? {
+                heard.read(&mut Vec::new(), LOOK_MS)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn heard<'b>(&self, board: &'b mut dyn Board, log: Option<File>) -> Heard<'b> {
+        let end_ms = self.timeout.map(|seconds| u64::from(seconds) * 1000);
+        Heard {
+            end_ms: end_ms.map(|wait| board.now_ms() + wait),
+            board,
+            log,
+            until: self.until.clone(),
+            last: Vec::new(),
+            is_found: false,
+            is_printed: false,
+        }
     }
 
     /// Sends the commands of a script up to the first one that fails, and collects or prints the replies.
     fn execute(
         &self,
         script: impl Iterator<Item = io::Result<String>>,
-        console: &mut Console,
+        console: &mut Console<Heard>,
         replies: &mut Vec<Vec<String>>,
     ) -> anyhow::Result<()> {
         for command in script {
@@ -82,6 +125,79 @@ impl ConsoleArguments {
             }
         }
         Ok(())
+    }
+}
+
+/// A board whose output is logged, and searched for a text.
+struct Heard<'b> {
+    board: &'b mut dyn Board,
+    log: Option<File>,
+    /// The text that ends the session.
+    until: Option<String>,
+    /// The end of the output, in which the text may have begun.
+    last: Vec<u8>,
+    is_found: bool,
+    /// Whether the output goes to standard output too.
+    is_printed: bool,
+    /// The board's time at which the session fails.
+    end_ms: Option<u64>,
+}
+
+impl Heard<'_> {
+    /// Whether the text has come.
+    ///
+    /// # Errors
+    /// It has not come in time.
+    fn is_over(&self) -> anyhow::Result<bool> {
+        let Some(until) = &self.until else {
+            return Ok(false);
+        };
+        anyhow::ensure!(
+            self.is_found || self.end_ms.is_none_or(|end| self.board.now_ms() < end),
+            "--until: expected '{}' in time, found {}",
+            until.escape_debug(),
+            quote(&self.last)
+        );
+        Ok(self.is_found)
+    }
+
+    fn hear(&mut self, bytes: &[u8]) -> io::Result<()> {
+        if let Some(log) = &mut self.log {
+            log.write_all(bytes)?;
+        }
+        if self.is_printed {
+            let mut output = std::io::stdout();
+            output.write_all(bytes)?;
+            output.flush()?;
+        }
+        if let Some(until) = &self.until {
+            let until = until.as_bytes();
+            self.last.extend(bytes);
+            self.is_found |= self.last.windows(until.len()).any(|part| part == until);
+            let surplus = self.last.len().saturating_sub(until.len());
+            self.last.drain(..surplus);
+        }
+        Ok(())
+    }
+}
+
+impl Board for Heard<'_> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let before = bytes.len();
+        self.board.read(bytes, wait_ms)?;
+        Ok(self.hear(bytes.get(before..).unwrap_or_default())?)
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        self.board.memory()
     }
 }
 
@@ -125,8 +241,21 @@ fn keys() -> Receiver<Vec<u8>> {
     receiver
 }
 
-/// Connects the terminal with the board until the user ends the session.
-pub fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
+/// Connects the terminal with a board until the user ends the session.
+pub fn talk(board: &mut dyn Board) -> anyhow::Result<()> {
+    interact(&mut Heard {
+        board,
+        log: None,
+        until: None,
+        last: Vec::new(),
+        is_found: false,
+        is_printed: false,
+        end_ms: None,
+    })
+}
+
+/// Connects the terminal with a board until the user ends the session, or the text has come that ends it.
+fn interact(board: &mut Heard) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
     let _raw = RawTerminal::enter()?;
     let keys = keys();
@@ -140,6 +269,9 @@ pub fn interact(board: &mut dyn Board) -> anyhow::Result<()> {
         output.write_all(&received)?;
         output.flush()?;
         received.clear();
+        if board.is_over()? {
+            return Ok(());
+        }
         match keys.try_recv() {
             Ok(typed) => {
                 let end = typed.iter().position(|&key| key == EXIT);

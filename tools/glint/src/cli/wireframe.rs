@@ -1,9 +1,9 @@
 //! `glint wireframe`.
 
-use super::common::{
-    TransferArguments, advance, bad_value, bar, named, print_json, say, size, spinner,
-};
+use super::common::{TransferArguments, bad_value, named, size};
+use super::messages::{print_json, say};
 use super::output::{Output, PICTURE, PROGRAM, STATISTICS};
+use super::progress::{advance, bar, spinner};
 use super::render::print_stats;
 use clap::{Args, Subcommand};
 use glint::board::{BoardName, ModelOrBoard};
@@ -220,7 +220,7 @@ impl MakeArguments {
             .map_err(|error| error.in_file(&self.model))?;
         let program = form.encode(&wireframe::check(&bytes)?);
         out.write(|out| out.write_all(&program))?;
-        spinner.finish_and_clear();
+        spinner.finish();
         if self.json {
             return print_json(&Written {
                 segments,
@@ -321,7 +321,7 @@ impl RenderArguments {
             .with_route(self.transfer.transfer.unwrap_or(Route::of(name)));
         let bar = bar("program and frame");
         let rendered = renderer.play(program, script, size, &mut advance(&bar))?;
-        bar.finish_and_clear();
+        bar.finish();
         Ok(rendered)
     }
 }

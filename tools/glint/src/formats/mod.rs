@@ -12,7 +12,7 @@ pub mod write;
 use crate::error::{FormatError, InputError, MAX_FILE, USUAL_COORDINATE};
 use crate::polygons::Polygons;
 use std::fs::{File, Metadata};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 use text::BYTE_ORDER_MARK;
 
@@ -55,17 +55,48 @@ impl Format {
             }
         }
     }
+
+    /// Tells the format by a file's contents: by the first word or, for a binary STL, by the length; otherwise it is OBJ.
+    pub fn of_contents(bytes: &[u8]) -> Self {
+        let text = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
+        let text = text.trim_ascii_start();
+        let is_binary_stl = || {
+            let count = bytes.get(80..84).and_then(<[u8]>::first_chunk);
+            let count = count.map(|count| u64::from(u32::from_le_bytes(*count)));
+            count.is_some_and(|count| bytes.len() as u64 >= 84 + 50 * count && count > 0)
+        };
+        let begins_with =
+            |words: &[&str]| words.iter().any(|word| text.starts_with(word.as_bytes()));
+        if begins_with(&["glTF", "{"]) {
+            Self::Gltf
+        } else if begins_with(&["GLM"]) {
+            Self::Glm
+        } else if begins_with(&["ply\n", "ply\r", "ply "]) {
+            Self::Ply
+        } else if begins_with(&["solid ", "solid\n", "solid\r"]) || is_binary_stl() {
+            Self::Stl
+        } else {
+            Self::Obj
+        }
+    }
 }
 
-/// Reads a whole file.
+/// The name of standard input.
+pub const STDIN: &str = "-";
+
+/// Reads a whole file, or standard input for [`STDIN`].
 ///
 /// # Errors
 /// The file cannot be read, or is larger than [`MAX_FILE`].
 pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
     let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|file| file.take(MAX_FILE as u64 + 1).read_to_end(&mut bytes))
-        .map_err(|error| FormatError::whole("a file to read", error.to_string()).in_path(path))?;
+    let limit = MAX_FILE as u64 + 1;
+    let read = if path == Path::new(STDIN) {
+        io::stdin().lock().take(limit).read_to_end(&mut bytes)
+    } else {
+        File::open(path).and_then(|file| file.take(limit).read_to_end(&mut bytes))
+    };
+    read.map_err(|error| FormatError::whole("a file to read", error.to_string()).in_path(path))?;
     if bytes.len() > MAX_FILE {
         return Err(FormatError::whole(format!("at most {MAX_FILE} bytes"), "more").in_path(path));
     }
@@ -78,8 +109,27 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
 /// # Errors
 /// The file cannot be read, or violates its format.
 pub fn read(path: &Path) -> Result<Polygons, InputError> {
-    let format = Format::of(path)?;
-    let bytes = read_file(path)?;
+    let (format, bytes) = read_mesh(path)?;
+    parse(path, format, &bytes)
+}
+
+/// Reads the bytes of a mesh file, and tells its format by the file's name, or by its contents for standard input.
+///
+/// # Errors
+/// The name has no extension of a mesh, or the file cannot be read.
+pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
+    if path == Path::new(STDIN) {
+        let bytes = read_file(path)?;
+        return Ok((Format::of_contents(&bytes), bytes));
+    }
+    Ok((Format::of(path)?, read_file(path)?))
+}
+
+/// Parses a mesh file. Further files are read from the folder of `path`.
+///
+/// # Errors
+/// The file violates its format.
+pub fn parse(path: &Path, format: Format, bytes: &[u8]) -> Result<Polygons, InputError> {
     let mut beside = |name: &str| {
         let file = path.with_file_name(Path::new(name).file_name()?);
         // A device or a pipe could block, or be endless.
@@ -87,15 +137,15 @@ pub fn read(path: &Path) -> Result<Polygons, InputError> {
         read_file(&file).ok()
     };
     let parsed = match format {
-        Format::Obj => match obj::parse(&bytes, &mut beside) {
+        Format::Obj => match obj::parse(bytes, &mut beside) {
             Err(obj::ObjError::Mtl(error)) => return Err(error),
             Err(obj::ObjError::Obj(error)) => Err(error),
             Ok(polygons) => Ok(polygons),
         },
-        Format::Gltf => gltf::parse(&bytes, &mut beside),
-        Format::Stl => stl::parse(&bytes),
-        Format::Ply => ply::parse(&bytes),
-        Format::Glm => glm::parse(&bytes),
+        Format::Gltf => gltf::parse(bytes, &mut beside),
+        Format::Stl => stl::parse(bytes),
+        Format::Ply => ply::parse(bytes),
+        Format::Glm => glm::parse(bytes),
     };
     let mut polygons = parsed.map_err(|error| error.in_path(path))?;
     if format != Format::Glm && bytes.starts_with(BYTE_ORDER_MARK) {

@@ -8,6 +8,7 @@ use glint::render::{BoardRenderer, Frame, Stats, Subject};
 use glint::{generate, view};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
 
 /// Milliseconds of board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
@@ -40,6 +41,33 @@ pub fn renderer<S: Simulation>(
 pub fn mesh_frame<'m>(mesh: &'m [u8], camera: &str, size: Size) -> Frame<'m> {
     let mesh = Mesh::new_checked(mesh).unwrap();
     Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size)
+}
+
+/// Begins an upload, and leaves it in the middle of a frame, as a program that is killed.
+pub fn begin_upload<B: Board>(console: &mut Console<B>, mesh: &[u8]) {
+    let Manifest { length, crc32 } = Manifest::of(mesh);
+    let command = format!("load {length} {crc32:08x}");
+    console
+        .command_with_transfer(&command, &mut |_| {})
+        .unwrap();
+    let (board, pending) = console.line();
+    let mut frame = [0; MAX_FRAME];
+    let mut sender = Sender::new(mesh, 1, Timing::HOST, board.now_ms());
+    while sender.progress().0 < 1_000 {
+        let now = board.now_ms();
+        let taken = sender.on_bytes(now, pending);
+        pending.drain(..taken);
+        loop {
+            let length = sender.poll(now, &mut frame);
+            if length == 0 {
+                break;
+            }
+            board.write(&frame[..length]).unwrap();
+        }
+        board.read(pending, 1).unwrap();
+    }
+    let length = sender.poll(board.now_ms(), &mut frame);
+    board.write(&frame[..length / 2]).unwrap();
 }
 
 /// A generated mesh, converted to the board's memory layout.

@@ -1,43 +1,15 @@
 //! Conversations with a board that an earlier program has left in the middle of something.
 
-use crate::common::{console, emulator, info, mesh};
+use crate::common::{begin_upload, console, emulator, info, mesh};
 use glint::board::{Board, EmulatedBoard, SimulatedBoard};
 use glint::console::{Console, ConsoleError};
 use glint::transfer;
-use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
 
 /// The console of a board in an unknown state.
 fn again(board: &mut SimulatedBoard<EmulatedBoard>) -> Console<'_, SimulatedBoard<EmulatedBoard>> {
     let mut console = Console::new(board).patience(2_000);
     console.synchronise().unwrap();
     console
-}
-
-/// Begins an upload, and leaves it in the middle of a frame, as a program that is killed.
-fn begin_and_leave(console: &mut Console<SimulatedBoard<EmulatedBoard>>, mesh: &[u8]) {
-    let Manifest { length, crc32 } = Manifest::of(mesh);
-    let command = format!("load {length} {crc32:08x}");
-    console
-        .command_with_transfer(&command, &mut |_| {})
-        .unwrap();
-    let (board, pending) = console.line();
-    let mut frame = [0; MAX_FRAME];
-    let mut sender = Sender::new(mesh, 1, Timing::HOST, board.now_ms());
-    while sender.progress().0 < 1_000 {
-        let now = board.now_ms();
-        let taken = sender.on_bytes(now, pending);
-        pending.drain(..taken);
-        loop {
-            let length = sender.poll(now, &mut frame);
-            if length == 0 {
-                break;
-            }
-            board.write(&frame[..length]).unwrap();
-        }
-        board.read(pending, 1).unwrap();
-    }
-    let length = sender.poll(board.now_ms(), &mut frame);
-    board.write(&frame[..length / 2]).unwrap();
 }
 
 #[test]
@@ -54,7 +26,7 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     assert_eq!(info::<u32>(&mut again(&mut board), "triangles"), 20);
 
     // A killed upload: the old model stays, and the next upload works.
-    begin_and_leave(&mut again(&mut board), &large);
+    begin_upload(&mut again(&mut board), &large);
     let start = board.now_ms();
     let mut console = again(&mut board);
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);

@@ -280,7 +280,9 @@ fn an_orbit_on_a_board_is_the_models() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
     std::fs::create_dir_all(&folder).unwrap();
     let orbit = |board: &[&str]| {
-        let arguments = ["orbit", "gear", "--frames", "6", "--out", "a.png", "--json"];
+        let arguments = [
+            "orbit", "gear", "--frames", "6", "--force", "--out", "a.png", "--json",
+        ];
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(arguments)
             .args(board)

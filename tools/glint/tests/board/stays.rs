@@ -1,10 +1,9 @@
 //! A board that stays, and the programs that use it in turn.
 
-use crate::common::mesh;
+use crate::common::{begin_upload, mesh};
 use crate::terminal::Terminal;
-use glint::board::{Board, SerialBoard};
+use glint::board::SerialBoard;
 use glint::console::Console;
-use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -28,15 +27,7 @@ impl Stay {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
         std::fs::create_dir_all(&folder).unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args([
-                "board",
-                "--board",
-                "emulated",
-                "--pty",
-                "port",
-                "--ready-file",
-                "ready",
-            ])
+            .args(["board", "--pty", "port", "--ready-file", "ready"])
             .args(arguments)
             .current_dir(&folder)
             .stdout(Stdio::piped())
@@ -90,26 +81,7 @@ fn upload_a_part(port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
     console.synchronise().unwrap();
-    let Manifest { length, crc32 } = Manifest::of(mesh);
-    console
-        .command_with_transfer(&format!("load {length} {crc32:08x}"), &mut |_| {})
-        .unwrap();
-    let (board, pending) = console.line();
-    let mut frame = [0; MAX_FRAME];
-    let mut sender = Sender::new(mesh, 1, Timing::HOST, board.now_ms());
-    while sender.progress().0 < 1_000 {
-        let now = board.now_ms();
-        let taken = sender.on_bytes(now, pending);
-        pending.drain(..taken);
-        loop {
-            let length = sender.poll(now, &mut frame);
-            if length == 0 {
-                break;
-            }
-            board.write(&frame[..length]).unwrap();
-        }
-        board.read(pending, 1).unwrap();
-    }
+    begin_upload(&mut console, mesh);
 }
 
 #[test]
@@ -132,6 +104,31 @@ fn programs_use_one_board_in_turn() {
     stay.succeed(&["upload", "icosphere:4", "--board", "port"], "");
     let pipe = stay.succeed(&["console", "port"], "info triangles\n");
     assert_eq!(pipe, "triangles 320\n");
+    let info = stay.succeed(&["info", "--board", "port", "--json"], "");
+    let info: serde_json::Value = serde_json::from_str(&info).unwrap();
+    assert_eq!(info["triangles"], "320");
+
+    // All that the board sends is logged, and the session ends with a text, or in time.
+    let log = stay.folder.join("log");
+    if log.exists() {
+        std::fs::remove_file(&log).unwrap();
+    }
+    let until = ["--send", "leds 5", "--until", "glint> ", "--log", "log"];
+    let said = stay.succeed(&[&["console", "port"], &until[..]].concat(), "");
+    let log = std::fs::read_to_string(&log).unwrap();
+    assert!(
+        log.contains("leds 5\r\n") && log.ends_with(&said),
+        "{log:?}"
+    );
+    assert!(log.contains("glint> "), "{log:?}");
+    let never = ["--send", "info", "--until", "never", "--timeout", "1"];
+    let output = stay.glint(&[&["console", "port"], &never[..]].concat(), "");
+    assert_eq!(output.status.code(), Some(1));
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        error.starts_with("error: --until: expected 'never' in time, found '"),
+        "{error}"
+    );
 
     let send = ["--send", "info triangles", "--send", "infor", "--json"];
     let output = stay.glint(&[&["console", "port"], &send[..]].concat(), "");
@@ -173,7 +170,7 @@ fn a_board_starts_from_an_image() {
     let (firmware, image) = (firmware.to_str().unwrap(), image.to_str().unwrap());
     let made = Command::new(env!("CARGO_BIN_EXE_glint"))
         .args(["image", "make", "--firmware", firmware, "--scene", "demo"])
-        .args(["--out", image])
+        .args(["--force", "--out", image])
         .status();
     assert!(made.unwrap().success());
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);

@@ -88,7 +88,7 @@ fn the_axis_that_is_up() {
     let drawn = |arguments: &[&str]| {
         let output = glint(
             &folder,
-            &[&["render", "--out", "a.png"], arguments].concat(),
+            &[&["render", "--force", "--out", "a.png"], arguments].concat(),
         );
         assert!(output.status.success(), "{arguments:?}");
         let note = String::from_utf8(output.stderr).unwrap();

@@ -17,7 +17,16 @@ pub fn folder(name: &str) -> PathBuf {
 
 /// Runs the program with 256 MiB of address space, so that unbounded use of memory fails.
 pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
+    glint_in(folder, arguments, &[])
+}
+
+/// Runs the program with variables of the environment in which it finds its settings.
+pub fn glint_in(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
     Command::new("sh")
+        .env_remove("GLINT_BOARD")
+        .env_remove("GLINT_BAUD")
+        .env("XDG_CONFIG_HOME", folder)
+        .envs(variables.iter().copied())
         .args([
             "-c",
             "ulimit -v 262144; exec \"$0\" \"$@\"",
@@ -29,8 +38,9 @@ pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
         .unwrap()
 }
 
+/// Runs the program, which replaces what it has written before, and returns what it prints.
 pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = glint(folder, arguments);
+    let output = glint(folder, &[arguments, &["--force"]].concat());
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {error}");
     String::from_utf8(output.stdout).unwrap()

@@ -187,7 +187,7 @@ fn warnings_of_pictures_that_show_nothing() {
     ] {
         let output = glint(
             &folder,
-            &[&["render", "--out", "a.png"], arguments].concat(),
+            &[&["render", "--force", "--out", "a.png"], arguments].concat(),
         );
         assert!(output.status.success(), "{arguments:?}");
         let error = String::from_utf8(output.stderr).unwrap();

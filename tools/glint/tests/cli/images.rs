@@ -100,13 +100,16 @@ fn the_header_of_a_bit_file_is_left_out() {
             Some(&data[..])
         );
     }
-    let error = refused(&folder, &arguments("cut.bit"));
+    let error = refused(&folder, &[&arguments("cut.bit")[..], &["--force"]].concat());
     assert!(
         error.contains("cut.bit: byte 42: expected the field e with all bytes"),
         "{error}"
     );
     fs::write(folder.join("text.bin"), "no bitstream").unwrap();
-    let error = refused(&folder, &arguments("text.bin"));
+    let error = refused(
+        &folder,
+        &[&arguments("text.bin")[..], &["--force"]].concat(),
+    );
     assert!(
         error.contains("expected an erased slot, or a bitstream"),
         "{error}"

@@ -302,7 +302,7 @@ fn failures_other_than_bad_input() {
     for (arguments, message) in [
         (
             &["upload", "cube", "--board", "/dev/no-such-port"][..],
-            "error: /dev/no-such-port: expected a serial port, found: ",
+            "error: /dev/no-such-port: expected `emulated`, `virtual` or a serial port, found: ",
         ),
         (
             &["model", "cube", "no-such-folder/cube.glm"],

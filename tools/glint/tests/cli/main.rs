@@ -11,5 +11,6 @@ mod meshes;
 mod orbits;
 mod output;
 mod package;
+mod settings;
 mod tolerance;
 mod wireframes;

@@ -119,3 +119,55 @@ fn light_on_a_mesh() {
         "error: --light: expected one light on meshes, found 2"
     );
 }
+
+/// A supersampled picture is the mean of one of twice the size, and has colours between those of the mesh.
+#[test]
+fn supersampled_pictures() {
+    let folder = folder("supersampled");
+    let render = ["render", "gear", "--camera", "2,30,60"];
+    let draw = |more: &[&str]| succeed(&folder, &[&render[..], more].concat());
+    draw(&["--out", "large.png", "--size", "640x360"]);
+    draw(&["--out", "small.png", "--supersample", "2"]);
+    let [large, small] = ["large.png", "small.png"].map(|name| picture(&folder.join(name)));
+    assert_eq!(large.len(), 4 * small.len());
+    for (at, &found) in small.iter().enumerate() {
+        let (pixel, channel) = (at / 3, at % 3);
+        let (x, y) = (pixel % 320, pixel / 320);
+        let of = |dx, dy| u32::from(large[3 * ((2 * y + dy) * 640 + 2 * x + dx) + channel]);
+        let sum = of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1);
+        assert_eq!(u32::from(found), (sum + 2) / 4);
+    }
+    // A scene too, by a factor of four.
+    let scene = ["render", "--scene", "cubes", "--size", "320x180"];
+    succeed(
+        &folder,
+        &[&scene[..], &["--supersample", "4", "--out", "cubes.png"]].concat(),
+    );
+    assert_eq!(picture(&folder.join("cubes.png")).len(), 3 * 320 * 180);
+    let large = ["--supersample", "4", "--size", "640x360", "--out", "x.png"];
+    let error = refused(&folder, &[&render[..], &large].concat());
+    assert_eq!(
+        error,
+        "error: --supersample: expected 2 for 320x180 or 640x360, or 4 for 320x180, found 4 for 640x360"
+    );
+    let board = [
+        "--supersample",
+        "2",
+        "--board",
+        "emulated",
+        "--out",
+        "x.png",
+    ];
+    let error = refused(&folder, &[&render[..], &board].concat());
+    assert!(error.ends_with("expected --board model, found --board emulated"));
+}
+
+#[test]
+fn a_command_with_nothing_to_draw_says_what_it_draws() {
+    let folder = folder("nothing");
+    let error = refused(&folder, &["render", "--out", "x.png"]);
+    assert_eq!(
+        error,
+        "error: MODEL: expected a mesh file or a generator such as teapot, or --field, --object or --scene in its place, found none"
+    );
+}

@@ -44,7 +44,10 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
             &["render", "icosphere:4", "--out", "new.png"][..],
             "new.png",
         ),
-        (&["render", "icosphere:4", "--out", "old.png"], "old.png"),
+        (
+            &["render", "icosphere:4", "--force", "--out", "old.png"],
+            "old.png",
+        ),
         (
             &["render", "cube", "--out", "/dev/null", "--depth", "a.f32"],
             "a.f32",
@@ -243,4 +246,129 @@ fn a_link_stays_and_permissions_too() {
     assert!(fs::read(&file).unwrap().starts_with(b"GLM2"));
     assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
     assert_eq!(names(&folder), ["file.glm", "link.glm"]);
+}
+
+/// A file with contents is replaced by `--force` alone, for every command, before any work; an empty file is replaced.
+#[test]
+fn a_file_with_contents_is_kept() {
+    let folder = folder("kept");
+    fs::write(folder.join("log.csv"), LOG).unwrap();
+    fs::write(folder.join("a.wft"), "end\n").unwrap();
+    fs::write(folder.join("empty.png"), "").unwrap();
+    for name in [
+        "old.png", "old.glm", "old.csv", "old.wfb", "old.json", "old.gif",
+    ] {
+        fs::write(folder.join(name), "mine").unwrap();
+    }
+    for (arguments, name) in [
+        (&["render", "cube", "--out", "old.png"][..], "old.png"),
+        (
+            &[
+                "render",
+                "cube",
+                "--out",
+                "/dev/null",
+                "--stats",
+                "old.json",
+            ],
+            "old.json",
+        ),
+        (&["orbit", "cube", "--out", "old.gif"], "old.gif"),
+        (&["model", "cube", "old.glm"], "old.glm"),
+        (&["imu", "replay", "log.csv", "--out", "old.csv"], "old.csv"),
+        (&["imu", "record", "old.csv"], "old.csv"),
+        (&["gesture", "mask", "--out", "old.png"], "old.png"),
+        (&["wireframe", "convert", "a.wft", "old.wfb"], "old.wfb"),
+        (
+            &["wireframe", "make", "cube", "--out", "old.wfb"],
+            "old.wfb",
+        ),
+        (
+            &["wireframe", "render", "a.wft", "--out", "old.png"],
+            "old.png",
+        ),
+        (&["demo", "--out", "."], "./old.png"),
+    ] {
+        assert_eq!(
+            refused(&folder, arguments),
+            format!(
+                "error: {name}: expected a new file, or --force to replace it, found a file of 4 bytes"
+            )
+        );
+    }
+    for name in [
+        "old.png", "old.glm", "old.csv", "old.wfb", "old.json", "old.gif",
+    ] {
+        assert_eq!(fs::read(folder.join(name)).unwrap(), b"mine");
+    }
+    for arguments in [
+        &["render", "cube", "--out", "empty.png"][..],
+        &["render", "cube", "--out", "old.png", "--force"],
+        &["render", "cube", "--out", "old.png", "-f"],
+    ] {
+        assert!(glint(&folder, arguments).status.success());
+    }
+    let empty = fs::read(folder.join("empty.png")).unwrap();
+    assert!(empty == fs::read(folder.join("old.png")).unwrap());
+}
+
+/// `-` reads a mesh from standard input, in every format, and writes meshes and pictures to standard output; reports go to standard error.
+#[test]
+fn standard_input_and_output() {
+    let folder = folder("standard");
+    succeed(&folder, &["render", "icosphere:2", "--out", "whole.png"]);
+    let whole = fs::read(folder.join("whole.png")).unwrap();
+    let piped = glint(&folder, &["render", "icosphere:2", "--out", "-", "--json"]);
+    assert!(piped.status.success() && piped.stdout == whole);
+    let report: serde_json::Value = serde_json::from_slice(&piped.stderr).unwrap();
+    assert_eq!(report["triangles_in"], 80);
+    for format in ["obj", "stl", "ply", "glm"] {
+        let piped = glint(&folder, &["model", "icosphere:2", "-", "--to", format]);
+        assert!(piped.status.success());
+        fs::write(folder.join("mesh"), &piped.stdout).unwrap();
+        let file = format!("file.{format}");
+        succeed(&folder, &["model", "icosphere:2", &file]);
+        assert!(
+            fs::read(folder.join(&file)).unwrap() == piped.stdout,
+            "{format}"
+        );
+        for command in [
+            "render - --up z --out -",
+            "convert - - --to glm",
+            "orbit - --up z --frames 2 --out -",
+        ] {
+            let run = |input: &str| {
+                let line =
+                    format!("\"$0\" {command} < mesh").replacen(" - ", &format!(" {input} "), 1);
+                let output = Command::new("sh")
+                    .args(["-c", &line, env!("CARGO_BIN_EXE_glint")])
+                    .current_dir(&folder)
+                    .output()
+                    .unwrap();
+                let error = String::from_utf8_lossy(&output.stderr);
+                assert!(output.status.success(), "{line}: {error}");
+                output.stdout
+            };
+            // `convert` has two of them.
+            if command.starts_with("convert") {
+                let line = format!("\"$0\" convert {file} - --to glm");
+                let named = Command::new("sh")
+                    .args(["-c", &line, env!("CARGO_BIN_EXE_glint")])
+                    .current_dir(&folder)
+                    .output()
+                    .unwrap();
+                assert!(run("-") == named.stdout, "{format}");
+            } else {
+                assert!(run("-") == run(&file), "{format}: {command}");
+            }
+        }
+    }
+    let error = refused(&folder, &["model", "cube", "-"]);
+    assert_eq!(error, "error: -: expected --to with a format, found none");
+    let two = ["render", "cube", "--out", "-", "--stats", "-"];
+    let error = refused(&folder, &two);
+    assert_eq!(
+        error,
+        "error: -: expected one output to standard output, found two"
+    );
 }

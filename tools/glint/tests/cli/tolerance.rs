@@ -9,7 +9,8 @@ const PLY: &str = "ply\nformat ascii 1.0\nauthor a b\nelement vertex 3\nproperty
 
 /// Renders a model, and returns the lines of warning.
 fn warnings(folder: &Path, model: &str) -> Vec<String> {
-    let output = glint(folder, &["render", model, "--up", "z", "--out", "a.png"]);
+    let arguments = ["render", model, "--up", "z", "--force", "--out", "a.png"];
+    let output = glint(folder, &arguments);
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(output.status.success(), "{model}: {error}");
     assert!(picture(&folder.join("a.png")).iter().any(|&c| c != 0));

@@ -66,35 +66,28 @@ pub trait Console {
     fn expect(&mut self, expected: &str, what: &str) -> String;
 }
 
-impl Console for VirtualBoard {
-    fn clock(&self) -> u32 {
-        self.clock_hz()
-    }
+/// Implements [`Console`] by the methods of a board, which have the same names on both.
+macro_rules! console_of {
+    ($board:ty) => {
+        impl Console for $board {
+            fn clock(&self) -> u32 {
+                self.clock_hz()
+            }
 
-    fn send(&mut self, bytes: &[u8]) {
-        self.uart_write(bytes);
-    }
+            fn send(&mut self, bytes: &[u8]) {
+                self.uart_write(bytes);
+            }
 
-    fn expect(&mut self, expected: &str, what: &str) -> String {
-        self.read_until(expected, LIMIT)
-            .unwrap_or_else(|error| panic!("`{what}`: {error}"))
-    }
+            fn expect(&mut self, expected: &str, what: &str) -> String {
+                self.read_until(expected, LIMIT)
+                    .unwrap_or_else(|error| panic!("`{what}`: {error}"))
+            }
+        }
+    };
 }
 
-impl Console for EmulatedBoard {
-    fn clock(&self) -> u32 {
-        self.clock_hz()
-    }
-
-    fn send(&mut self, bytes: &[u8]) {
-        self.uart_write(bytes);
-    }
-
-    fn expect(&mut self, expected: &str, what: &str) -> String {
-        self.read_until(expected, LIMIT)
-            .unwrap_or_else(|error| panic!("`{what}`: {error}"))
-    }
-}
+console_of!(VirtualBoard);
+console_of!(EmulatedBoard);
 
 /// Starts an emulated board with `image`; returns the board, and its output up to the first prompt.
 pub fn emulated(image: &[u8]) -> (EmulatedBoard, String) {

@@ -1,10 +1,10 @@
 //! `glint imu replay`.
 
 use super::source::read_log;
-use crate::cli::common::{
-    TransferArguments, advance, bad_value, bar, count_bar, print_json, say, spinner,
-};
+use crate::cli::common::{TransferArguments, bad_value};
+use crate::cli::messages::{print_json, say};
 use crate::cli::output::{Output, TABLE};
+use crate::cli::progress::{Step, advance, bar, count_bar, spinner};
 use clap::Args;
 use glint::board::{Board, ModelOrBoard};
 use glint::console::Console;
@@ -15,7 +15,6 @@ use glint::transfer::Route;
 use glint_core::calibration::{Report, Units};
 use glint_core::fixed::{Q2_30, Q32_32};
 use glint_core::orientation::{LONGEST_STEP, LSB_PER_DPS, LSB_PER_G, Quaternion, Scale};
-use indicatif::ProgressBar;
 use serde::Serialize;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -150,7 +149,7 @@ impl ReplayArguments {
             ModelOrBoard::Model => {
                 let spinner = spinner("replaying");
                 let replayed = replay::on_model(prepared)?;
-                spinner.finish_and_clear();
+                spinner.finish();
                 Ok(replayed)
             }
             ModelOrBoard::Board(name) => {
@@ -176,14 +175,14 @@ impl ReplayArguments {
             };
             if now != stage {
                 // Resets both bars, so that only the bar of the new stage is shown.
-                bars.iter().for_each(ProgressBar::reset);
+                bars.iter().for_each(Step::reset);
                 stage = now;
             }
             advance(bar)(done, all);
         };
         let route = self.transfer.transfer.unwrap_or(route);
         let replayed = replay::on_board(prepared, &mut Console::new(board), route, &mut progress)?;
-        bars.iter().for_each(ProgressBar::finish_and_clear);
+        bars.iter().for_each(Step::finish);
         Ok(replayed)
     }
 

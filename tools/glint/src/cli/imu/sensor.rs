@@ -1,8 +1,9 @@
 //! `glint imu stream`, `calibrate` and `record`.
 
 use super::source::SensorArguments;
-use crate::cli::common::{advance, count_bar, print_json, say};
+use crate::cli::messages::{print_json, say};
 use crate::cli::output::{Output, TABLE};
+use crate::cli::progress::{advance, count_bar};
 use clap::Args;
 use glint::console::Console;
 use glint::imu::log::Entry;
@@ -69,7 +70,7 @@ impl CalibrateArguments {
             self.samples,
             &mut |samples| progress(samples.into(), self.samples.into()),
         )?;
-        bar.finish_and_clear();
+        bar.finish();
         if self.json {
             return print_json(&found);
         }
@@ -115,7 +116,7 @@ impl RecordArguments {
                 progress(entries.len() as u64, self.samples.into());
             },
         )?;
-        bar.finish_and_clear();
+        bar.finish();
         out.write(|out| {
             writeln!(out, "{}", sensor::HEADER)?;
             entries

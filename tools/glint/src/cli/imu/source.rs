@@ -1,6 +1,9 @@
 //! The two sources of samples: a board's sensor, and a log file.
 
-use crate::cli::common::{LineArguments, spinner, warn};
+use crate::cli::common::LineArguments;
+use crate::cli::config::BoardChoice;
+use crate::cli::messages::warn;
+use crate::cli::progress::spinner;
 use clap::Args;
 use glint::board::{Board, BoardName};
 use glint::console::Console;
@@ -9,12 +12,11 @@ use glint::imu::log::{self, Entry};
 use glint::imu::sensor;
 use std::path::{Path, PathBuf};
 
-/// Options of a board with a sensor.
+/// Options of a board with a sensor: simulated boards have a virtual MPU-6050.
 #[derive(Args)]
 pub struct SensorArguments {
-    /// Board of the sensor: `emulated` or `virtual` (the verilated SoC), both with a virtual MPU-6050, or a serial port.
-    #[arg(long)]
-    board: BoardName,
+    #[command(flatten)]
+    board: BoardChoice,
     /// Motion of the virtual sensor: a log in raw counts, from the board's start [default: at rest, with noise and bias].
     #[arg(long, value_name = "LOG.csv")]
     sensor: Option<PathBuf>,
@@ -30,8 +32,9 @@ impl SensorArguments {
 
     /// Opens the board and waits for its sensor's first sample.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
+        let name = self.board.name()?;
         anyhow::ensure!(
-            self.board.is_simulated() || self.sensor.is_none(),
+            name.is_simulated() || self.sensor.is_none(),
             "--sensor: expected --board emulated or --board virtual"
         );
         let entries = match &self.sensor {
@@ -39,7 +42,7 @@ impl SensorArguments {
             Some(path) => Some(read_log(path)?),
         };
         let wires = sensor::virtual_sensor(entries.as_deref());
-        let mut board: Box<dyn Board> = match &self.board {
+        let mut board: Box<dyn Board> = match &name {
             BoardName::Emulated => {
                 let mut board = self.line.emulated_board()?;
                 board.inner().plug(wires);
@@ -54,7 +57,7 @@ impl SensorArguments {
         };
         let spinner = spinner("waiting for the sensor");
         let found = sensor::wait(&mut Console::new(board.as_mut()));
-        spinner.finish_and_clear();
+        spinner.finish();
         eprintln!("{}", found?);
         Ok(board)
     }

@@ -1,0 +1,140 @@
+//! Defaults of the options for boards: from the environment, then from the configuration file.
+
+use anyhow::Context;
+use glint::board::BoardName;
+use glint::error::FormatError;
+use serde::Deserialize;
+use std::env;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Baud rate without an option, a variable or an entry.
+const BAUD: u32 = 115_200;
+
+/// The configuration file, `glint/config.toml` in the user's configuration folder.
+#[derive(Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(deny_unknown_fields)]
+struct Config {
+    /// Name of the board of commands that need one.
+    board: Option<String>,
+    /// Baud rate of serial ports, in bits per second.
+    baud: Option<u32>,
+}
+
+/// The board of a command that needs one.
+#[derive(clap::Args)]
+pub struct BoardChoice {
+    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of
+    /// the configuration file, or emulated].
+    #[arg(long)]
+    board: Option<BoardName>,
+}
+
+impl BoardChoice {
+    /// The name of the board.
+    ///
+    /// # Errors
+    /// The configuration file is damaged.
+    pub fn name(&self) -> anyhow::Result<BoardName> {
+        board(self.board.as_ref())
+    }
+}
+
+/// The board of an option, of the environment or of the configuration file, in this order; without any, the emulated board.
+///
+/// # Errors
+/// The configuration file is damaged.
+pub fn board(option: Option<&BoardName>) -> anyhow::Result<BoardName> {
+    if let Some(board) = option {
+        return Ok(board.clone());
+    }
+    let board = match variable("GLINT_BOARD") {
+        Some(board) => Some(board),
+        None => read()?.board,
+    };
+    Ok(match board {
+        Some(board) => board.parse()?,
+        None => BoardName::Emulated,
+    })
+}
+
+/// The baud rate of an option, of the environment or of the configuration file, in this order; without any, 115,200.
+///
+/// # Errors
+/// The variable is no number, or the configuration file is damaged.
+pub fn baud(option: Option<u32>) -> anyhow::Result<u32> {
+    if let Some(baud) = option {
+        return Ok(baud);
+    }
+    if let Some(text) = variable("GLINT_BAUD") {
+        let baud = text.parse().map_err(|_| {
+            let found = glint::error::quote(text.as_bytes());
+            FormatError::whole("a number of bits per second", found).in_file("GLINT_BAUD")
+        });
+        return Ok(baud?);
+    }
+    Ok(read()?.baud.unwrap_or(BAUD))
+}
+
+/// The value of an environment variable that is set, and not empty.
+fn variable(name: &str) -> Option<String> {
+    let value = env::var_os(name)?.to_string_lossy().into_owned();
+    Some(value).filter(|value| !value.is_empty())
+}
+
+/// The path of the configuration file, if the user has a home.
+fn path() -> Option<PathBuf> {
+    let folder = env::var_os("XDG_CONFIG_HOME").map(PathBuf::from);
+    let folder = folder.filter(|folder| folder.is_absolute());
+    let folder = folder.or_else(|| Some(Path::new(&env::var_os("HOME")?).join(".config")));
+    Some(folder?.join("glint").join("config.toml"))
+}
+
+/// Reads the configuration file, if there is one.
+fn read() -> anyhow::Result<Config> {
+    let Some(path) = path() else {
+        return Ok(Config::default());
+    };
+    match std::fs::read_to_string(&path) {
+        Ok(text) => Ok(parse(&text).map_err(|error| error.in_path(&path))?),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Config::default()),
+        Err(error) => Err(error).with_context(|| path.display().to_string()),
+    }
+}
+
+fn parse(text: &str) -> Result<Config, FormatError> {
+    toml::from_str(text).map_err(|error: toml::de::Error| {
+        let expected = "board = \"NAME\" and baud = NUMBER, each at most once";
+        FormatError::whole(expected, error.message().escape_debug().to_string())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_known_entries_are_read() {
+        let config = parse("# mine\nbaud = 9600\nboard = \"/dev/ttyUSB1\"\n").unwrap();
+        let board = Some("/dev/ttyUSB1".to_owned());
+        assert_eq!(
+            config,
+            Config {
+                board,
+                baud: Some(9600)
+            }
+        );
+        assert_eq!(parse(""), Ok(Config::default()));
+        for text in [
+            "bord = \"x\"",
+            "baud = -1",
+            "baud = \"fast\"",
+            "board = 3",
+            "board",
+        ] {
+            let error = parse(text).unwrap_err().to_string();
+            assert!(error.starts_with("expected board = \"NAME\""), "{error}");
+            assert!(!error.contains('\n'));
+        }
+    }
+}

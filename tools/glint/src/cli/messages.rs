@@ -1,0 +1,80 @@
+//! What the commands print: results on standard output, warnings and notes on standard error.
+
+use anyhow::Context;
+use serde::Serialize;
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+
+/// Whether an output goes to standard output.
+static STDOUT_IS_OUTPUT: AtomicBool = AtomicBool::new(false);
+
+/// Leaves standard output to an output: from now on `say` prints to standard error. Returns false if an output has it already.
+pub fn give_up_stdout() -> bool {
+    !STDOUT_IS_OUTPUT.swap(true, Ordering::Relaxed)
+}
+
+/// Prints a line to standard output, or to standard error if standard output has an output. A closed pipe, as with `| head`, is no error.
+pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
+    let written = match STDOUT_IS_OUTPUT.load(Ordering::Relaxed) {
+        true => writeln!(std::io::stderr(), "{line}"),
+        false => writeln!(std::io::stdout(), "{line}"),
+    };
+    match written {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(error).context("standard output")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// How much a command prints beside its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Loudness {
+    /// Errors alone.
+    Quiet,
+    /// Warnings, notes and progress too.
+    Usual,
+    /// Also each step with its time.
+    Verbose,
+}
+
+static LOUDNESS: AtomicU8 = AtomicU8::new(Loudness::Usual as u8);
+
+/// Sets how much the command prints beside its result.
+pub fn set_loudness(loudness: Loudness) {
+    LOUDNESS.store(loudness as u8, Ordering::Relaxed);
+}
+
+/// How much the command prints beside its result.
+pub fn loudness() -> Loudness {
+    const QUIET: u8 = Loudness::Quiet as u8;
+    const VERBOSE: u8 = Loudness::Verbose as u8;
+    match LOUDNESS.load(Ordering::Relaxed) {
+        QUIET => Loudness::Quiet,
+        VERBOSE => Loudness::Verbose,
+        _ => Loudness::Usual,
+    }
+}
+
+/// Prints a warning to standard error, on one line.
+pub fn warn(text: impl std::fmt::Display) {
+    if loudness() == Loudness::Quiet {
+        return;
+    }
+    // There is no place to report that standard error is closed.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// Prints a note to standard error, on one line.
+pub fn note(text: impl std::fmt::Display) {
+    if loudness() == Loudness::Quiet {
+        return;
+    }
+    // There is no place to report that standard error is closed.
+    let _ = writeln!(std::io::stderr(), "note: {text}");
+}
+
+/// Prints a value as JSON on one line.
+pub fn print_json(value: &impl Serialize) -> anyhow::Result<()> {
+    say(serde_json::to_string(value)?)
+}

@@ -1,0 +1,115 @@
+//! Defaults from the environment and from the configuration file, ports, and how much the program prints.
+
+use crate::common::{folder, glint, glint_in, succeed};
+use std::path::Path;
+
+/// The error of an upload to a serial port that does not exist, which names the port.
+fn error(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+    let output = glint_in(folder, arguments, variables);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success(), "{error}");
+    assert_eq!(error.lines().count(), 1, "{error}");
+    error
+}
+
+#[test]
+fn an_option_goes_before_the_environment_and_that_before_the_file() {
+    let folder = folder("settings");
+    std::fs::create_dir(folder.join("glint")).unwrap();
+    let file = folder.join("glint/config.toml");
+    std::fs::write(&file, "board = \"/dev/of-the-file\"\nbaud = 9600\n").unwrap();
+    let variable = [("GLINT_BOARD", "/dev/of-the-environment")];
+    let upload = ["upload", "cube"];
+    let with_option = ["upload", "cube", "--board", "/dev/of-the-option"];
+    for (arguments, variables, expected) in [
+        (&upload[..], &[][..], "/dev/of-the-file"),
+        (&upload, &variable, "/dev/of-the-environment"),
+        (&with_option, &variable, "/dev/of-the-option"),
+        (&["console", "--send", "info"], &[], "/dev/of-the-file"),
+        (&["info"], &variable, "/dev/of-the-environment"),
+        (&["imu", "calibrate"], &[], "/dev/of-the-file"),
+        (
+            &["gesture", "mask", "--out", "x.png"],
+            &[],
+            "/dev/of-the-file",
+        ),
+        // An empty variable is none.
+        (&upload, &[("GLINT_BOARD", "")], "/dev/of-the-file"),
+    ] {
+        let error = error(&folder, arguments, variables);
+        let start =
+            format!("error: {expected}: expected `emulated`, `virtual` or a serial port, found: ");
+        assert!(error.starts_with(&start), "{error}");
+        // The ports of this host, of which there may be none.
+        assert!(error.contains("; this host has "), "{error}");
+    }
+    let slow = error(&folder, &upload, &[("GLINT_BAUD", "slow")]);
+    assert_eq!(
+        slow,
+        "error: GLINT_BAUD: expected a number of bits per second, found 'slow'\n"
+    );
+    std::fs::write(&file, "bord = \"x\"\n").unwrap();
+    let damaged = error(&folder, &upload, &[]);
+    let start = format!("error: {}: expected board = \"NAME\"", file.display());
+    assert!(damaged.starts_with(&start), "{damaged}");
+    // Commands that need no board do not read the file.
+    succeed(&folder, &["model", "cube", "cube.obj"]);
+}
+
+#[test]
+fn ports_are_listed() {
+    let folder = folder("ports");
+    let ports: serde_json::Value =
+        serde_json::from_str(&succeed(&folder, &["ports", "--json"])).unwrap();
+    let lines = succeed(&folder, &["ports"]);
+    // Without a port there is one line too.
+    assert_eq!(
+        lines.lines().count(),
+        ports.as_array().unwrap().len().max(1)
+    );
+}
+
+/// Warnings are usual, `--quiet` leaves them out, and `--verbose` adds the steps with their times.
+#[test]
+fn quiet_and_verbose() {
+    let folder = folder("loudness");
+    let arguments = ["render", "cube", "--look-at", "0,-2,0,0,-1,0", "--out"];
+    let said = |name: &str, option: &[&str]| {
+        let output = glint(&folder, &[&arguments[..], &[name], option].concat());
+        assert!(output.status.success());
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let usual = said("a.png", &[]);
+    assert!(
+        usual.starts_with("warning: no triangle is drawn: "),
+        "{usual}"
+    );
+    assert_eq!(usual.lines().count(), 1);
+    assert_eq!(said("b.png", &["--quiet"]), "");
+    assert_eq!(said("c.png", &["-q"]), "");
+    let verbose = said("d.png", &["-v"]);
+    let step = verbose.lines().find(|line| line.starts_with("rendering: "));
+    let seconds = step.unwrap().strip_prefix("rendering: ").unwrap();
+    assert!(seconds.strip_suffix(" s").unwrap().parse::<f64>().is_ok());
+    assert!(verbose.contains(&usual));
+}
+
+/// There is a manual page for the program and for each command, which names the command's options.
+#[test]
+fn manual_pages() {
+    let folder = folder("man");
+    succeed(&folder, &["man", "pages/man1"]);
+    let page = |name: &str| {
+        let text = std::fs::read_to_string(folder.join("pages/man1").join(name)).unwrap();
+        assert!(text.contains(".TH"), "{name}");
+        // roff has a backslash before each hyphen.
+        text.replace('\\', "")
+    };
+    assert!(page("glint.1").contains("glint-render(1)"));
+    assert!(page("glint-render.1").contains("--supersample"));
+    assert!(page("glint-imu-replay.1").contains("--follow-bias"));
+    // Pages are outputs like others.
+    let again = glint(&folder, &["man", "pages/man1"]);
+    let error = String::from_utf8(again.stderr).unwrap();
+    assert!(error.contains("or --force to replace it"), "{error}");
+}

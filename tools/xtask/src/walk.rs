@@ -1,0 +1,263 @@
+//! `cargo xtask walk`: builds of the virtual board that have only some blocks, each run with its firmware.
+//!
+//! A build is that of a scene, or of a single optional block with the blocks which this one is a part of. Each has to start and to
+//! answer `info` with its blocks. The build of a scene draws the scene's picture with the firmware for the scene; the picture has to
+//! equal that of the complete build, which has all blocks and all parts of the firmware, in no more cycles.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::slice;
+
+use anyhow::{Context, Result, bail, ensure};
+use glint_core::block::Block;
+use glint_scene::Scene;
+use serde::Deserialize;
+
+use crate::gateware::{self, Board};
+use crate::{bootstrap, firmware, paths, run, scenes};
+
+/// Prefix of the name of a build with a single block.
+const ONLY: &str = "only-";
+
+/// The builds of a test run, one each of the kinds: a scene, a block that draws nothing alone, and one that draws.
+pub const SAMPLE: [&str; 3] = ["wireframe", "only-scanout", "only-gesture"];
+
+/// The statistics of a frame from `glint render --stats`, as far as a walk compares them.
+#[derive(Deserialize)]
+struct Stats {
+    cycles: u64,
+}
+
+/// A build of the virtual board.
+struct Build {
+    name: String,
+    /// Folder of the verilated SoC.
+    folder: PathBuf,
+    /// The firmware's image.
+    firmware: PathBuf,
+}
+
+/// A frame that a build has drawn.
+struct Frame {
+    png: Vec<u8>,
+    cycles: u64,
+}
+
+/// Sets up, and walks the builds `names`, or all of them if it is empty: names of scenes, and `only-BLOCK`.
+///
+/// # Errors
+/// As [`walk`].
+pub fn set_up_and_walk(names: &[String]) -> Result<()> {
+    bootstrap::bootstrap()?;
+    firmware::build(Board::Virtual, &[])?;
+    run::step(
+        "build glint",
+        Command::new("cargo")
+            .args(["build", "-p", "glint", "--bin", "glint"])
+            .current_dir(paths::root()),
+    )?;
+    walk(names)
+}
+
+/// Walks builds, when `glint` and the firmware with all parts are built.
+///
+/// # Errors
+/// A name is unknown, a build fails, does not answer, or draws another picture than the complete build, or takes more cycles.
+pub fn walk(names: &[String]) -> Result<()> {
+    let all: Vec<Scene> = scenes::all().collect();
+    let everything = || all.iter().map(Scene::name).map(str::to_owned);
+    let subsets = || Block::ALL.map(|block| format!("{ONLY}{}", block.name()));
+    let names = match names {
+        [] => everything().chain(subsets()).collect(),
+        names => names.to_vec(),
+    };
+    let complete = Build::complete()?;
+    let mut lines = Vec::new();
+    for name in &names {
+        let line = if let Some(block) = name.strip_prefix(ONLY) {
+            subset(block)
+        } else if let Some(scene) = all.iter().find(|scene| scene.name() == name) {
+            of_scene(scene, &complete)
+        } else {
+            let known: Vec<_> = everything().chain(subsets()).collect();
+            bail!("{name}: expected {}", known.join(", "));
+        };
+        run::print_progress(&format!("  {}", line.as_ref().map_or("FAIL", |line| line)));
+        lines.push(line.with_context(|| format!("the build {name}")));
+    }
+    let failures: Vec<_> = lines
+        .iter()
+        .filter_map(|line| line.as_ref().err())
+        .collect();
+    let failures: Vec<_> = failures.iter().map(|error| format!("{error:#}")).collect();
+    ensure!(failures.is_empty(), "{}", failures.join("\n"));
+    Ok(())
+}
+
+/// Runs the build with a single block, with the firmware that has all parts. Returns a line about it.
+fn subset(name: &str) -> Result<String> {
+    let block = Block::ALL.into_iter().find(|block| block.name() == name);
+    let Some(block) = block else {
+        bail!("no block {name}: expected {}", Block::NAMES.join(", "));
+    };
+    let mut blocks = vec![block];
+    if block == Block::Line {
+        blocks.push(Block::Triangle);
+    }
+    Build::single(&format!("{ONLY}{name}"), &blocks)?.answers(&blocks)?;
+    Ok(format!("{ONLY}{name}: answers"))
+}
+
+/// Draws a scene's picture on its own build and on the `complete` one. Returns a line about it.
+fn of_scene(scene: &Scene, complete: &Build) -> Result<String> {
+    let own = Build::of_scene(scene)?;
+    let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();
+    own.answers(&blocks)?;
+    let [own, reference] = [own.draw(scene)?, complete.draw(scene)?];
+    ensure!(
+        own.png == reference.png,
+        "its picture differs from that of the complete build"
+    );
+    ensure!(
+        own.cycles <= reference.cycles,
+        "a frame takes {} cycles, {} on the complete build: expected no more",
+        own.cycles,
+        reference.cycles
+    );
+    Ok(format!(
+        "{}: same picture, {} cycles; {} on the complete build",
+        scene.name(),
+        own.cycles,
+        reference.cycles
+    ))
+}
+
+/// Path of a firmware's image in `target`.
+fn firmware_image(name: &str) -> PathBuf {
+    paths::target()
+        .join("firmware")
+        .join(name)
+        .with_extension("bin")
+}
+
+impl Build {
+    /// The build with all blocks and all parts of the firmware.
+    fn complete() -> Result<Self> {
+        gateware::build(Board::Virtual)?;
+        Ok(Self {
+            name: "complete".to_owned(),
+            folder: Board::Virtual.folder(),
+            firmware: firmware_image("glint"),
+        })
+    }
+
+    /// Builds the virtual board with a single block.
+    fn single(name: &str, blocks: &[Block]) -> Result<Self> {
+        let mut options = vec!["--blocks"];
+        options.extend(blocks.iter().map(|block| block.name()));
+        Ok(Self {
+            name: name.to_owned(),
+            folder: gateware::build_beside(Board::Virtual, name, &options)?,
+            firmware: firmware_image("glint"),
+        })
+    }
+
+    /// Builds what a scene needs.
+    fn of_scene(scene: &Scene) -> Result<Self> {
+        let name = scene.name();
+        let options = scene.needs().options();
+        let options: Vec<_> = options.iter().map(String::as_str).collect();
+        firmware::build_for(Board::Virtual, slice::from_ref(scene), &[])?;
+        Ok(Self {
+            name: name.to_owned(),
+            folder: gateware::build_beside(Board::Virtual, name, &options)?,
+            firmware: firmware_image(&format!("glint-{name}")),
+        })
+    }
+
+    /// Fails unless `info` has exactly these blocks.
+    fn answers(&self, blocks: &[Block]) -> Result<()> {
+        let bits: u32 = blocks.iter().map(|block| block.bit()).sum();
+        let expected = format!("blocks {bits:#x}");
+        let mut reply = Vec::new();
+        let arguments = ["console", "virtual", "--send", "info blocks"].map(Path::new);
+        run::watched_step(
+            &format!("info of {}", self.name),
+            &mut self.glint(&arguments),
+            |line| {
+                reply.push(line.to_owned());
+            },
+        )?;
+        ensure!(
+            reply.iter().any(|line| line.trim() == expected),
+            "expected `{expected}` from `info blocks`, got {:?}",
+            reply.join("\n")
+        );
+        Ok(())
+    }
+
+    /// Draws the scene's picture.
+    fn draw(&self, scene: &Scene) -> Result<Frame> {
+        let folder = paths::target().join("walk");
+        fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+        let picture = folder.join(format!("{}-{}.png", scene.name(), self.name));
+        let stats = picture.with_extension("json");
+        let words = [
+            "render",
+            "--board",
+            "virtual",
+            "--scene",
+            scene.name(),
+            "--stats",
+        ];
+        let mut arguments: Vec<_> = words.into_iter().map(Path::new).collect();
+        arguments.extend([&stats, Path::new("--out"), &picture]);
+        run::step(
+            &format!("frame of {} on {}", scene.name(), self.name),
+            &mut self.glint(&arguments),
+        )?;
+        let read =
+            |path: &Path| fs::read(path).with_context(|| format!("reading {}", path.display()));
+        let found: Stats = serde_json::from_slice(&read(&stats)?)?;
+        Ok(Frame {
+            png: read(&picture)?,
+            cycles: found.cycles,
+        })
+    }
+
+    /// `glint` with these arguments, which runs this build with its firmware.
+    fn glint(&self, arguments: &[&Path]) -> Command {
+        let mut command = Command::new(paths::target().join("debug/glint"));
+        command
+            .args(arguments)
+            .arg("--firmware")
+            .arg(&self.firmware)
+            .env("GLINT_VIRTUAL_BOARD", &self.folder)
+            .current_dir(paths::root());
+        command
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_build_is_an_error_that_names_the_known_ones() {
+        let error = subset("lamp").err().map(|error| error.to_string());
+        let expected = format!("no block lamp: expected {}", Block::NAMES.join(", "));
+        assert_eq!(error, Some(expected));
+    }
+
+    #[test]
+    fn the_sample_has_builds_of_scenes_and_of_blocks() {
+        for name in SAMPLE {
+            let is_known = match name.strip_prefix(ONLY) {
+                Some(block) => Block::NAMES.contains(&block),
+                None => glint_scene::NAMES.contains(&name),
+            };
+            assert!(is_known, "{name}");
+        }
+    }
+}
