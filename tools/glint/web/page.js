@@ -2,6 +2,9 @@
 import { showPicture } from "./monitor.js";
 import { startConsole } from "./console.js";
 import { startPanel } from "./panel.js";
+import { startMotion } from "./motion.js";
+import { startUpload } from "./upload.js";
+import { startCurves } from "./curves.js";
 
 const RETRY_MS = 1000;
 const element = (id) => document.getElementById(id);
@@ -19,6 +22,9 @@ function notify(text) {
 
 const console_ = startConsole(send);
 const panel = startPanel(send);
+const showProgress = startUpload(send, (bytes) => socket.send(bytes), notify);
+const showSample = startCurves();
+startMotion(send);
 
 const HOLDERS = { you: "You have control.", other: "Another page has control; this one shows.", nobody: "No page has control." };
 
@@ -42,22 +48,43 @@ function showBoard({ name, has_pins }) {
 
 function showLists({ commands, scenes }) {
   console_.setCommands(commands);
-  const choose = (name) => {
-    const button = document.createElement("button");
-    button.type = "button";
-    button.textContent = name;
-    button.disabled = holder !== "you";
-    button.addEventListener("click", () => console_.run(`scene ${name}`));
-    return button;
-  };
-  element("scenes").replaceChildren(...scenes.map(choose));
+  element("scenes").replaceChildren(...scenes.map((name) => choice(name, `scene ${name}`)));
+  if (commands.some(({ name }) => name === "field")) send({ type: "help", command: "field" });
+}
+
+// A button that sends a command.
+function choice(text, command) {
+  const button = document.createElement("button");
+  button.type = "button";
+  button.textContent = text;
+  button.disabled = holder !== "you";
+  button.addEventListener("click", () => console_.run(command));
+  return button;
+}
+
+// Values for the parameters of a field, by their names in the firmware's help.
+const PARAMETERS = {
+  "DEPTH": "3", "box:X,Y,Z": "box:0.5,0.3,0.2", "cubes:PERIOD,HALF": "cubes:1,0.2", "planes:HALF": "planes:0.8", "octahedron:S": "octahedron:0.6",
+  "spheres:X,Y,Z,R;...": "spheres:0,0,0,0.4;0.5,0,0,0.2", "lattice:PERIOD,R": "lattice:1,0.25", "sphere:R": "sphere:0.5",
+  "moving:R,ORBIT[,DEGREES]": "moving:0.3,0.4", "union:A+B": "union:sphere:0.4+box:0.6,0.2,0.2", "smooth:K,A+B": "smooth:0.2,sphere:0.4+box:0.6,0.2,0.2",
+};
+
+// Shows the fields of a reply to `help field`.
+function showHelp(help) {
+  console_.showHelp(help);
+  if (help.command !== "field") return;
+  const forms = help.lines.at(-1)?.split(": ").slice(1).join(": ").split(" or ") ?? [];
+  const fields = forms.map((form) => PARAMETERS[form] ?? form.replace("DEPTH", PARAMETERS.DEPTH)).filter((form) => !/[A-Z]/.test(form));
+  element("fields").replaceChildren(...fields.map((field) => choice(field.split(":")[0], `field ${field}`)));
 }
 
 const HANDLERS = {
   board: showBoard,
   lists: showLists,
   console: ({ text }) => console_.show(text),
-  help: console_.showHelp,
+  help: showHelp,
+  progress: showProgress,
+  sample: showSample,
   pins: panel.show,
   control: ({ holder }) => setHolder(holder),
   notice: ({ text }) => notify(text),

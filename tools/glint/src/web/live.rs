@@ -2,7 +2,9 @@
 
 use super::inputs::{Hold, Levels};
 use super::message::Pins;
+use super::motion::Motion;
 use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Time of the board in ms that it runs at once.
@@ -13,8 +15,8 @@ const MAX_DELAY: Duration = Duration::from_millis(50);
 
 /// A board for the live page. A read from its line passes time in which the board runs, at most as fast as in reality.
 pub trait Live: Board {
-    /// Whether the host reaches the monitor and the pins.
-    fn has_pins(&self) -> bool;
+    /// The motion sensor and the hand that the page moves; `None` for a board without access to its pins.
+    fn motion(&self) -> Option<Arc<Motion>>;
 
     /// Sets buttons and switches, and returns the levels of all pins; `None` for a board without access to its pins.
     fn pins(&mut self, levels: Levels) -> Option<Pins>;
@@ -33,6 +35,7 @@ pub trait Live: Board {
 pub struct LiveSimulation<S> {
     board: SimulatedBoard<S>,
     sample_period: u64,
+    motion: Arc<Motion>,
     hold: Hold,
     /// A time, and the cycle of the board that belongs to it.
     origin: (Instant, u64),
@@ -41,12 +44,16 @@ pub struct LiveSimulation<S> {
 }
 
 impl<S: Simulation> LiveSimulation<S> {
-    /// Takes a board that runs its firmware. `sample_period` is the time in ms between two measurements on its console.
+    /// Takes a board that runs its firmware, and connects a motion sensor and a camera. `sample_period` is the time in ms between two measurements on its console.
     pub fn new(mut board: SimulatedBoard<S>, sample_period: u64) -> Self {
+        let motion = Arc::new(Motion::default());
+        board.inner().plug(motion.sensor());
+        board.inner().plug_image_sensor(motion.camera());
         let cycle = board.inner().cycles();
         Self {
             board,
             sample_period,
+            motion,
             hold: Hold::default(),
             origin: (Instant::now(), cycle),
             shown: (0, None),
@@ -93,8 +100,8 @@ impl<S: Simulation> Board for LiveSimulation<S> {
 }
 
 impl<S: Simulation> Live for LiveSimulation<S> {
-    fn has_pins(&self) -> bool {
-        true
+    fn motion(&self) -> Option<Arc<Motion>> {
+        Some(Arc::clone(&self.motion))
     }
 
     fn pins(&mut self, levels: Levels) -> Option<Pins> {
@@ -145,8 +152,8 @@ impl Board for LiveSerial {
 }
 
 impl Live for LiveSerial {
-    fn has_pins(&self) -> bool {
-        false
+    fn motion(&self) -> Option<Arc<Motion>> {
+        None
     }
 
     fn pins(&mut self, _levels: Levels) -> Option<Pins> {

@@ -159,4 +159,21 @@ pub enum FromPage {
         /// The 16 switches, one bit each.
         on: u16,
     },
+    /// Turns the motion sensor.
+    Turn {
+        /// Attitude from body to world, a quaternion w, x, y, z.
+        attitude: [f64; 4],
+    },
+    /// Moves the hand in front of the camera.
+    Hand {
+        /// Its centre as parts of the width and the height of the frame; null for no hand.
+        place: Option<[f64; 2]>,
+    },
+    /// Announces a mesh file, whose bytes follow in binary messages.
+    Upload {
+        /// Name of the file, which determines its format.
+        name: String,
+        /// Size of the file in bytes.
+        bytes: usize,
+    },
 }

@@ -7,6 +7,7 @@
 //! | [`viewer`] | one open page: its messages, and its queue |
 //! | [`hub`] | passes pictures, texts and levels to all viewers; one of them has control |
 //! | [`inputs`] | the levels and motions that the page sets |
+//! | [`motion`] | the motion sensor that the page turns, and the hand that it moves |
 //! | [`live`] | boards in real time, with their monitor and pins |
 //! | [`session`] | runs the board, its console and its transfers |
 //!
@@ -16,6 +17,7 @@ pub mod hub;
 pub mod inputs;
 pub mod live;
 pub mod message;
+pub mod motion;
 pub mod server;
 pub mod session;
 pub mod viewer;

@@ -32,13 +32,16 @@ const CSS: &str = "text/css; charset=utf-8";
 const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 /// The files of the page: name, media type and content.
-const FILES: [(&str, &str, &str); 6] = [
+const FILES: [(&str, &str, &str); 9] = [
     ("", HTML, include_str!("../../web/index.html")),
     ("page.css", CSS, include_str!("../../web/page.css")),
     ("page.js", SCRIPT, include_str!("../../web/page.js")),
     ("monitor.js", SCRIPT, include_str!("../../web/monitor.js")),
     ("console.js", SCRIPT, include_str!("../../web/console.js")),
     ("panel.js", SCRIPT, include_str!("../../web/panel.js")),
+    ("motion.js", SCRIPT, include_str!("../../web/motion.js")),
+    ("upload.js", SCRIPT, include_str!("../../web/upload.js")),
+    ("curves.js", SCRIPT, include_str!("../../web/curves.js")),
 ];
 
 /// Header fields of all files: nothing comes from elsewhere, no other page shows this one, and the address, which has the token,
@@ -110,6 +113,7 @@ impl Server {
             channels: Channels {
                 hub: Hub::default(),
                 inputs: Inputs::default(),
+                motion: board.motion(),
                 requests,
             },
             address: self.listener.local_addr()?,
@@ -119,7 +123,7 @@ impl Server {
         let channels = &shared.channels;
         channels.hub.send(&ToPage::Board {
             name: name.to_owned(),
-            has_pins: board.has_pins(),
+            has_pins: channels.motion.is_some(),
         });
         let listener = self.listener;
         let served = Arc::clone(&shared);

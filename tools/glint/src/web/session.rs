@@ -6,6 +6,7 @@ use super::live::Live;
 use super::message::{Entry, Pins, ToPage};
 use crate::board::{Board, BoardError};
 use crate::console::{self, Console, ConsoleError};
+use crate::transfer::{self, TransferError};
 use glint_core::console::PROMPT;
 use serde_json::Value;
 use std::io;
@@ -19,8 +20,8 @@ const LOOK_MS: u64 = 2;
 /// The key Ctrl-C, which ends the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Time-out of a reply to the server's own commands, in ms of the board's time.
-const PATIENCE_MS: u64 = 3000;
+/// Time between two reports of a transfer's progress.
+const REPORT: Duration = Duration::from_millis(100);
 
 /// A wish of a page.
 #[derive(Debug)]
@@ -31,6 +32,8 @@ pub enum Request {
     Interrupt,
     /// Asks for the description of a command.
     Help(String),
+    /// Uploads a mesh, and shows it.
+    Upload(Vec<u8>),
 }
 
 /// A board that shows its picture and its pins while its line is read.
@@ -105,6 +108,7 @@ pub fn run(
         },
         hub,
         sampled: Instant::now(),
+        uploads: 0,
         end: Vec::new(),
     };
     match session.serve(requests) {
@@ -119,6 +123,8 @@ struct Session<'a> {
     period: Duration,
     /// Time of the last measurement.
     sampled: Instant,
+    /// Number of uploads, which tells one transfer from the next.
+    uploads: u8,
     /// The end of the console's output; empty after commands of the server, which end with the prompt.
     end: Vec<u8>,
 }
@@ -127,15 +133,18 @@ impl Session<'_> {
     fn serve(&mut self, requests: &Receiver<Request>) -> Result<(), BoardError> {
         self.ask(Self::send_lists)?;
         let mut output = Vec::new();
+        let mut waiting = None;
         loop {
             self.board.read(&mut output, LOOK_MS)?;
             self.pass(&mut output)?;
-            let next = requests.try_recv().ok();
+            let next = waiting.take().or_else(|| requests.try_recv().ok());
             if !self.is_idle() {
                 // The user's keys go to the program that runs, as on a terminal.
                 match next {
                     Some(Request::Command(line)) => self.type_line(&line)?,
                     Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
+                    // An upload waits for the end of the command.
+                    Some(Request::Upload(mesh)) => waiting = Some(Request::Upload(mesh)),
                     Some(Request::Help(_)) | None => {}
                 }
                 continue;
@@ -144,6 +153,11 @@ impl Session<'_> {
                 Some(Request::Command(line)) => self.type_line(&line)?,
                 Some(Request::Help(command)) => {
                     self.ask(|console, hub| send_help(console, hub, command))?;
+                }
+                Some(Request::Upload(mesh)) => {
+                    self.uploads = self.uploads.wrapping_add(1);
+                    let session = self.uploads;
+                    self.ask(|console, hub| upload(console, hub, &mesh, session))?;
                 }
                 Some(Request::Interrupt) => {}
                 None if self.sampled.elapsed() >= self.period && self.hub.has_viewers() => {
@@ -185,14 +199,15 @@ impl Session<'_> {
     /// Lets the server use the console, whose output the viewers do not see, up to the next prompt.
     fn ask(
         &mut self,
-        task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), ConsoleError>,
+        task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
     ) -> Result<(), BoardError> {
-        let mut console = Console::new(&mut self.board).patience(PATIENCE_MS);
-        let result = task(&mut console, self.hub).and_then(|()| console.greet().map(drop));
+        let mut console = Console::new(&mut self.board);
+        let result = task(&mut console, self.hub).and_then(|()| Ok(console.greet().map(drop)?));
         self.end.clear();
         match result {
             Ok(()) => Ok(()),
-            Err(ConsoleError::Board(error)) => Err(error),
+            Err(TransferError::Board(error))
+            | Err(TransferError::Console(ConsoleError::Board(error))) => Err(error),
             Err(error) => {
                 self.hub.notify(error.to_string(), true);
                 Ok(())
@@ -201,7 +216,7 @@ impl Session<'_> {
     }
 
     /// Sends the lists of the firmware.
-    fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), ConsoleError> {
+    fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
         console.synchronise()?;
         let entry = |line: &String| {
             let (name, text) = line.split_once(' ')?;
@@ -230,13 +245,13 @@ fn send_help(
     console: &mut Console<Watched>,
     hub: &Hub,
     command: String,
-) -> Result<(), ConsoleError> {
+) -> Result<(), TransferError> {
     let lines = optional(console.command(&format!("help {command}")))?;
     hub.send(&ToPage::Help { command, lines });
     Ok(())
 }
 
-fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), ConsoleError> {
+fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
     let stats = optional(console.command("stats json"))?;
     let stats = stats
         .first()
@@ -252,5 +267,28 @@ fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), ConsoleE
         stats: stats.unwrap_or(Value::Null),
         attitude,
     });
+    Ok(())
+}
+
+fn upload(
+    console: &mut Console<Watched>,
+    hub: &Hub,
+    mesh: &[u8],
+    session: u8,
+) -> Result<(), TransferError> {
+    let mut reported = Instant::now();
+    let mut report = |done, all| {
+        if done == all || reported.elapsed() >= REPORT {
+            reported = Instant::now();
+            hub.send(&ToPage::Progress { done, all });
+        }
+    };
+    transfer::upload(console, mesh, None, session, &mut report)?;
+    let size = mesh.len() as u64;
+    hub.send(&ToPage::Progress {
+        done: size,
+        all: size,
+    });
+    hub.notify(format!("the model is shown: {size} bytes"), false);
     Ok(())
 }

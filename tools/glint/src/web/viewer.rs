@@ -3,9 +3,14 @@
 use super::hub::{Hub, Id};
 use super::inputs::Inputs;
 use super::message::{FromPage, MAX_MESSAGE};
+use super::motion::Motion;
 use super::session::Request;
+use crate::convert::Options;
+use crate::model;
 use std::io::ErrorKind;
 use std::net::TcpStream;
+use std::path::Path;
+use std::sync::Arc;
 use std::sync::mpsc::{SyncSender, TrySendError};
 use std::time::Duration;
 use tungstenite::protocol::frame::coding::CloseCode;
@@ -18,12 +23,27 @@ const LOOK: Duration = Duration::from_millis(4);
 /// Maximum length of a line for the console.
 const MAX_LINE: usize = 200;
 
+/// Maximum size of a file for an upload in bytes.
+const MAX_UPLOAD: usize = 64 << 20;
+
+/// Maximum length of a file's name.
+const MAX_NAME: usize = 100;
+
+/// A mesh file on its way from the page.
+struct Upload {
+    name: String,
+    bytes: usize,
+    data: Vec<u8>,
+}
+
 /// The way of messages between the pages and the board.
 pub struct Channels {
     /// The viewers.
     pub hub: Hub,
     /// The levels that the viewer with control sets.
     pub inputs: Inputs,
+    /// The motion sensor and the hand, if the page moves them.
+    pub motion: Option<Arc<Motion>>,
     /// The commands for the board.
     pub requests: SyncSender<Request>,
 }
@@ -60,6 +80,7 @@ fn exchange(
     channels: &Channels,
 ) -> tungstenite::Result<Option<Reason>> {
     let mut is_sent = true;
+    let mut upload = None;
     loop {
         // Pictures that come while the last one is on its way replace each other.
         if is_sent {
@@ -80,7 +101,7 @@ fn exchange(
             }
             Err(error) => return Err(error),
         };
-        if let Err(reason) = handle(&message, id, channels) {
+        if let Err(reason) = handle(&message, id, channels, &mut upload) {
             return Ok(Some(reason));
         }
     }
@@ -112,10 +133,15 @@ fn close(socket: &mut WebSocket<TcpStream>, reason: Reason) -> tungstenite::Resu
 }
 
 /// Acts on a message from the page.
-fn handle(message: &Message, id: Id, channels: &Channels) -> Result<(), Reason> {
+fn handle(
+    message: &Message,
+    id: Id,
+    channels: &Channels,
+    upload: &mut Option<Upload>,
+) -> Result<(), Reason> {
     let text = match message {
         Message::Text(text) => text,
-        Message::Binary(_) => return Err("expected an announced upload"),
+        Message::Binary(bytes) => return receive(bytes, channels, upload),
         _ => return Ok(()),
     };
     let message =
@@ -137,8 +163,63 @@ fn handle(message: &Message, id: Id, channels: &Channels) -> Result<(), Reason> 
         FromPage::Interrupt => request(channels, Request::Interrupt),
         FromPage::Buttons { pressed } => channels.inputs.press(pressed),
         FromPage::Switches { on } => channels.inputs.switch(on),
+        FromPage::Turn { attitude } => {
+            let is_set = channels.motion.as_ref().map(|motion| motion.turn(attitude));
+            return is_set
+                .unwrap_or(true)
+                .then_some(())
+                .ok_or("expected an attitude");
+        }
+        FromPage::Hand { place } => {
+            let is_set = channels
+                .motion
+                .as_ref()
+                .map(|motion| motion.move_hand(place));
+            let expected = "expected a place in the frame";
+            return is_set.unwrap_or(true).then_some(()).ok_or(expected);
+        }
+        FromPage::Upload { name, bytes } => {
+            if bytes == 0 || bytes > MAX_UPLOAD || name.len() > MAX_NAME {
+                return Err("expected a file of 1 byte to 64 MiB with a name of at most 100 bytes");
+            }
+            let data = Vec::new();
+            *upload = Some(Upload { name, bytes, data });
+        }
     }
     Ok(())
+}
+
+/// Takes bytes of an announced file, and hands the whole file to the board.
+fn receive(bytes: &[u8], channels: &Channels, upload: &mut Option<Upload>) -> Result<(), Reason> {
+    let expected = "expected the bytes of an announced file";
+    let file = upload.as_mut().ok_or(expected)?;
+    if bytes.len() > file.bytes - file.data.len() {
+        return Err(expected);
+    }
+    file.data.extend_from_slice(bytes);
+    if file.data.len() == file.bytes
+        && let Some(file) = upload.take()
+    {
+        match convert(&file) {
+            Ok(mesh) => request(channels, Request::Upload(mesh)),
+            Err(error) => channels.hub.notify(error.to_string(), true),
+        }
+    }
+    Ok(())
+}
+
+/// Converts a mesh file to the board's memory layout.
+fn convert(file: &Upload) -> anyhow::Result<Vec<u8>> {
+    // The readers take the format from the name, and look for further files beside the file.
+    let folder = tempfile::tempdir()?;
+    let name = Path::new(&file.name).extension().unwrap_or_default();
+    let path = folder.path().join("model").with_extension(name);
+    std::fs::write(&path, &file.data)?;
+    let path = path.to_string_lossy();
+    match model::load(&path, Options::default()) {
+        Ok(model) => Ok(model.mesh),
+        Err(error) => anyhow::bail!("{}: {}", file.name.escape_debug(), error.error),
+    }
 }
 
 fn check_line(line: &str) -> Result<(), Reason> {

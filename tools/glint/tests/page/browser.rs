@@ -41,7 +41,7 @@ impl Browser {
                 "--disable-renderer-backgrounding",
                 "--no-first-run",
                 "--remote-debugging-port=0",
-                "--window-size=1280,1000",
+                "--window-size=1280,1280",
             ])
             .arg(format!("--user-data-dir={}", profile.path().display()))
             .arg("about:blank")
@@ -84,7 +84,7 @@ impl Browser {
         }
         self.socket.send(Message::text(call.to_string())).unwrap();
         loop {
-            let mut found = self.read();
+            let mut found = self.read(&call.to_string());
             if found["id"] == self.calls {
                 assert!(found["error"].is_null(), "{method}: {}", found["error"]);
                 return found["result"].take();
@@ -93,9 +93,11 @@ impl Browser {
     }
 
     /// Reads a message of the browser, and counts the pages that have been loaded.
-    fn read(&mut self) -> Value {
+    fn read(&mut self, wanted: &str) -> Value {
         loop {
-            if let Message::Text(text) = self.socket.read().expect("an answer of chromium") {
+            let message = self.socket.read();
+            if let Message::Text(text) = message.unwrap_or_else(|error| panic!("{wanted}: {error}"))
+            {
                 let found: Value = serde_json::from_str(&text).unwrap();
                 self.loads += u32::from(found["method"] == "Page.loadEventFired");
                 return found;
@@ -113,7 +115,7 @@ impl Browser {
         let loads = self.loads;
         self.call(Some(&page), "Page.navigate", json!({ "url": url }));
         while self.loads == loads {
-            self.read();
+            self.read(url);
         }
         page
     }
