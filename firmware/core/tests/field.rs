@@ -1,13 +1,22 @@
-//! Tests of distance fields in text form.
+//! Tests of distance fields: their text form, and distances.
 
 use glint_core::field::{
-    Field, FieldError, Flat, FlatConstants, KINDS, MAX_SPHERES, Primitive, Solid, Sphere, Spheres,
+    Field, FieldError, Flat, FlatConstants, KINDS, MAX_SPHERES, Menger, Primitive, Solid, Sphere,
+    Spheres,
 };
 use glint_core::fixed::Q32_32;
 use proptest::prelude::*;
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The distance alone is that of the sample, also at points of equal coordinates.
+    #[test]
+    fn the_distance_alone_is_that_of_the_sample(depth in 1..=6_u8, point in prop::array::uniform3(-1 << 21..1_i32 << 21), same in any::<bool>()) {
+        let point = if same { [point[0], !point[0], point[2]] } else { point };
+        let solid = Primitive::Menger(Menger { depth }).placed().solid;
+        prop_assert_eq!(solid.distance(point), solid.sample(point).distance);
+    }
 
     /// The printed text form of every field reads back as the same field.
     #[test]

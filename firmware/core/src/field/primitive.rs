@@ -129,6 +129,14 @@ macro_rules! flat_solids {
                 }
             }
 
+            /// Computes the distance of [`sample`](Self::sample) alone.
+            #[inline]
+            pub fn distance(&self, point: [i32; 3]) -> i32 {
+                match self {
+                    $(Self::$solid(solid) => solid.distance(point),)*
+                }
+            }
+
             /// The solid's constants, in the form of the gateware's registers.
             pub fn constants(&self) -> FlatConstants {
                 match self {
@@ -182,6 +190,15 @@ impl Solid {
         match self {
             Self::Flat(flat) => flat.sample(point),
             Self::Spheres(spheres) => spheres.sample(point),
+        }
+    }
+
+    /// Computes the distance of [`sample`](Self::sample) alone.
+    #[inline]
+    pub fn distance(&self, point: [i32; 3]) -> i32 {
+        match self {
+            Self::Flat(flat) => flat.distance(point),
+            Self::Spheres(spheres) => spheres.sample(point).distance,
         }
     }
 

@@ -102,6 +102,11 @@ pub trait FlatSolid: Sized {
     /// are in field units, s10.12.
     fn sample(&self, point: [i32; 3]) -> Sample;
 
+    /// Computes the distance of [`sample`](Self::sample) alone, which takes less time for some solids.
+    fn distance(&self, point: [i32; 3]) -> i32 {
+        self.sample(point).distance
+    }
+
     /// Returns the solid's constants in the form of the gateware's registers.
     fn constants(&self) -> FlatConstants;
 

@@ -71,16 +71,16 @@ impl FieldSetup {
         let mut t = ray.start;
         let mut steps = 0;
         loop {
-            let (sample, gone) = self.evaluate(ray, t);
+            let (distance, gone) = self.evaluate(ray, t);
             let width = ((u64::from(t) * u64::from(*spread)) >> 16) as u32 + cut;
             let wide = width >> (4 + FRACTION) != 0;
             let threshold = i64::from(tuning.threshold + width);
             steps += 1;
-            let next = t + (sample.distance - width as i32 - 1).max(0) as u32;
+            let next = t + (distance - width as i32 - 1).max(0) as u32;
             let ends = gone
                 || wide
                 || next > tuning.far
-                || i64::from(sample.distance) < threshold
+                || i64::from(distance) < threshold
                 || steps >= self.cap().min(MOST_STEPS);
             if ends {
                 return (t, steps);

@@ -1,6 +1,6 @@
 //! Rays through a distance field: their start, their march and their end.
 
-use glint_core::field::{FRACTION, Sample, Surface, cropped, magnitude};
+use glint_core::field::{FRACTION, Surface, cropped, magnitude};
 
 use super::options::FARTHEST;
 use super::setup::{Eye, FieldSetup};
@@ -189,14 +189,16 @@ impl FieldSetup {
         let mut t = ray.start;
         let mut steps = 0;
         loop {
-            let (sample, gone) = self.evaluate(ray, t);
+            let (distance, gone) = self.evaluate(ray, t);
             let threshold = (tuning.threshold + (t >> tuning.footprint)) << self.patience(steps);
             steps += 1;
-            let next = t + sample.distance.max(0) as u32;
+            let next = t + distance.max(0) as u32;
             let state = if gone || next > tuning.far {
                 Some(State::Miss)
-            } else if sample.distance < threshold as i32 {
-                Some(State::Hit(sample.surface))
+            } else if distance < threshold as i32 {
+                // Only the last of the points needs its surface.
+                let point = self.point(ray, t).map(in_range);
+                Some(State::Hit(self.sample(point).surface))
             } else if steps >= self.cap() {
                 Some(State::Undecided)
             } else {
@@ -205,11 +207,11 @@ impl FieldSetup {
             if let Some(state) = state {
                 let (t, gap, slope) = match state {
                     State::Hit(Surface::Face { axis, positive }) => {
-                        let (gap, slope) = approach(ray, sample.distance, axis, positive);
+                        let (gap, slope) = approach(ray, distance, axis, positive);
                         (t, gap, slope)
                     }
                     State::Hit(Surface::Octant { signs }) => {
-                        let (gap, slope) = approach_diagonal(ray, sample.distance, signs);
+                        let (gap, slope) = approach_diagonal(ray, distance, signs);
                         (t, gap, slope)
                     }
                     State::Hit(Surface::Round { .. } | Surface::Blended { .. }) => (next, 0, 0x3FF),
@@ -239,12 +241,12 @@ impl FieldSetup {
         self.tuning.cap << if self.is_round() { 2 } else { 0 }
     }
 
-    /// Evaluates the field at the ray's point at t. Returns the sample, and whether the ray has left the field's bounds for
+    /// Evaluates the field at the ray's point at t. Returns the distance, and whether the ray has left the field's bounds for
     /// good.
-    pub(super) fn evaluate(&self, ray: &Ray, t: u32) -> (Sample, bool) {
+    pub(super) fn evaluate(&self, ray: &Ray, t: u32) -> (i32, bool) {
         let point = self.point(ray, t);
-        let sample = self.sample(point.map(|x| cropped(x, 10 + FRACTION)));
-        (sample, self.is_gone(ray, &point))
+        let distance = self.distance(point.map(in_range));
+        (distance, self.is_gone(ray, &point))
     }
 
     /// Whether a ray is outside of the bounding box and moves away from it.
@@ -268,6 +270,11 @@ impl FieldSetup {
     pub fn depth_of(&self, ray: &Ray, t: u32) -> u64 {
         u64::from(t) * u64::from(self.inverse(ray.length))
     }
+}
+
+/// A coordinate of a point as the field takes it: s10.12.
+fn in_range(x: i32) -> i32 {
+    cropped(x, 10 + FRACTION)
 }
 
 /// Returns gap and slope of a hit on a face perpendicular to an axis (see the fields of these names in `RayResult`).

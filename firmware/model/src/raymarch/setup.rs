@@ -198,6 +198,14 @@ impl FieldSetup {
         eyes.iter().any(is_inside)
     }
 
+    /// The distance of [`sample`](Self::sample) alone.
+    pub fn distance(&self, point: [i32; 3]) -> i32 {
+        match &self.beside {
+            Some(_) => self.sample(point).distance,
+            None => self.solid.distance(point),
+        }
+    }
+
     /// Evaluates the field at a point with coordinates in s10.12. Returns the distance and the nearest surface; at equal
     /// distances of a face and a sphere, the face.
     pub fn sample(&self, point: [i32; 3]) -> Sample {

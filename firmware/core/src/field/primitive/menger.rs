@@ -6,7 +6,7 @@ use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
 use crate::field::shape::{FlatConstants, FlatSolid, Placed, Shape};
-use crate::field::surface::{FRACTION, Sample};
+use crate::field::surface::{FRACTION, Sample, magnitude};
 use crate::fixed::Q32_32;
 
 /// The largest number of levels of holes.
@@ -92,6 +92,21 @@ impl FlatSolid for FixedSponge {
             distance: big.value - self.half,
             surface: big.face(),
         }
+    }
+
+    /// Folds like `sample`, but without the directions of the coordinates: their order then has no effect, so each level sorts them.
+    #[inline]
+    fn distance(&self, point: [i32; 3]) -> i32 {
+        let mut p = point;
+        for &s in self.levels.iter().take(usize::from(self.depth)) {
+            let [x, y, z] = p.map(|x| s + !(magnitude(x) as i32));
+            let (low, high) = (x.min(y), x.max(y));
+            let big = high.max(z);
+            let big = if big < s / 2 { !big } else { big - s };
+            p = [low.min(z), low.max(high.min(z)), big];
+        }
+        let [x, y, z] = p.map(|x| magnitude(x) as i32);
+        x.max(y).max(z) - self.half
     }
 
     fn constants(&self) -> FlatConstants {
