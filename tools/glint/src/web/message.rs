@@ -40,7 +40,7 @@ pub enum ToPage {
     Board {
         /// Name: `emulated`, `virtual` or a serial port.
         name: String,
-        /// Whether the host reaches the monitor and the pins; otherwise a picture comes on request only.
+        /// Whether the host reaches the monitor and the pins; otherwise there are no pictures.
         has_pins: bool,
     },
     /// The lists of the firmware.
