@@ -3,6 +3,7 @@
 //! Needs the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
 
 mod alone;
+mod alone_verilated;
 mod attitudes;
 mod both;
 mod common;
