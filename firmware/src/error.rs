@@ -4,8 +4,9 @@ use core::fmt::{self, Display};
 
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
-use glint_core::feature::{DEMO, Feature, GESTURE, IMU, OBJECT, REPLAY, UPLOAD};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, MESH, OBJECT, REPLAY, UPLOAD};
 use glint_core::flash::FlashError;
+use glint_core::framing::FramingError;
 use glint_core::hand::CalibrationError as HandColourError;
 use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
@@ -93,6 +94,10 @@ pub enum CommandError<'l> {
     MeshInStereo,
     /// Edges were requested while no mesh is shown alone.
     EdgesOfOthers,
+    /// `fit` was requested while neither a mesh alone nor objects are shown.
+    FitOfOthers,
+    /// No camera shows the whole of the meshes.
+    Fit(FramingError),
     /// The list of lights is full.
     Lights,
     /// `bench field` needs a shown field.
@@ -252,6 +257,10 @@ impl Display for CommandError<'_> {
             Self::EdgesOfOthers => f.write_str(
                 "edges: not available for objects, fields and wireframes, expected `scene NAME` of a mesh first",
             ),
+            Self::FitOfOthers => f.write_str(
+                "fit: expected a mesh alone or objects; `camera 4 30 60` shows most fields",
+            ),
+            Self::Fit(error) if MESH.is_built => write!(f, "fit: {error}"),
             Self::Lights => write!(
                 f,
                 "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"

@@ -234,6 +234,17 @@ impl View {
         })
     }
 
+    /// Returns this camera with another half width, in world units, and the same projection.
+    ///
+    /// # Errors
+    /// The half width is not from 0.0087 to 115.
+    pub fn with_half_width(self, half_width: U8_28) -> Result<Self, ViewError> {
+        if !(HALF_WIDTH[0]..=HALF_WIDTH[1]).contains(&half_width) {
+            return Err(ViewError::HalfWidth(half_width));
+        }
+        Ok(Self { half_width, ..self })
+    }
+
     /// Returns this camera with another projection, and the same half width.
     #[must_use]
     pub const fn with_projection(self, projection: Projection) -> Self {

@@ -1,4 +1,4 @@
-//! Code shared by firmware and host: cameras, sines, the sensor and its attitude, the hand and its image sensor, distance fields and
+//! Code shared by firmware and host: cameras, also those that show whole meshes, sines, the sensor and its attitude, the hand and its image sensor, distance fields and
 //! lights, the formats of meshes and flash images, wireframe programs, transfers over a serial line, the console's grammar, scenes, and the
 //! demo of a board that runs alone.
 //!
@@ -25,6 +25,7 @@ pub mod field;
 pub mod fixed;
 pub mod flash;
 pub mod follow;
+pub mod framing;
 pub mod hand;
 pub mod i2c;
 pub mod image_sensor;

@@ -7,7 +7,7 @@
 use core::fmt;
 
 use crate::choice::choices;
-use crate::fixed::{Q2_30, Q8_24, Turns};
+use crate::fixed::{Q2_30, Q8_24, Turns, wide};
 use crate::trig::sin_cos_q30;
 use crate::vector::{cross, dot, unit};
 
@@ -170,6 +170,17 @@ impl Matrix {
                 .map(|row| columns.map(|column| product(row, column, Q8_24::ZERO))),
             [0, 1, 2].map(|i| product(next.linear[i], self.translation, next.translation[i])),
         )
+    }
+
+    /// The point of the world to which the matrix maps a position (s2.14), exact, in units of 2^−38.
+    pub fn apply(&self, position: [i16; 3]) -> [i64; 3] {
+        // An entry is at most 2^28 and a coordinate at most 2^15, so the sums are below 2^46.
+        [0, 1, 2].map(|i| {
+            let sum: i64 = core::iter::zip(self.linear[i], position)
+                .map(|(a, b)| wide(a.to_bits(), b.into()))
+                .sum();
+            sum + (i64::from(self.translation[i].to_bits()) << 14)
+        })
     }
 
     /// The rows of the 3×3 matrix A.

@@ -3,6 +3,7 @@
 use glint_core::camera::View;
 use glint_core::console::CameraCommands;
 use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::matrix::Axis;
 
 use crate::error::CommandError;
 use crate::job::{Job, Orbit, Outcome, Reply};
@@ -46,6 +47,25 @@ impl<'l> CameraCommands<'l> for Machine {
     fn orthographic(&mut self, width: U8_28) -> Outcome<'l> {
         let view = self.scene.view().with_width(width);
         self.scene.set_view(view.map_err(CommandError::View)?);
+        Ok(Reply::Done)
+    }
+
+    fn zoom(&mut self, factor: U8_28) -> Outcome<'l> {
+        let view = self.scene.view();
+        // A factor of 0 makes a half width out of range.
+        let half_width = view.half_width().checked_div(factor);
+        let half_width = half_width.unwrap_or(U8_28::lit("256"));
+        let view = view.with_half_width(half_width);
+        self.scene.set_view(view.map_err(CommandError::View)?);
+        Ok(Reply::Done)
+    }
+
+    fn fit(&mut self, lens: Option<(Axis, Option<Turns>)>) -> Outcome<'l> {
+        let (up, angle) = lens.unwrap_or((Axis::Z, None));
+        let sphere = self.scene.frame(&self.models).subject.sphere();
+        let sphere = sphere.ok_or(CommandError::FitOfOthers)?;
+        let view = sphere.framed(up, Turns::default(), angle);
+        self.scene.set_view(view.map_err(CommandError::Fit)?);
         Ok(Reply::Done)
     }
 

@@ -5,7 +5,7 @@
 //! | [`formats`], [`polygons`] | reads OBJ, STL, PLY, glTF and GLM, and writes all but glTF |
 //! | [`generate`] | generates models |
 //! | [`mod@convert`], [`triangulate`], [`normals`] | scaling, triangulation and rounding to a board's mesh |
-//! | [`model`], [`view`], [`framing`], [`picture`] | models, cameras and frames of the command line |
+//! | [`model`], [`view`], [`picture`] | models, cameras and frames of the command line |
 //! | [`render`], [`scene`] | renders a frame by the model or by a board; the built-in scenes |
 //! | [`image`] | images for a board's SPI flash |
 //! | [`board`] | boards: serial port, or simulation |
@@ -25,7 +25,6 @@ pub mod error;
 pub mod field;
 pub mod flash;
 pub mod formats;
-pub mod framing;
 pub mod fuzz;
 pub mod generate;
 pub mod gesture;

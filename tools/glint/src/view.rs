@@ -154,22 +154,19 @@ pub fn with_width(view: View, text: &str) -> Result<View, FormatError> {
 /// # Errors
 /// The text is not a decimal from 1 to 179.
 pub fn with_field_of_view(view: View, text: &str) -> Result<View, FormatError> {
-    let angle = Turns::from_degrees(angle(text)?);
-    view.with_field_of_view(angle).map_err(no_camera)
+    view.with_field_of_view(field_of_view(text)?)
+        .map_err(no_camera)
 }
 
 /// Parses a field of view in degrees.
 ///
 /// # Errors
 /// The text is not a decimal from 1 to 179.
-pub fn field_of_view(text: &str) -> Result<f64, FormatError> {
-    angle(text).map(Q32_32::to_num)
-}
-
-fn angle(text: &str) -> Result<Q32_32, FormatError> {
+pub fn field_of_view(text: &str) -> Result<Turns, FormatError> {
     let degrees: Option<Q32_32> = text.trim().parse().ok();
     degrees
         .filter(|degrees| (1..=179).contains(degrees))
+        .map(Turns::from_degrees)
         .ok_or_else(|| refuse("1 to 179 degrees", text))
 }
 
@@ -178,16 +175,10 @@ fn angle(text: &str) -> Result<Q32_32, FormatError> {
 /// # Errors
 /// The field of view is not from 1 to 179 degrees.
 pub fn zoomed(view: View, factor: f64) -> Result<View, FormatError> {
-    let half_width = view.half_width().to_num::<f64>() / factor;
-    let degrees = 2.0 * half_width.atan().to_degrees();
-    if !(factor > 0.0 && (1.0..=179.0).contains(&degrees)) {
-        return Err(FormatError::whole(
-            "a factor that leaves a field of view of 1 to 179 degrees",
-            factor.to_string(),
-        ));
-    }
-    let angle = Turns::from_degrees(Q32_32::from_num(degrees));
-    view.with_field_of_view(angle).map_err(no_camera)
+    let half_width = U8_28::checked_from_num(view.half_width().to_num::<f64>() / factor);
+    let zoomed = half_width.and_then(|half_width| view.with_half_width(half_width).ok());
+    let expected = "a factor that leaves a field of view of 1 to 179 degrees";
+    zoomed.ok_or_else(|| FormatError::whole(expected, factor.to_string()))
 }
 
 /// Parses decimals that are separated by commas.
@@ -201,7 +192,7 @@ fn refuse(expected: &str, text: &str) -> FormatError {
     FormatError::whole(expected, crate::error::quote(text.as_bytes()))
 }
 
-pub(crate) fn no_camera(error: ViewError) -> FormatError {
+fn no_camera(error: ViewError) -> FormatError {
     FormatError::whole("a camera", error.to_string())
 }
 

@@ -8,7 +8,7 @@ use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::{commands, part};
 use super::values::{
-    DemoAction, FieldOfView, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name,
+    DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name,
     Sensitivity, Size, Upload, View, Whole,
 };
 use crate::colour::{Shading, Winding};
@@ -80,6 +80,8 @@ commands! {
         lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen";
         fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees";
         orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective";
+        zoom Zoom(factor: U8_28): "enlarge what is in the middle of the picture by FACTOR, by a smaller half width";
+        fit Fit(lens: Option<Fit>) in MESH: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
 

@@ -54,6 +54,8 @@ impl<'a> Command<'a> {
             | Self::LookAt { .. }
             | Self::FieldOfView { .. }
             | Self::Orthographic { .. }
+            | Self::Zoom { .. }
+            | Self::Fit { .. }
             | Self::Orbit { .. }
             | Self::Imu {
                 action: Some(ImuAction::Follow(_) | ImuAction::Recentre),

@@ -16,6 +16,7 @@ use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{self, Rgb, parse_rgb};
+use crate::matrix::Axis;
 use crate::mesh::{self, MAX_BYTES};
 use crate::picture;
 use crate::stereo;
@@ -312,6 +313,11 @@ impl WordArgument for FieldOfView {
         let is_accepted = (1..=179).contains(&degrees);
         is_accepted.then(|| Turns::from_degrees(degrees))
     }
+}
+
+group! {
+    /// The axis that is up on the screen, and a horizontal field of view.
+    Fit: (Axis, Option<Turns>) = (up: Axis, angle: Option<FieldOfView>) => Ok::<_, ValueError>((up, angle))
 }
 
 group! {

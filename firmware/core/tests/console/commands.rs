@@ -8,7 +8,7 @@ use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
 use glint_core::imu::Follow;
 use glint_core::light::{Background, Light, Material};
-use glint_core::matrix::Matrix;
+use glint_core::matrix::{Axis, Matrix};
 use glint_core::object::Place;
 use glint_core::picture::{Backend, Edges, Size};
 use glint_core::stereo::{Stereo, Tint};
@@ -27,7 +27,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "orbit", "size", "load", "object", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "zoom", "fit", "orbit", "size", "load", "object", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
@@ -258,6 +258,13 @@ fn every_command_is_understood() {
     assert_parses("edges", Command::Edges { edges: None });
     let angle = degrees(150);
     assert_parses("fov 150", Command::FieldOfView { angle });
+    let factor = U8_28::from_num(1.5);
+    assert_parses("zoom 1.5", Command::Zoom { factor });
+    assert_parses("fit", Command::Fit { lens: None });
+    let lens = Some((Axis::Y, None));
+    assert_parses("fit y", Command::Fit { lens });
+    let lens = Some((Axis::Y, Some(degrees(60))));
+    assert_parses("fit y 60", Command::Fit { lens });
     let width = U8_28::from_num(3.5);
     assert_parses("orthographic 3.5", Command::Orthographic { width });
     assert_parses("imu", Command::Imu { action: None });

@@ -48,6 +48,8 @@ fn uploads_are_apart_from_settings() {
         "imu off",
         "gesture on",
         "fov 60",
+        "zoom 2",
+        "fit",
         "size 320 180",
         "backend cpu",
     ] {

@@ -5,7 +5,9 @@ use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
 use glint_core::feature::{FIELD, MESH, MESH_IN_FIELD, OBJECT};
 use glint_core::field::Field;
+use glint_core::framing::Sphere;
 use glint_core::light::MeshLighting;
+use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Size};
 use glint_core::stereo::Stereo;
@@ -155,6 +157,15 @@ impl<'a> Subject<'a> {
         let objects = self.objects().unwrap_or_default();
         let objects = objects.iter().map(|object| &object.subject);
         self.mesh_part().into_iter().chain(objects)
+    }
+
+    /// The sphere around all meshes; `None` without one, and for a field, with or without a mesh in it.
+    pub fn sphere(&self) -> Option<Sphere> {
+        let mesh = self.mesh_part().filter(|_| self.field_part().is_none());
+        let mesh = mesh.map(|subject| (subject.mesh, Matrix::IDENTITY));
+        let objects = self.objects().unwrap_or_default().iter();
+        let objects = objects.map(|object| (object.subject.mesh, *object.placement.matrix()));
+        Sphere::around(mesh.into_iter().chain(objects))
     }
 
     /// The mesh with this number, with the colour in place of its own ones; `None` after the last mesh.

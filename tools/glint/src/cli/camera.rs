@@ -3,9 +3,10 @@
 use super::common::{bad_value, named};
 use super::messages::note;
 use clap::Args;
-use glint::framing::Sphere;
 use glint::view;
 use glint_core::camera::View;
+use glint_core::fixed::Turns;
+use glint_core::framing::Sphere;
 use glint_core::matrix::Axis;
 use glint_model::{MAX_EYE, RenderError};
 use std::path::{Path, PathBuf};
@@ -118,9 +119,12 @@ impl CameraArguments {
             }
             (_, _, _, None, Some(sphere)) => {
                 let name = shown.model.unwrap_or("--object");
-                return self
-                    .lens
-                    .framed(&sphere, name, self.lens.up_of(shown.model), 0.0);
+                return self.lens.framed(
+                    &sphere,
+                    name,
+                    self.lens.up_of(shown.model),
+                    Turns::default(),
+                );
             }
             (_, _, _, camera, _) => {
                 let camera = camera.as_deref().unwrap_or("4,30,60");
@@ -138,18 +142,18 @@ impl CameraArguments {
 }
 
 impl LensArguments {
-    /// The camera that shows the whole of the model `name`, `turned` degrees about the axis `up`.
+    /// The camera that shows the whole of the model `name`, `turned` about the axis `up`.
     pub fn framed(
         &self,
         sphere: &Sphere,
         name: &str,
         up: Axis,
-        turned: f64,
+        turned: Turns,
     ) -> anyhow::Result<View> {
-        let degrees = self.fov.as_deref().map(view::field_of_view).transpose();
-        let degrees = degrees.map_err(|error| error.in_file("--fov"))?;
-        let view = sphere.framed(up, turned, degrees);
-        self.projected(view.map_err(|error| error.in_file(name))?)
+        let angle = self.fov.as_deref().map(view::field_of_view).transpose();
+        let angle = angle.map_err(|error| error.in_file("--fov"))?;
+        let view = sphere.framed(up, turned, angle);
+        self.projected(view.map_err(|error| bad_value(name, "a camera", error.to_string()))?)
     }
 
     /// The axis that is up, by the option or by the format of the model, which a note says.

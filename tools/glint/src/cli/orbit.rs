@@ -6,16 +6,16 @@ use super::convert::load;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
+use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
-use glint::framing::Sphere;
 use glint::picture::{Image, write_animation, write_gif};
 use glint::render::{
     BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
 };
 use glint_core::colour::Shading;
-use glint_core::matrix::Matrix;
+use glint_core::fixed::Turns;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
 use serde::Serialize;
@@ -75,11 +75,13 @@ impl OrbitArguments {
         let out = Output::open(&self.out, ANIMATION, [&self.model])?;
         let model = load(&self.model, false)?;
         let mesh = Mesh::new_checked(&model.mesh)?;
-        let sphere = Sphere::around(&[(mesh, Matrix::IDENTITY)]);
+        let sphere = self.subject(mesh).sphere();
+        let sphere = sphere.context("expected a mesh with vertices")?;
         let up = self.lens.up_of(Some(&self.model));
         let views = (0..self.frames).map(|number| {
-            let turned = f64::from(number) * 360.0 / f64::from(self.frames);
-            self.lens.framed(&sphere, &self.model, up, turned)
+            let turned = (u64::from(number) << 32) / u64::from(self.frames);
+            self.lens
+                .framed(&sphere, &self.model, up, Turns(turned as u32))
         });
         let views = views.collect::<anyhow::Result<Vec<_>>>()?;
         let frames: Vec<Frame> = views

@@ -12,7 +12,6 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
-use glint::framing::Sphere;
 use glint::model::Model;
 use glint::object::Description;
 use glint::render::{
@@ -196,24 +195,6 @@ impl RenderArguments {
                 })
             })
             .collect::<Result<Vec<_>, MeshError>>()?;
-        let sphere = match (&mesh, &field) {
-            (_, Some(_)) => None,
-            (Some(mesh), None) if objects.is_empty() => {
-                Some(Sphere::around(&[(mesh.mesh, Matrix::IDENTITY)]))
-            }
-            _ => {
-                let places = std::iter::once(Matrix::IDENTITY).filter(|_| mesh.is_some());
-                let places = places.chain(descriptions.iter().map(|object| object.place.matrix));
-                let meshes = objects.iter().map(|object| object.subject.mesh);
-                Some(Sphere::around(&meshes.zip(places).collect::<Vec<_>>()))
-            }
-        };
-        let shown = Shown {
-            sphere,
-            model: self.model.as_deref(),
-            has_mesh: self.model.is_some(),
-        };
-        let view = self.camera.view(&shown)?;
         let subject = match (mesh, field) {
             _ if !objects.is_empty() => Subject::Objects(&objects),
             (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
@@ -224,6 +205,12 @@ impl RenderArguments {
             (None, Some(field)) => Subject::Field(field),
             (None, None) => return Err(nothing()),
         };
+        let shown = Shown {
+            sphere: subject.sphere(),
+            model: self.model.as_deref(),
+            has_mesh: self.model.is_some(),
+        };
+        let view = self.camera.view(&shown)?;
         let frame = Frame {
             lighting: appearance.mesh_lighting(),
             ..Frame::new(subject, view, size)

@@ -1,0 +1,184 @@
+//! Cameras that show the whole of one or several meshes.
+
+use core::fmt;
+
+use crate::camera::{HALF_WIDTH, View, ViewError};
+use crate::fixed::{Q32_32, Turns, U8_28};
+use crate::matrix::{Axis, Matrix};
+use crate::mesh::Mesh;
+use crate::trig::sin_cos_q30;
+
+/// A length or a coordinate in units of 2^−20.
+type Length = i64;
+
+/// 1 in units of a [`Length`].
+const ONE: Length = 1 << 20;
+/// Least distance between the camera and the sphere: twice that of the near plane.
+const LEAST_GAP: Length = ONE / 5;
+/// Largest distance of the eye from the origin, 7.9, just below that which a mesh allows.
+const FARTHEST: Length = ONE * 79 / 10;
+/// Azimuth of the camera, 30°.
+const AZIMUTH: Turns = Turns::from_degrees(Q32_32::lit("30"));
+/// Angle of the camera from the axis that is up, 60°.
+const POLAR: Turns = Turns::from_degrees(Q32_32::lit("60"));
+
+/// A sphere around all vertices of meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sphere {
+    /// The centre of the box around the vertices, rounded down.
+    centre: [Length; 3],
+    /// Distance of the farthest vertex from the centre, rounded up.
+    radius: Length,
+}
+
+/// Reason why no camera shows the whole of a sphere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FramingError {
+    /// The sphere reaches too far from the origin, so that no eye outside of it is allowed.
+    TooFar {
+        /// The centre.
+        centre: [Q32_32; 3],
+        /// The radius.
+        radius: Q32_32,
+    },
+    /// The field of view is out of range.
+    View(ViewError),
+}
+
+impl fmt::Display for FramingError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::TooFar {
+                centre: [x, y, z],
+                radius,
+            } => write!(
+                f,
+                "meshes in a sphere of radius {radius:.3} about ({x:.3}, {y:.3}, {z:.3}): expected an eye outside of it within 7.9 of the origin"
+            ),
+            Self::View(error) => error.fmt(f),
+        }
+    }
+}
+
+impl core::error::Error for FramingError {}
+
+impl Sphere {
+    /// The sphere around meshes at their places; `None` without a mesh. Centre and radius are within 2^−19 of their exact values.
+    pub fn around<'a>(meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone) -> Option<Self> {
+        let points = meshes.flat_map(|(mesh, matrix)| {
+            let vertices = mesh.chunks().flat_map(|chunk| chunk.vertices());
+            // In units of 2^−38 before, rounded down.
+            vertices.map(move |vertex| matrix.apply(vertex.position).map(|x| x >> 18))
+        });
+        let first = points.clone().next()?;
+        let (mut low, mut high) = (first, first);
+        for point in points.clone() {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(point[axis]);
+                high[axis] = high[axis].max(point[axis]);
+            }
+        }
+        let centre = [0, 1, 2].map(|axis| (low[axis] + high[axis]) >> 1);
+        let square = |point: [Length; 3]| length_squared([0, 1, 2].map(|i| point[i] - centre[i]));
+        let square = points.map(square).max().unwrap_or(0);
+        let radius = square.isqrt();
+        Some(Self {
+            centre,
+            radius: (radius + u64::from(radius * radius < square)) as Length,
+        })
+    }
+
+    /// The camera in which the sphere takes 80 % of the height of the picture, with `up` up on the screen: 60° from that axis, and
+    /// `turned` from an azimuth of 30° about it.
+    ///
+    /// With a horizontal field of view, the distance of the eye follows from it; otherwise the field of view follows from a distance of 3.5
+    /// radii. An eye that would be too far from the origin is nearer, and one too close to the sphere farther.
+    ///
+    /// # Errors
+    /// No allowed eye is outside of the sphere, or the field of view is out of range.
+    pub fn framed(
+        &self,
+        up: Axis,
+        turned: Turns,
+        field_of_view: Option<Turns>,
+    ) -> Result<View, FramingError> {
+        let Self { centre, radius } = *self;
+        let wanted = match field_of_view {
+            None => radius * 7 / 2,
+            Some(angle) => hypotenuse(radius, tangent_length(radius, angle)),
+        };
+        let (least, most) = (
+            radius + LEAST_GAP,
+            FARTHEST - length_squared(centre).isqrt() as Length,
+        );
+        if least > most {
+            return Err(FramingError::TooFar {
+                centre: centre.map(world),
+                radius: world(radius),
+            });
+        }
+        let distance = wanted.clamp(least, most);
+        let [[sp, cp], [st, ct]] = [POLAR, AZIMUTH.wrapping_add(turned)].map(sines);
+        // Away from the sphere, in units of 2^−30.
+        let back = about(up, [(sp * ct) >> 30, (sp * st) >> 30, cp]);
+        let eye = [0, 1, 2].map(|i| {
+            let shift = (distance * back[i]) >> 18;
+            Q32_32::from_bits(world(centre[i]).to_bits() + shift)
+        });
+        let gaze = back.map(|x| Q32_32::from_bits(-x << 2));
+        let up = about(up, [Q32_32::ZERO, Q32_32::ZERO, Q32_32::ONE]);
+        let view = View::towards(eye, gaze, up).map_err(FramingError::View)?;
+        let view = match field_of_view {
+            Some(angle) => view.with_field_of_view(angle),
+            None => view.with_half_width(half_width(radius, distance)),
+        };
+        view.map_err(FramingError::View)
+    }
+}
+
+/// Length of a line from the eye that touches a sphere of this radius, which takes 80 % of the height with this field of view; at most
+/// [`FARTHEST`].
+fn tangent_length(radius: Length, angle: Turns) -> Length {
+    let [sin, cos] = sines(Turns(angle.0 / 2)).map(i64::unsigned_abs);
+    // A half width h makes a half height of 9/16·h, of which 0.8 are 9/20·h. As a radius is below 2^29, the products are below 2^64.
+    let length = radius.unsigned_abs() * cos * 20 / (sin * 9).max(1);
+    length.min(FARTHEST as u64) as Length
+}
+
+/// The half width in which a sphere of this radius takes 80 % of the height at this distance, which is larger than the radius.
+fn half_width(radius: Length, distance: Length) -> U8_28 {
+    let touching = ((distance - radius) * (distance + radius)).isqrt().max(1);
+    // A radius is below 2^23 where an eye is outside of the sphere.
+    let bits = ((radius << 28) * 20 / (touching * 9)).unsigned_abs();
+    U8_28::from_bits(bits).clamp(HALF_WIDTH[0], HALF_WIDTH[1])
+}
+
+/// Sine and cosine in units of 2^−30.
+fn sines(angle: Turns) -> [i64; 2] {
+    let (sin, cos) = sin_cos_q30(angle);
+    [sin, cos].map(|x| x.to_bits().into())
+}
+
+/// The square of a vector's length, whose components are below 2^30.
+fn length_squared(vector: [Length; 3]) -> u64 {
+    vector.map(|x| x.unsigned_abs().pow(2)).iter().sum()
+}
+
+/// The square root of a² + b². Both are below 2^30.
+fn hypotenuse(a: Length, b: Length) -> Length {
+    length_squared([a, b, 0]).isqrt() as Length
+}
+
+/// A length in world units.
+const fn world(length: Length) -> Q32_32 {
+    Q32_32::from_bits(length << 12)
+}
+
+/// A vector given with z as the axis that is up, for another such axis.
+fn about<T>(up: Axis, [a, b, c]: [T; 3]) -> [T; 3] {
+    match up {
+        Axis::X => [c, a, b],
+        Axis::Y => [b, c, a],
+        Axis::Z => [a, b, c],
+    }
+}
