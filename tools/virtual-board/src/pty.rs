@@ -6,11 +6,12 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
+use std::time::Instant;
 
 use rustix::fs::{Mode, OFlags};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use crate::{Error, VirtualBoard};
+use crate::{Error, Pace, VirtualBoard};
 
 /// Cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
@@ -22,6 +23,10 @@ const QUEUE: usize = 4096;
 pub trait Uart: Send + 'static {
     /// Runs `cycles` cycles of the system clock.
     fn run(&mut self, cycles: u64);
+    /// Cycles of the system clock since the start.
+    fn cycles(&self) -> u64;
+    /// System clock frequency in Hz.
+    fn clock_hz(&self) -> u32;
     /// Number of bytes that the UART has not received yet.
     fn uart_queued(&self) -> usize;
     /// Sends bytes to the UART.
@@ -33,6 +38,14 @@ pub trait Uart: Send + 'static {
 impl Uart for VirtualBoard {
     fn run(&mut self, cycles: u64) {
         self.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.clock_hz()
     }
 
     fn uart_queued(&self) -> usize {
@@ -51,7 +64,7 @@ impl Uart for VirtualBoard {
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
 type Task<B> = Box<dyn FnOnce(&mut B) + Send>;
 
-/// A board in its own thread, with its UART on a pseudo-terminal.
+/// A board in its own thread, with its UART on a pseudo-terminal. It runs at most as fast as in reality.
 ///
 /// The terminal is raw: every byte passes unchanged in both directions. Dropping the `Pty` stops the board.
 pub struct Pty<B: Uart = VirtualBoard> {
@@ -157,6 +170,7 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
 /// passes bytes from the UART to the terminal.
 fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> B {
     let mut output = Vec::new();
+    let mut pace = Pace::new(board.clock_hz(), board.cycles(), Instant::now());
     loop {
         loop {
             match tasks.try_recv() {
@@ -173,6 +187,7 @@ fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> 
                 Err(error) => panic!("reading the virtual board's terminal: {error}"),
             }
         }
+        pace.wait(board.cycles());
         board.run(SLICE);
         board.uart_read(&mut output);
         match terminal.write(&output) {

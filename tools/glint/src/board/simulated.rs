@@ -313,6 +313,14 @@ impl<S: Simulation + Send + 'static> Uart for SimulatedBoard<S> {
         self.board.run(cycles);
     }
 
+    fn cycles(&self) -> u64 {
+        self.board.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.board.clock_hz()
+    }
+
     fn uart_queued(&self) -> usize {
         self.board.uart_queued()
     }

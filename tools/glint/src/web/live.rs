@@ -5,13 +5,11 @@ use super::message::Pins;
 use super::motion::Motion;
 use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Instant;
+use virtual_board::Pace;
 
 /// Time of the board in ms that it runs at once.
 const SLICE_MS: u64 = 1;
-
-/// Delay of the board behind real time that it catches up. A longer delay stays.
-const MAX_DELAY: Duration = Duration::from_millis(50);
 
 /// A board for the live page. A read from its line passes time in which the board runs, at most as fast as in reality.
 pub trait Live: Board {
@@ -37,8 +35,7 @@ pub struct LiveSimulation<S> {
     sample_period: u64,
     motion: Arc<Motion>,
     hold: Hold,
-    /// A time, and the cycle of the board that belongs to it.
-    origin: (Instant, u64),
+    pace: Pace,
     /// The number of the last vertical blanking that was looked at, and the picture shown then.
     shown: (u64, Option<MonitorFrame>),
 }
@@ -49,13 +46,14 @@ impl<S: Simulation> LiveSimulation<S> {
         let motion = Arc::new(Motion::default());
         board.inner().plug(motion.sensor());
         board.inner().plug_image_sensor(motion.camera());
-        let cycle = board.inner().cycles();
+        let simulation = board.inner();
+        let pace = Pace::new(simulation.clock_hz(), simulation.cycles(), Instant::now());
         Self {
             board,
             sample_period,
             motion,
             hold: Hold::default(),
-            origin: (Instant::now(), cycle),
+            pace,
             shown: (0, None),
         }
     }
@@ -63,16 +61,8 @@ impl<S: Simulation> LiveSimulation<S> {
     /// Runs the board for a slice, when it is due.
     fn step(&mut self) {
         let simulation = self.board.inner();
+        self.pace.wait(simulation.cycles());
         let clock = u64::from(simulation.clock_hz());
-        let (start, cycle) = self.origin;
-        let board_time =
-            Duration::from_secs_f64((simulation.cycles() - cycle) as f64 / clock as f64);
-        let time = start.elapsed();
-        if board_time > time {
-            std::thread::sleep(board_time - time);
-        } else if time > board_time + MAX_DELAY {
-            self.origin = (Instant::now(), simulation.cycles());
-        }
         simulation.run(clock / 1000 * SLICE_MS);
     }
 }

@@ -1,6 +1,7 @@
-//! Serial boot through the BIOS, by LiteX's own terminal on the verilated board, where the firmware's transfer would take minutes, and
-//! by `glint flash` on the emulated board.
+//! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. On the verilated board, the firmware's transfer would take
+//! minutes.
 
+use crate::power_up::read_until;
 use crate::terminal::Terminal;
 use glint::board::SimulatedBoard;
 use glint::console::Console;
@@ -13,6 +14,9 @@ use virtual_board::{Start, VirtualBoard};
 
 /// Time-out of a test on the verilated board in its clock cycles: several times as many as the test needs.
 const LIMIT: u64 = 400_000_000;
+
+/// Time-out of litex_term with the firmware, in clock cycles of the emulated board: ten minutes.
+const EMULATED_LIMIT: u64 = 600 * 81_250_000;
 
 /// Address of main memory, where the program begins.
 const MAIN_RAM: u32 = 0x4000_0000;
@@ -56,6 +60,13 @@ fn printer(text: &str) -> Vec<u8> {
     code.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
+/// Starts litex_term with the program at `kernel`, on a port.
+fn litex_term(kernel: &Path, port: &Path) -> Terminal {
+    let kernel = format!("--kernel={}", kernel.display());
+    let program = root().join(".venv/bin/litex_term");
+    Terminal::start(&program, &[&kernel, port.to_str().unwrap()])
+}
+
 #[test]
 fn litex_term_loads_a_program_into_the_verilated_board() {
     let mut program = printer("Program runs\n");
@@ -65,12 +76,31 @@ fn litex_term_loads_a_program_into_the_verilated_board() {
     kernel.write_all(&program).unwrap();
     let board = VirtualBoard::builder().start(Start::Full).build().unwrap();
     let board = Pty::start(board).unwrap();
-    let kernel = format!("--kernel={}", kernel.path().display());
-    let port = board.path().to_str().unwrap();
-    let mut terminal = Terminal::start(&root().join(".venv/bin/litex_term"), &[&kernel, port]);
+    let mut terminal = litex_term(kernel.path(), board.path());
     let mut is_over = || board.with(|board| board.cycles()) >= LIMIT;
     terminal.wait_for("Liftoff!", &mut is_over);
     terminal.wait_for("Program runs", &mut is_over);
+}
+
+#[test]
+fn litex_term_loads_the_firmware_into_the_emulated_board() {
+    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    read_until(&mut board, "litex");
+    let board = Pty::start(board).unwrap();
+    let mut terminal = litex_term(&firmware(), board.path());
+    let mut is_over = || board.with(|board| board.inner().cycles()) >= EMULATED_LIMIT;
+    let ends = ["Liftoff!", "Timeout"];
+    loop {
+        terminal.type_in(b"serialboot\r");
+        // The BIOS waits 250 ms for litex_term.
+        match terminal.wait_for_one_of(&ends, &mut is_over) {
+            "Liftoff!" => break,
+            _ => assert!(!is_over()),
+        }
+    }
+    terminal.wait_for("glint> ", &mut is_over);
+    terminal.type_in(b"info triangles\r");
+    terminal.wait_for("triangles 12", &mut is_over);
 }
 
 #[test]

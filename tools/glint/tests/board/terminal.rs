@@ -67,10 +67,23 @@ impl Terminal {
     /// Waits until the program prints `wanted`, and fails when `is_over`. The search starts after the text that the previous wait has
     /// found.
     pub fn wait_for(&mut self, wanted: &str, is_over: &mut dyn FnMut() -> bool) {
+        self.wait_for_one_of(&[wanted], is_over);
+    }
+
+    /// Waits until the program prints one of the texts, as [`wait_for`](Self::wait_for); returns the first that it has printed.
+    pub fn wait_for_one_of<'a>(
+        &mut self,
+        wanted: &[&'a str],
+        is_over: &mut dyn FnMut() -> bool,
+    ) -> &'a str {
         loop {
-            if let Some(at) = self.seen.find(wanted) {
-                self.seen.drain(..at + wanted.len());
-                return;
+            let found = wanted
+                .iter()
+                .filter_map(|text| Some((self.seen.find(text)?, *text)))
+                .min();
+            if let Some((at, text)) = found {
+                self.seen.drain(..at + text.len());
+                return text;
             }
             // Only the end of the output is kept, because the progress bar prints megabytes.
             let keep = self
