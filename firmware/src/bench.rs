@@ -9,6 +9,8 @@ mod attitude;
 mod geometry;
 #[cfg(feature = "peers")]
 mod gesture;
+#[cfg(feature = "peers")]
+mod kernels;
 mod measure;
 mod object;
 #[cfg(feature = "peers")]
@@ -20,6 +22,8 @@ pub use attitude::attitude;
 pub use geometry::geometry;
 #[cfg(feature = "peers")]
 pub use gesture::gesture;
+#[cfg(feature = "peers")]
+pub use kernels::kernels;
 pub use measure::{Cycles, Report};
 pub use object::object;
 

@@ -32,6 +32,6 @@ pub use options::{DEFAULT_TUNING, FieldOptions, ROUND_TUNING, Tuning};
 pub use paint::paint;
 pub use palette::Palette;
 pub use prepass::{Cones, block_for};
-pub use ray::{Ray, RayResult, State};
+pub use ray::{ROUND_INVERSE, Ray, RayResult, State};
 pub use render::{FieldStats, compose, render_field, render_rows, rgb565};
 pub use setup::{Eye, FieldSetup};

@@ -11,7 +11,7 @@ const KERNELS: &[&str] = &["sine", "object", "triangle", "field"];
 /// Names of the kernels that `bench` accepts in a build with the feature `peers`.
 #[cfg(feature = "peers")]
 const KERNELS: &[&str] = &[
-    "sine", "object", "attitude", "geometry", "gesture", "triangle", "field",
+    "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
 /// Number of frames that the gateware draws back to back for a measurement.
@@ -45,6 +45,8 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
         Some("geometry") => bench::geometry(&mut print),
         #[cfg(feature = "peers")]
         Some("gesture") => bench::gesture(&mut print),
+        #[cfg(feature = "peers")]
+        Some("kernels") => bench::kernels(&mut print),
         Some("triangle" | "field") if !has_engine => return Err(CommandError::NoEngine),
         Some("triangle") if machine.scene.field().is_some() => {
             return Err(CommandError::FieldShown);

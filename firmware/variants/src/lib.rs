@@ -1,11 +1,18 @@
-//! Kernels of the geometry with other word lengths than those in use, and other filters for the camera's control by a hand.
+//! Other kernels than those in use: of other word lengths, by other methods, and of other libraries.
 //!
 //! The report measures their errors on the host and their cycles on the soft core (`cargo xtask report`), from this one
 //! source. Nothing else uses them.
 #![no_std]
 #![forbid(unsafe_code)]
 
+pub mod colour;
+pub mod division;
 pub mod filter;
+pub mod inverse_root;
+pub mod kernel;
+pub mod length;
 pub mod matrix;
 pub mod normal;
 pub mod reciprocal;
+pub mod root;
+pub mod unit;

@@ -1,6 +1,61 @@
-//! The reciprocal of the vertex stage with fewer Newton steps.
+//! Reciprocals 1/x of mantissas x in [1, 2) with 23 fraction bits.
 
+use fixed::types::U8F24;
+use glint_model::triangle::quotient::INVERSE;
 use glint_model::triangle::reciprocal::{SEED, recip};
+use micromath::F32Ext;
+
+use crate::kernel::Format::{Fixed, Float};
+use crate::kernel::{Kernel, float, other, shipped};
+
+/// All kernels, from cheap to exact; other libraries last.
+pub const KERNELS: &[Kernel<u32, u64>] = &[
+    other(
+        "reciprocal_0",
+        "table of 256 entries of 10 bits",
+        Fixed(24),
+        |m| reciprocal::<0>(m).into(),
+    ),
+    shipped(
+        "reciprocal_pixel",
+        "table of 1024 entries of 17 bits, of each pixel",
+        Fixed(17),
+        |m| INVERSE[(m >> 13 & 0x3FF) as usize].into(),
+    ),
+    other(
+        "reciprocal_1",
+        "256 entries, one Newton step",
+        Fixed(24),
+        |m| reciprocal::<1>(m).into(),
+    ),
+    shipped(
+        "reciprocal_2",
+        "256 entries, two Newton steps, of vertices and triangles",
+        Fixed(24),
+        |m| reciprocal::<2>(m).into(),
+    ),
+    other("reciprocal_32", "division of 32 bits", Fixed(16), |m| {
+        (u32::MAX / (m >> 7)).into()
+    }),
+    other("reciprocal_64", "division of 64 bits", Fixed(24), |m| {
+        ((1 << 47) + u64::from(m / 2)) / u64::from(m)
+    }),
+    other("reciprocal_fixed", "fixed: U8F24::recip", Fixed(24), |m| {
+        U8F24::from_bits(m << 1).recip().to_bits().into()
+    }),
+    other(
+        "reciprocal_micromath",
+        "micromath: f32 recip",
+        Float,
+        float!(F32Ext::recip),
+    ),
+    other("reciprocal_f32", "f32 division", Float, float!(|x| 1.0 / x)),
+];
+
+/// Returns the input of a phase: a mantissa.
+pub const fn input(phase: u32) -> u32 {
+    1 << 23 | phase >> 9
+}
 
 /// Approximates 2^47/m for a mantissa m in [2^23, 2^24) by the table of seeds and `STEPS` Newton steps, at most 2. Two steps are
 /// the reciprocal in use, [`recip`]; the others are its intermediate results.

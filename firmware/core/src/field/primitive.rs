@@ -15,7 +15,7 @@ use super::shape::{FlatConstants, FlatSolid, Placed, Shape};
 use super::surface::Sample;
 
 pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
-pub use fixed_sphere::{FixedSphere, FixedSpheres};
+pub use fixed_sphere::{FixedSphere, FixedSpheres, length};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};

@@ -186,7 +186,7 @@ const fn least_area(area: u32) -> u32 {
 /// Computes the quotient of `number` and `divisor` with 12 fraction bits, rounded down. The divisor is from 1 to 2^20 − 1. A
 /// quotient of 2^20 or more saturates.
 #[inline(never)]
-fn quotient(number: u32, divisor: u32) -> u32 {
+pub fn quotient(number: u32, divisor: u32) -> u32 {
     if number < 1 << 20 {
         return (number << 12) / divisor;
     }
@@ -206,7 +206,7 @@ const fn fraction(rest: u32, divisor: u32) -> u32 {
 /// Returns the square root, rounded down, bit by bit. `u32::isqrt` takes fewer cycles once its code and its table are in the caches,
 /// where they are not when a frame comes.
 #[inline(never)]
-const fn root(square: u32) -> u16 {
+pub const fn root(square: u32) -> u16 {
     let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
     // The number of rounds is not known to the compiler, which would write out sixteen of them.
     while bit > square {

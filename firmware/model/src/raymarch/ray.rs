@@ -26,7 +26,7 @@ const fn inverses() -> [u32; 1024] {
 
 /// Lower bounds of 1/√q for numbers q in (0, 1). The index i is the first ten fraction bits of q. The entry is
 /// √(2^10/(i + 1)), reduced by a part of at least 2^−16 to cover later rounding up: u8.9, 15 bits.
-const ROUND_INVERSE: [u32; 1024] = round_inverses();
+pub const ROUND_INVERSE: [u32; 1024] = round_inverses();
 
 const fn round_inverses() -> [u32; 1024] {
     let mut table = [0; 1024];

@@ -97,7 +97,7 @@ const fn roots() -> [(u32, u32); 512] {
 
 /// Returns a lower bound of the length of a vector with components of at most 23 bits. It is too small by at most 3 units of the
 /// components plus 2^−15 of the length.
-fn length(q: [i32; 3]) -> i32 {
+pub fn length(q: [i32; 3]) -> i32 {
     let parts = q.map(magnitude);
     let Some(lead) = (parts[0] | parts[1] | parts[2]).checked_ilog2() else {
         return 0;

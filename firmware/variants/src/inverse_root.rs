@@ -1,0 +1,100 @@
+//! Reciprocal square roots 1/√x of numbers x in [1, 4) with 22 fraction bits.
+
+use glint_model::raymarch::ROUND_INVERSE;
+use micromath::F32Ext;
+
+use crate::kernel::Format::{Fixed, Float};
+use crate::kernel::{Kernel, float, other, shipped};
+
+/// All kernels, from cheap to exact; other libraries last.
+pub const KERNELS: &[Kernel<u32, u64>] = &[
+    other(
+        "inverse_root_0",
+        "table of 192 entries of 10 bits",
+        Fixed(31),
+        |x| inverse_root::<0>(x).into(),
+    ),
+    shipped(
+        "inverse_root_ray",
+        "table of 1024 lower bounds of 15 bits, of each ray",
+        Fixed(10),
+        |x| ROUND_INVERSE[(x >> 14 & 0x3FF) as usize].into(),
+    ),
+    other(
+        "inverse_root_1",
+        "192 entries, one Newton step",
+        Fixed(31),
+        |x| inverse_root::<1>(x).into(),
+    ),
+    other(
+        "inverse_root_2",
+        "192 entries, two Newton steps",
+        Fixed(31),
+        |x| inverse_root::<2>(x).into(),
+    ),
+    other(
+        "inverse_root_3",
+        "192 entries, three Newton steps",
+        Fixed(31),
+        |x| inverse_root::<3>(x).into(),
+    ),
+    other(
+        "inverse_root_64",
+        "division of 64 bits, u64::isqrt of the quotient",
+        Fixed(20),
+        |x| ((1_u64 << 62) / u64::from(x)).isqrt(),
+    ),
+    other(
+        "inverse_root_micromath",
+        "micromath: f32 invsqrt",
+        Float,
+        float!(F32Ext::invsqrt),
+    ),
+    other(
+        "inverse_root_libm",
+        "libm: sqrtf, f32 division",
+        Float,
+        float!(|x| 1.0 / libm::sqrtf(x)),
+    ),
+];
+
+/// Returns the input of a phase.
+pub const fn input(phase: u32) -> u32 {
+    // [1, 4) has three quarters of the numbers of 24 bits.
+    (1 << 22) + (phase >> 8) * 3 / 4
+}
+
+/// `SEED[i]` is 2^10/√x to nearest, at most 2^10 − 1, for x = 1 + (i + 1/2)/64.
+const SEED: [u16; 192] = seeds();
+
+const fn seeds() -> [u16; 192] {
+    let mut table = [0; 192];
+    let mut i = 0;
+    while i < table.len() {
+        // x is d/128, so the entry is the root of 2^27/d; twice the entry is the root of 2^29/d.
+        let d = 129 + 2 * i as u64;
+        let root = ((1 << 29) / d).isqrt().div_ceil(2);
+        table[i] = if root < 1 << 10 {
+            root as u16
+        } else {
+            (1 << 10) - 1
+        };
+        i += 1;
+    }
+    table
+}
+
+/// Approximates 2^31/√x for `x` with 22 fraction bits in [1, 4) by a table and `STEPS` Newton steps y·(3 − x·y²)/2.
+#[inline(never)]
+pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
+    let seed = SEED[((x >> 16) as usize).saturating_sub(64).min(191)];
+    let mut y = u32::from(seed) << 21;
+    for _ in 0..STEPS {
+        let square = (u64::from(y) * u64::from(y)) >> 32;
+        // The product has 28 fraction bits and is near 1, so the difference is near 2.
+        let product = (square * u64::from(x << 8)) >> 32;
+        let rest = (3 << 28) - product as u32;
+        y = ((u64::from(y) * u64::from(rest)) >> 29).min(1 << 31) as u32;
+    }
+    y
+}

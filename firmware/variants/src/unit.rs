@@ -1,0 +1,93 @@
+//! Vectors of three integers scaled to length 1, in units of 2^−30 or in coarser ones. Inputs are those of [`crate::length`].
+
+use glint_core::vector;
+use micromath::F32Ext;
+
+use crate::inverse_root::inverse_root;
+use crate::kernel::Format::{Fixed, Float};
+use crate::kernel::{Kernel, other, shipped};
+
+/// All kernels, from cheap to exact; other libraries last.
+pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
+    other("unit_32", "14 fraction bits, in 32 bits", Fixed(14), |q| {
+        unit_32(q)
+    }),
+    other(
+        "unit_newton_1",
+        "192 entries, one Newton step",
+        Fixed(30),
+        by_inverse::<1>,
+    ),
+    other(
+        "unit_newton_2",
+        "192 entries, two Newton steps",
+        Fixed(30),
+        by_inverse::<2>,
+    ),
+    shipped(
+        "unit_14",
+        "14 fraction bits, in 64 bits, of normals",
+        Fixed(14),
+        exact::<14>,
+    ),
+    shipped(
+        "unit_30",
+        "30 fraction bits, in 64 bits, of cameras",
+        Fixed(30),
+        exact::<30>,
+    ),
+    other("unit_micromath", "micromath: f32 invsqrt", Float, |q| {
+        float(q, F32Ext::invsqrt)
+    }),
+    other("unit_libm", "libm: sqrtf, one f32 division", Float, |q| {
+        float(q, |square| 1.0 / libm::sqrtf(square))
+    }),
+];
+
+fn exact<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
+    vector::unit::<BITS>(q.map(i64::from)).unwrap_or_default()
+}
+
+/// Scales to 14 fraction bits with products and quotients of 32 bits. The zero vector stays.
+fn unit_32(q: [i32; 3]) -> [i32; 3] {
+    let size = q.map(i32::unsigned_abs);
+    let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
+        return q;
+    };
+    let size = size.map(|x| {
+        if lead < 14 {
+            x << (14 - lead)
+        } else {
+            x >> (lead - 14)
+        }
+    });
+    let length = (size[0] * size[0] + size[1] * size[1] + size[2] * size[2]).isqrt();
+    [0, 1, 2].map(|i| {
+        let quotient = (((size[i] << 15) / length + 1) >> 1) as i32;
+        quotient * q[i].signum()
+    })
+}
+
+/// Scales to 30 fraction bits by the reciprocal square root with `STEPS` Newton steps. The zero vector stays.
+fn by_inverse<const STEPS: u32>(q: [i32; 3]) -> [i32; 3] {
+    let size = q.map(i32::unsigned_abs);
+    let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
+        return q;
+    };
+    // The largest component has 30 bits, so the sum of the squares has at most 62; it becomes x·4^n with 22 fraction bits.
+    let up = 29_u32.saturating_sub(lead);
+    let scaled = q.map(|x| x << up);
+    let square: u64 = scaled
+        .map(|x| u64::from(x.unsigned_abs()).pow(2))
+        .iter()
+        .sum();
+    let half = square.ilog2() / 2;
+    let inverse = inverse_root::<STEPS>((square >> (2 * half - 22)) as u32);
+    scaled.map(|x| ((i64::from(x) * i64::from(inverse)) >> (half + 1)) as i32)
+}
+
+fn float(q: [i32; 3], inverse_root: fn(f32) -> f32) -> [i32; 3] {
+    let q = q.map(|x| f32::from_bits(x.cast_unsigned()));
+    let inverse = inverse_root(q[0] * q[0] + q[1] * q[1] + q[2] * q[2]);
+    q.map(|x| (x * inverse).to_bits().cast_signed())
+}
