@@ -18,6 +18,7 @@ use glint_reference::report::cycles::Cycles;
 use glint_reference::report::experiments::geometry::precision;
 use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
+use glint_reference::report::experiments::kernels as small_kernels;
 use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
 use glint_reference::report::experiments::sine;
 use glint_reference::report::pages::PAGES;
@@ -124,7 +125,7 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
     for (name, rebuild) in PAGES {
         rebuild(&folder).unwrap_or_else(|error| panic!("{name}: {error:#}"));
     }
-    for page in [of("md"), of("svg")].concat() {
+    for page in [of("md"), of("svg"), of("csv"), of("json")].concat() {
         let name = page.file_name().expect("a name");
         let rebuilt = fs::read_to_string(folder.join(name)).expect("a rebuilt file");
         assert!(
@@ -171,6 +172,25 @@ fn the_committed_errors_of_geometry_hold() {
         assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
         assert_close(row.rms, now.rms, 1e-6, &name("rms"));
     }
+}
+
+/// Measures the rows of kernels.csv again, and compares the errors with the committed ones.
+#[test]
+fn the_committed_errors_of_small_kernels_hold() {
+    let rows: Vec<small_kernels::Row> = committed("kernels.csv");
+    let now = small_kernels::measure(None, 1, &Cycles::new()).expect("cameras are accepted");
+    assert_eq!(rows.len(), now.len(), "kernels have come or gone");
+    for (row, now) in rows.iter().zip(now) {
+        assert_eq!((&row.config, row.samples), (&now.config, now.samples));
+        let name = |column| format!("kernels.csv: {} of {}", column, row.config);
+        assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
+        assert_close(row.rms, now.rms, 1e-6, &name("rms"));
+    }
+    let in_cycles = rows.iter().filter(|row| row.bits.is_none());
+    let missing: Vec<_> = in_cycles
+        .filter(|row| row.cycles_median.is_none())
+        .collect();
+    assert!(missing.is_empty(), "no cycles: {missing:?}");
 }
 
 /// Measures the rows of gouraud-forms.csv of common scenes again, and compares the errors with the committed ones.

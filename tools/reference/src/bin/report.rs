@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use clap::{Args, Parser, Subcommand};
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, raymarch, sine, triangle,
+    geometry, gesture, gouraud, imu, kernels, raymarch, sine, triangle,
 };
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
@@ -84,6 +84,14 @@ enum Page {
     },
     /// A hand that steers the camera: errors of its centre, and errors, lag and cycles of filters
     Gesture {
+        #[command(flatten)]
+        bench: Bench,
+    },
+    /// Reciprocals, roots, quotients, lengths, depth codes, colours and number formats: errors, and cycles or bits
+    Kernels {
+        /// Measure a sample of the inputs instead of all
+        #[arg(long)]
+        quick: bool,
         #[command(flatten)]
         bench: Bench,
     },
@@ -166,6 +174,7 @@ fn main() -> Result<()> {
         Page::Geometry { bench } => measure_geometry(&bench),
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Gesture { bench } => measure_gesture(&bench),
+        Page::Kernels { quick, bench } => measure_kernels(quick, &bench),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
             PAGES
@@ -263,6 +272,16 @@ fn measure_gouraud(quick: bool, earlier: bool, output: &Output) -> Result<()> {
         write_csv(&costs, &file)?;
     }
     written("gouraud", &folder, pages::gouraud::rebuild)
+}
+
+fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
+    let output = &bench.output;
+    let cycles = bench.cycles.measure("kernels")?;
+    let rows = kernels::measure(None, if quick { 64 } else { 1 }, &cycles)?;
+    output.print(&rows, pages::kernels::table)?;
+    let folder = output.folder(quick)?;
+    write_csv(&rows, &folder.join("kernels.csv"))?;
+    written("kernels", &folder, pages::kernels::rebuild)
 }
 
 fn measure_geometry(bench: &Bench) -> Result<()> {

@@ -4,6 +4,7 @@ pub mod geometry;
 pub mod gesture;
 pub mod gouraud;
 pub mod imu;
+pub mod kernels;
 pub mod raymarch;
 pub mod sine;
 pub mod triangle;

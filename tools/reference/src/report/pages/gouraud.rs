@@ -1,6 +1,6 @@
 //! Builds the page `gouraud.md` of the report, on smooth shading.
 
-mod variants;
+pub mod variants;
 
 use std::path::Path;
 

@@ -5,6 +5,8 @@ pub mod geometry;
 pub mod gesture;
 pub mod gouraud;
 pub mod imu;
+mod index;
+pub mod kernels;
 pub mod raymarch;
 pub mod sine;
 mod template;
@@ -18,7 +20,7 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 7] = [
+pub const PAGES: [(&str, Rebuild); 9] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
@@ -26,4 +28,7 @@ pub const PAGES: [(&str, Rebuild); 7] = [
     ("imu", imu::rebuild),
     ("geometry", geometry::rebuild),
     ("gesture", gesture::rebuild),
+    ("kernels", kernels::rebuild),
+    // The index is made from the tables of all other pages.
+    ("README", index::rebuild),
 ];

@@ -137,6 +137,14 @@ impl Variant<'_> {
         self.resources.map(|resources| resources.lut)
     }
 
+    /// Returns the largest error in all scenes.
+    pub fn largest_error(&self) -> f64 {
+        self.errors
+            .iter()
+            .map(|row| row.max_err)
+            .fold(0.0, f64::max)
+    }
+
     /// Returns the point of a diagram with this cost. Its error is the RMS in the worst scene.
     pub fn point(&self, cost: Option<f64>) -> Point {
         let errors = self.errors.iter().map(|row| row.rms);

@@ -1,0 +1,106 @@
+//! Errors and cycles of the kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, and
+//! the number formats of the pipeline's stages.
+
+mod arithmetic;
+mod formats;
+mod pixels;
+mod trial;
+
+use anyhow::Result;
+use serde::{Deserialize, Serialize};
+
+use self::trial::Trial;
+use crate::report::cycles::Cycles;
+use crate::report::progress;
+use crate::report::provenance::Provenance;
+
+/// Error and cost of one configuration of a kernel: a line of `kernels.csv`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Row {
+    /// What the kernel computes.
+    pub family: String,
+    /// Name of the kernel; that of the firmware's `bench kernels` if it has cycles.
+    pub kernel: String,
+    /// Word length and method.
+    pub config: String,
+    /// Whether Glint uses the configuration.
+    pub shipped: bool,
+    /// Largest error, in the unit of the family.
+    pub max_err: f64,
+    /// Root of the mean of the squared errors.
+    pub rms: f64,
+    /// Input with the largest error.
+    pub argmax: String,
+    /// Number of inputs.
+    pub samples: u64,
+    /// Bits of a stored number, where these are the cost.
+    pub bits: Option<u32>,
+    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    pub cycles_min: Option<u64>,
+    /// Median of the cycles of the calls on the soft core.
+    pub cycles_median: Option<u64>,
+    /// Cycles of the slowest call on the soft core.
+    pub cycles_max: Option<u64>,
+    /// Commit with which the row was measured.
+    pub commit: String,
+    /// Versions of the tools with which the row was measured.
+    pub tools: String,
+}
+
+/// Name of a family, and the measurement of its trials, which takes the thinning of the inputs.
+type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
+
+/// Measures all configurations, or those of one family. `thinning` is 1 for all inputs of a kernel, and n for every n-th. `cycles` is the
+/// result of the console command `bench kernels`.
+///
+/// # Errors
+/// When the terminal refuses a progress bar, or a camera is refused.
+pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
+    let provenance = Provenance::find();
+    let families: [Family; 9] = [
+        ("reciprocal", |thinning| {
+            Ok(arithmetic::reciprocals(thinning))
+        }),
+        ("inverse root", |thinning| {
+            Ok(arithmetic::inverse_roots(thinning))
+        }),
+        ("root", |thinning| Ok(arithmetic::roots(thinning))),
+        ("division", |thinning| Ok(arithmetic::divisions(thinning))),
+        ("length", |thinning| Ok(arithmetic::lengths(thinning))),
+        ("unit", |thinning| Ok(arithmetic::units(thinning))),
+        ("depth", pixels::depths),
+        ("colour", |thinning| Ok(pixels::colours(thinning))),
+        ("format", formats::formats),
+    ];
+    let chosen = families
+        .iter()
+        .filter(|(name, _)| only.is_none_or(|only| only == *name));
+    let bar = progress::bar(families.len() as u64)?;
+    let mut rows = Vec::new();
+    for (family, trials) in chosen {
+        bar.set_message((*family).to_owned());
+        for trial in trials(thinning)? {
+            let cycles = cycles.get(trial.kernel);
+            let errors = trial.errors;
+            rows.push(Row {
+                family: (*family).to_owned(),
+                kernel: trial.kernel.to_owned(),
+                config: trial.config,
+                shipped: trial.shipped,
+                max_err: errors.largest,
+                rms: (errors.squares / errors.count.max(1) as f64).sqrt(),
+                argmax: errors.worst,
+                samples: errors.inputs,
+                bits: trial.bits,
+                cycles_min: cycles.map(|cycles| cycles.min),
+                cycles_median: cycles.map(|cycles| cycles.median),
+                cycles_max: cycles.map(|cycles| cycles.max),
+                commit: provenance.commit.clone(),
+                tools: provenance.tools.clone(),
+            });
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(rows)
+}
