@@ -65,13 +65,7 @@ fn model(module: &str) -> Result<()> {
 /// Builds a program of the workspace as a step, then runs it on this terminal.
 fn tool(package: &str, program: &str, subcommand: &str, arguments: &[String]) -> Result<()> {
     let select = ["--package", package, "--bin", program];
-    run::step(
-        &format!("build {program}"),
-        Command::new("cargo")
-            .arg("build")
-            .args(select)
-            .current_dir(paths::root()),
-    )?;
+    run::build_program(package, program)?;
     run::foreground(
         &format!("{program} {subcommand}"),
         Command::new("cargo")

@@ -111,6 +111,19 @@ pub fn foreground(name: &str, command: &mut Command) -> Result<()> {
     Ok(())
 }
 
+/// Builds the `program` of a `package` of the workspace.
+///
+/// # Errors
+/// As [`step`].
+pub fn build_program(package: &str, program: &str) -> Result<()> {
+    step(
+        &format!("build {program}"),
+        Command::new("cargo")
+            .args(["build", "--package", package, "--bin", program])
+            .current_dir(paths::root()),
+    )
+}
+
 /// Runs `command` without showing its output; returns whether it succeeds.
 pub fn succeeds(command: &mut Command) -> bool {
     command

@@ -51,12 +51,7 @@ struct Frame {
 pub fn set_up_and_walk(names: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     firmware::build(Board::Virtual, &[])?;
-    run::step(
-        "build glint",
-        Command::new("cargo")
-            .args(["build", "-p", "glint", "--bin", "glint"])
-            .current_dir(paths::root()),
-    )?;
+    run::build_program("glint", "glint")?;
     walk(names)
 }
 

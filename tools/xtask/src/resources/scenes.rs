@@ -92,12 +92,7 @@ pub fn resources(write: bool) -> Result<()> {
     })?;
     gateware::build(Board::Virtual)?;
     firmware::build(Board::Virtual, &[])?;
-    run::step(
-        "build glint",
-        Command::new("cargo")
-            .args(["build", "-p", "glint", "--bin", "glint"])
-            .current_dir(paths::root()),
-    )?;
+    run::build_program("glint", "glint")?;
     let rows = builds.into_iter().map(|(name, options)| {
         let soc = format!("{SOC}-{name}");
         let size = sizes.iter().find(|size| size.name == soc).cloned();
