@@ -178,10 +178,7 @@ impl Scene {
                 }
             }
         };
-        Frame {
-            lighting: self.appearance.mesh_lighting(),
-            ..Frame::new(subject, self.view, self.size)
-        }
+        Frame::in_appearance(subject, self.view, self.size, &self.appearance)
     }
 
     /// Whether the wireframe is shown.
@@ -267,6 +264,7 @@ impl Scene {
             self.appearance != appearance
         } else {
             self.appearance.mesh_lighting() != appearance.mesh_lighting()
+                || self.appearance.mesh_background() != appearance.mesh_background()
         };
         self.appearance = appearance;
     }

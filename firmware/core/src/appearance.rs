@@ -1,12 +1,13 @@
-//! The appearance of a distance field, and the lighting of meshes.
+//! The appearance of a distance field, and lighting and background of meshes.
 
 use heapless::Vec;
 
+use crate::colour::Rgb565;
 use crate::fixed::U4_28;
 use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb};
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
-/// normal, and the background is white.
+/// normal, and the background is white. Meshes have its lights and background.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
     /// Material.
@@ -15,8 +16,8 @@ pub struct Appearance {
     pub lights: Vec<Light, MAX_LIGHTS>,
     /// Ambient light; `None` selects the default ambient light.
     pub ambient: Option<Rgb>,
-    /// Background.
-    pub background: Background,
+    /// Background; `None` selects white for a field and black for meshes.
+    pub background: Option<Background>,
     /// Density of the fog per world unit: of the light from a point at the distance d, the part exp(−d · density) reaches the
     /// eye. 0 means no fog.
     pub fog: U4_28,
@@ -57,5 +58,18 @@ impl Appearance {
             ambient: self.ambient.unwrap_or(lighting.ambient),
             ..lighting
         }
+    }
+
+    /// The background of a field.
+    pub fn field_background(&self) -> Background {
+        self.background.unwrap_or(Background::White)
+    }
+
+    /// The background of meshes, which has one colour.
+    pub fn mesh_background(&self) -> Rgb565 {
+        self.background.map_or(Rgb565(0), |background| {
+            let [_, horizon] = background.colours();
+            Rgb565::from_rgb888(horizon)
+        })
     }
 }

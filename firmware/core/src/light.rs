@@ -393,26 +393,48 @@ impl Material {
 }
 
 /// Background of a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// White.
-    #[default]
     White,
-    /// A sky: blue above, pale at the horizon and below it.
+    /// A sky: blue above, pale at the horizon and below it. Behind meshes it has one colour, that of the horizon.
     Sky,
+    /// One colour.
+    Colour(Rgb),
 }
 
-choices!(Background {
-    White: "white",
-    Sky: "sky"
-});
-
 impl Background {
+    /// Text form of [`Background::White`].
+    pub const WHITE: &'static str = "white";
+    /// Text form of [`Background::Sky`].
+    pub const SKY: &'static str = "sky";
+
+    /// Parses `white`, `sky` or a colour RRGGBB; `None` for any other text.
+    pub fn parse(text: &str) -> Option<Self> {
+        match text {
+            Self::WHITE => Some(Self::White),
+            Self::SKY => Some(Self::Sky),
+            colour => parse_rgb(colour).map(Self::Colour),
+        }
+    }
+
     /// Two colours: the colour at the zenith, and the colour at and below the horizon.
     pub const fn colours(self) -> [Rgb; 2] {
         match self {
             Self::White => [[0xFF; 3]; 2],
             Self::Sky => [[64, 120, 216], [214, 228, 242]],
+            Self::Colour(colour) => [colour; 2],
+        }
+    }
+}
+
+/// Writes the text form.
+impl fmt::Display for Background {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match *self {
+            Self::White => f.write_str(Self::WHITE),
+            Self::Sky => f.write_str(Self::SKY),
+            Self::Colour(colour) => Hexadecimal(colour).fmt(f),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
+use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::light::{
     Background, Light, LightError, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb, parse_rgb,
@@ -228,9 +229,30 @@ fn a_light_at_the_camera_follows_the_camera() {
 
 #[test]
 fn names_are_different() {
-    for names in [&Material::NAMES[..], &Background::NAMES] {
-        for (i, name) in names.iter().enumerate() {
-            assert!(!names[..i].contains(name), "{name}");
-        }
+    for (i, name) in Material::NAMES.iter().enumerate() {
+        assert!(!Material::NAMES[..i].contains(name), "{name}");
+    }
+}
+
+#[test]
+fn backgrounds() {
+    let background = |text| Appearance {
+        background: Background::parse(text),
+        ..Appearance::default()
+    };
+    let default = Appearance::default();
+    assert_eq!(default.field_background(), Background::White);
+    assert_eq!(default.mesh_background(), Rgb565(0));
+    for (text, mesh) in [
+        ("white", Rgb565::WHITE),
+        ("sky", Rgb565::from_rgb888([214, 228, 242])),
+        ("0080ff", Rgb565::from_rgb888([0, 0x80, 0xFF])),
+    ] {
+        let appearance = background(text);
+        assert_eq!(appearance.field_background().to_string(), text);
+        assert_eq!(appearance.mesh_background(), mesh);
+    }
+    for text in ["", "black", "12345", "1234567", "White", "+12345"] {
+        assert_eq!(Background::parse(text), None, "{text}");
     }
 }

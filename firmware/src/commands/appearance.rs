@@ -7,7 +7,7 @@ use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Hexadecimal, Light, Material, Rgb};
 
 use crate::error::CommandError;
-use crate::format::OrOff;
+use crate::format::{OrDefault, OrOff};
 use crate::job::{Outcome, Reply};
 use crate::machine::Machine;
 
@@ -70,11 +70,11 @@ impl<'l> AppearanceCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn background(&mut self, background: Option<Background>) -> Outcome<'l> {
+    fn background(&mut self, background: Option<Option<Background>>) -> Outcome<'l> {
         match background {
             Some(background) => change(self, &mut |appearance| appearance.background = background),
             None => {
-                let background = self.scene.appearance().background;
+                let background = OrDefault(self.scene.appearance().background);
                 self.terminal.print_entry("background", &background);
             }
         }

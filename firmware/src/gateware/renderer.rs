@@ -1,7 +1,7 @@
 //! The passes of a frame: the geometry passes, and the raster pass.
 
 use glint_core::camera::Projection;
-use glint_core::colour::Shading;
+use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
 use glint_hal::frequency::Frequency;
@@ -75,9 +75,9 @@ pub struct GatewareRenderer {
     pub(super) edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
-    /// Size of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the buffer
-    /// since.
-    drawn_sizes: [Option<Size>; 2],
+    /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the
+    /// buffer since.
+    drawn: [Option<(Size, Rgb565)>; 2],
     stage: Stage,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
@@ -120,7 +120,7 @@ impl GatewareRenderer {
             projected: Projected::default(),
             edges: EdgeStats::default(),
             first_frame_buffer,
-            drawn_sizes: [None; 2],
+            drawn: [None; 2],
             stage: Stage::Idle,
             constants: Default::default(),
             geometry: GeometryPasses::new(shading),
@@ -166,8 +166,8 @@ impl GatewareRenderer {
     /// this buffer.
     pub fn invalidate(&mut self, colour: &[u16]) {
         let slot = usize::from(self.slot(colour));
-        if let Some(size) = self.drawn_sizes.get_mut(slot) {
-            *size = None;
+        if let Some(drawn) = self.drawn.get_mut(slot) {
+            *drawn = None;
         }
     }
 
@@ -454,18 +454,19 @@ impl GatewareRenderer {
         sets: [Option<Set>; 2],
     ) {
         let slot = self.slot(output.colour);
-        let drawn_size = &mut self.drawn_sizes[usize::from(slot)];
+        let drawn = &mut self.drawn[usize::from(slot)];
+        let this = Some((frame.size, frame.clear));
         let pass = Raster {
             size: frame.size,
             frame: address(output.colour),
             slot,
-            whole: *drawn_size != Some(frame.size),
+            whole: *drawn != this,
             depth: output.depth.as_deref().map(address),
             clear: frame.clear.0,
             list_shift: self.buffers[0].list_shift(frame.size),
             sets,
         };
-        *drawn_size = Some(frame.size);
+        *drawn = this;
         // SAFETY: the lists belong to this renderer and stay until the end of the pass; the caller lends the memory of
         // colours and depth codes until then.
         unsafe { self.engine.start_raster(&pass) };

@@ -185,7 +185,7 @@ fn every_kind_of_field() {
         let field = Field::parse(text).unwrap();
         let appearance = Appearance {
             material: [Material::Normal, Material::Jade][number % 2],
-            background: [Background::White, Background::Sky][number % 2],
+            background: [None, Some(Background::Sky)][number % 2],
             occlusion: number % 3 == 0,
             ..Appearance::default()
         };

@@ -133,7 +133,7 @@ impl<'s> State<'s> {
             },
             Command::Ambient { colour } => appearance.ambient = colour.flatten(),
             Command::Background { background } => {
-                appearance.background = background.unwrap_or_default();
+                appearance.background = background.flatten();
             }
             Command::Fog { density } => {
                 appearance.fog = density.flatten().unwrap_or_default();
@@ -209,10 +209,12 @@ pub fn draw<T>(
         changes.view.unwrap_or(state.view),
         changes.size.unwrap_or(state.size),
     );
-    Ok(draw(&Frame {
-        lighting: state.appearance.mesh_lighting(),
-        ..Frame::new(subject, view, size)
-    }))
+    Ok(draw(&Frame::in_appearance(
+        subject,
+        view,
+        size,
+        &state.appearance,
+    )))
 }
 
 #[cfg(test)]

@@ -67,7 +67,7 @@ pub const COMMANDS: [Key; 24] = [
     key("material").with(FIELD),
     key("light").list().with(LIT),
     key("ambient").with(LIT),
-    key("background").with(FIELD),
+    key("background").with(LIT),
     key("fog").with(FIELD),
     key("occlusion").with(FIELD),
     key("prepass").with(FIELD),

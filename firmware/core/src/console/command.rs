@@ -61,12 +61,12 @@ commands! {
         object Object(action: Option<Object>) in OBJECT: "list or show the objects, add one, change its place or colour, or remove it";
     }
 
-    /// Commands of a field's appearance, and of the light on meshes.
+    /// Commands of a field's appearance, and of light and background of meshes.
     AppearanceCommands {
         material Material(material: Option<Material>) in FIELD: "show or set the material of a field; normal colours faces by direction";
         light Light(light: Option<Or<Default, Light>>) in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default";
         ambient Ambient(colour: Option<Or<Default, Rgb>>) in LIGHT: "show or set the ambient light";
-        background Background(background: Option<Background>) in FIELD: "show or set the background of a field";
+        background Background(background: Option<Or<Default, Background>>): "show or set the background; default is white for a field and black for meshes, which have one colour";
         fog Fog(density: Option<Or<Off, U4_28>>) in FIELD: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
         occlusion Occlusion(on: Option<bool>) in FIELD: "turn ambient occlusion of a field on or off, or show the setting";
         undecided Undecided(on: Option<bool>) in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";

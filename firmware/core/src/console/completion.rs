@@ -27,7 +27,13 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     match shape {
         Some((Shape::Flag, name)) => offer(name),
         Some((Shape::Word(Kind::Words(words)), _)) => words.iter().for_each(|word| offer(word)),
-        Some((Shape::Word(Kind::Either(keyword, _)), _)) => offer(keyword),
+        Some((&Shape::Word(kind @ Kind::Either(..)), _)) => {
+            let mut kind = kind;
+            while let Kind::Either(keyword, other) = kind {
+                offer(keyword);
+                kind = other;
+            }
+        }
         Some((Shape::Word(Kind::Command), _)) => syntaxes().for_each(|syntax| offer(syntax.name)),
         _ => {}
     }

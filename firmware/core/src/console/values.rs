@@ -15,7 +15,7 @@ use crate::field::{self, KINDS};
 use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
 use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
-use crate::light::{self, Rgb, parse_rgb};
+use crate::light::{self, Background, Rgb, parse_rgb};
 use crate::matrix::Axis;
 use crate::mesh::{self, MAX_BYTES};
 use crate::picture;
@@ -181,6 +181,16 @@ impl WordArgument for Rgb {
 
     fn parse(text: &str) -> Option<Self> {
         parse_rgb(text)
+    }
+}
+
+/// The text form of a background.
+impl WordArgument for Background {
+    type Value<'a> = Self;
+    const KIND: Kind = Kind::Either(Self::WHITE, &Kind::Either(Self::SKY, &Rgb::KIND));
+
+    fn parse(text: &str) -> Option<Self> {
+        Self::parse(text)
     }
 }
 

@@ -185,7 +185,12 @@ fn every_command_is_understood() {
         },
     );
     assert_parses("background", Command::Background { background: None });
-    for (name, background) in Background::NAMES.into_iter().zip(Background::ALL) {
+    for (name, background) in [
+        ("default", None),
+        ("white", Some(Background::White)),
+        ("sky", Some(Background::Sky)),
+        ("102030", Some(Background::Colour([0x10, 0x20, 0x30]))),
+    ] {
         assert_parses(
             &format!("background {name}"),
             Command::Background {

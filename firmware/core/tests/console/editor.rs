@@ -167,6 +167,7 @@ fn tab_completes_commands_and_the_words_of_their_arguments() {
     assert_lines(b"imu c\t\r", &["imu calibrate "]);
     assert_lines(b"mounting -x -\tz\r", &["mounting -x -z"]);
     assert_lines(b"stereo \t\r", &["stereo off "]);
+    assert_lines(b"background s\t\r", &["background sky "]);
     // Completion at the cursor keeps the rest of the line.
     assert_lines(b" on\x01cul\t\r", &["cull  on"]);
     // Only the text that all candidates have in common is inserted.

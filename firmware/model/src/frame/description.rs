@@ -238,6 +238,26 @@ impl<'a> Frame<'a> {
         }
     }
 
+    /// A frame with the lights of meshes and the background of `appearance`. Behind lines alone the background is black.
+    pub fn in_appearance(
+        subject: Subject<'a>,
+        view: View,
+        size: Size,
+        appearance: &Appearance,
+    ) -> Self {
+        let clear = match subject {
+            Subject::Mesh(_) | Subject::Objects(_) | Subject::Edges(_, Edges::Over) => {
+                appearance.mesh_background()
+            }
+            _ => Rgb565(0),
+        };
+        Self {
+            clear,
+            lighting: appearance.mesh_lighting(),
+            ..Self::new(subject, view, size)
+        }
+    }
+
     /// The lighting of the meshes: that of the frame, or of the field's appearance for a mesh in a field.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {

@@ -97,14 +97,13 @@ impl FieldOptions {
     ) -> Self {
         let &Appearance {
             material,
-            background,
             fog,
             occlusion,
             undecided,
             ..
         } = appearance;
         let lighting = appearance.lighting().seen_from(view);
-        let mut palette = Palette::of(field, material, &lighting, background);
+        let mut palette = Palette::of(field, material, &lighting, appearance.field_background());
         if occlusion {
             palette = palette.with_occlusion();
         }

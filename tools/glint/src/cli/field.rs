@@ -5,6 +5,7 @@ use clap::Args;
 use glint::error::{InputError, quote};
 use glint::field;
 use glint_core::appearance::Appearance;
+use glint_core::colour::Rgb565;
 use glint_core::field::{Field, KINDS};
 use glint_core::fixed::U4_28;
 use glint_core::light::{self, Background, Light, MAX_LIGHTS, Material, parse_rgb};
@@ -21,7 +22,8 @@ pub struct FieldArguments {
     /// tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
-    /// Material of a field; `normal` colours each face by its normal [default: normal].
+    /// Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes in place of
+    /// their own ones.
     #[arg(long, value_parser = named(Material::ALL, Material::name))]
     material: Option<Material>,
     /// A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a
@@ -32,9 +34,10 @@ pub struct FieldArguments {
     /// Ambient light [default: 404040 with a --light; without, white on a field and black on meshes].
     #[arg(long, value_name = "RRGGBB")]
     ambient: Option<String>,
-    /// Background of a field [default: white].
-    #[arg(long, value_parser = named(Background::ALL, Background::name))]
-    background: Option<Background>,
+    /// Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at
+    /// the horizon.
+    #[arg(long, value_name = "white|sky|RRGGBB")]
+    background: Option<String>,
     /// Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is
     /// from 0 to below 16.
     #[arg(long, value_name = "DENSITY", allow_hyphen_values = true)]
@@ -94,12 +97,23 @@ impl FieldArguments {
         self.prepass
     }
 
-    /// The appearance of the field, with the lights of meshes. Other options of a field that are given without a field are an error,
+    /// The colour of meshes without a field, if `--material` is given.
+    pub fn mesh_colour(&self) -> Result<Option<Rgb565>, InputError> {
+        match (self.material, &self.field) {
+            (Some(Material::Normal), None) => Err(bad_value(
+                "--material",
+                "a material of one colour on meshes",
+                Material::Normal.name(),
+            )),
+            (Some(material), None) => Ok(Some(Rgb565::from_rgb888(material.faces()[0]))),
+            _ => Ok(None),
+        }
+    }
+
+    /// The appearance of the field, with lights and background of meshes. Other options of a field that are given without a field are an error,
     /// and so are several lights.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
         let given = [
-            ("--material", self.material.is_some()),
-            ("--background", self.background.is_some()),
             ("--fog", self.fog.is_some()),
             ("--occlusion", self.occlusion),
             ("--undecided", self.undecided),
@@ -121,10 +135,15 @@ impl FieldArguments {
             let found = quote(text.as_bytes());
             parse_rgb(text).ok_or_else(|| bad_value("--ambient", "a colour RRGGBB", found))
         });
+        let background = self.background.as_deref().map(|text| {
+            let found = quote(text.as_bytes());
+            Background::parse(text)
+                .ok_or_else(|| bad_value("--background", "white, sky or a colour RRGGBB", found))
+        });
         let mut appearance = Appearance {
             material: self.material.unwrap_or_default(),
             ambient: ambient.transpose()?,
-            background: self.background.unwrap_or_default(),
+            background: background.transpose()?,
             fog: fog.transpose()?.unwrap_or_default(),
             occlusion: self.occlusion,
             undecided: self.undecided,

@@ -179,13 +179,17 @@ impl RenderArguments {
             prepass: self.field.prepass(),
         });
         let mesh = mesh.transpose()?;
+        let colour = self.field.mesh_colour()?;
+        if colour.is_some() && self.wireframe.is_some() {
+            return Err(bad_value("--material", "a mesh with faces", "--wireframe").into());
+        }
         let objects = mesh
-            .filter(|_| !descriptions.is_empty())
-            .map(|subject| Ok((subject, Matrix::IDENTITY, None)))
+            .filter(|_| !descriptions.is_empty() || colour.is_some())
+            .map(|subject| Ok((subject, Matrix::IDENTITY, colour)))
             .into_iter()
             .chain(descriptions.iter().zip(&models).map(|(object, model)| {
                 self.subject(model, clip)
-                    .map(|subject| (subject, object.place.matrix, object.place.colour))
+                    .map(|subject| (subject, object.place.matrix, object.place.colour.or(colour)))
             }))
             .map(|object| {
                 object.map(|(subject, matrix, colour)| Object {
@@ -211,10 +215,7 @@ impl RenderArguments {
             has_mesh: self.model.is_some(),
         };
         let view = self.camera.view(&shown)?;
-        let frame = Frame {
-            lighting: appearance.mesh_lighting(),
-            ..Frame::new(subject, view, size)
-        };
+        let frame = Frame::in_appearance(subject, view, size, &appearance);
         self.write(&frame, None)
     }
 

@@ -1,8 +1,8 @@
 //! A renderer that draws frames on a board, by console commands.
 
 use super::commands::{
-    edges_command, field_commands, lighting_commands, mesh_commands, object_command, size_command,
-    view_command,
+    background_command, edges_command, field_commands, lighting_commands, mesh_commands,
+    object_command, size_command, view_command,
 };
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
@@ -13,6 +13,7 @@ use crate::scene;
 use crate::transfer::{self, Progress, Route};
 use crate::wireframe::Action;
 use glint_core::camera::View;
+use glint_core::light::Background;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_model::{Frame, Object, Subject};
@@ -103,6 +104,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             for command in lighting_commands(&frame.lighting) {
                 self.console.command(&command)?;
             }
+            let colour = Background::Colour(frame.clear.to_rgb888());
+            self.console.command(&background_command(Some(colour)))?;
         }
         if let Some(mesh) = frame.subject.mesh_part() {
             for command in mesh_commands(mesh) {

@@ -3,7 +3,7 @@
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
 use glint_core::choice::switch_name;
-use glint_core::light::{Hexadecimal, MeshLighting};
+use glint_core::light::{Background, Hexadecimal, MeshLighting};
 use glint_core::object::Place;
 use glint_core::picture::{Edges, Size};
 use glint_model::{Clip, FieldSubject, MeshSubject, Object};
@@ -53,6 +53,14 @@ pub fn lighting_commands(lighting: &MeshLighting) -> Vec<String> {
     commands
 }
 
+/// The console command that sets the background.
+pub fn background_command(background: Option<Background>) -> String {
+    match background {
+        Some(background) => format!("background {background}"),
+        None => "background default".to_owned(),
+    }
+}
+
 /// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
 pub fn view_command(view: &View) -> String {
     format!("view {view}")
@@ -80,7 +88,7 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
     commands.extend(lights.iter().map(|light| format!("light {light}")));
     commands.extend([
         format!("ambient {}", ambient.as_deref().unwrap_or("default")),
-        format!("background {}", background.name()),
+        background_command(*background),
         format!("fog {fog}"),
         format!("occlusion {}", switch_name(*occlusion)),
         format!("undecided {}", switch_name(*undecided)),

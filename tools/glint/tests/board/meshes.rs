@@ -6,7 +6,7 @@ use glint::picture::Image;
 use glint::render::{self, BoardRenderer, Frame, MeshSubject, Route, Subject};
 use glint::view;
 use glint_core::camera::View;
-use glint_core::colour::Shading;
+use glint_core::colour::{Rgb565, Shading};
 use glint_core::light::{Light, MeshLighting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
@@ -65,10 +65,10 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured light from a direction, a light at the camera, and ambient light, on each backend. The default comes last: its commands
-/// remove the light.
+/// A coloured light from a direction, a light at the camera, ambient light and a background, on each backend. The default comes last:
+/// its commands remove light and background. The board draws each frame into both of its frame buffers.
 #[test]
-fn light_on_meshes_is_the_models_on_every_backend() {
+fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     let mut board = emulator();
     let mut renderer = renderer(&mut board);
     let mesh = mesh("icosphere:2");
@@ -76,11 +76,18 @@ fn light_on_meshes_is_the_models_on_every_backend() {
         ambient: [0x20, 0x10, 0x60],
         light: Light::parse(text).unwrap(),
     });
-    for lighting in [lights[0], lights[1], MeshLighting::CAMERA] {
+    let default = (MeshLighting::CAMERA, Rgb565(0));
+    for (lighting, clear) in [
+        (lights[0], Rgb565(0)),
+        (lights[1], Rgb565(0x1234)),
+        (lights[1], Rgb565(0xFEDC)),
+        default,
+    ] {
         for backend in [None, Some(Backend::Cpu)] {
             let subject = Subject::mesh(Mesh::new_checked(&mesh).unwrap());
             let frame = Frame {
                 lighting,
+                clear,
                 ..Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320)
             };
             renderer.set_backend(backend);
@@ -88,10 +95,13 @@ fn light_on_meshes_is_the_models_on_every_backend() {
             renderer
                 .show(&frame, Route::Memory, &mut |_, _| {})
                 .unwrap();
-            let colour = renderer
-                .colour(frame.size, Route::Memory, &mut |_, _| {})
-                .unwrap();
-            assert!(colour == expected.image.colour, "{lighting:?}");
+            for _ in 0..2 {
+                let colour = renderer
+                    .colour(frame.size, Route::Memory, &mut |_, _| {})
+                    .unwrap();
+                assert!(colour == expected.image.colour, "{lighting:?} {clear:?}");
+                renderer.redraw().unwrap();
+            }
         }
     }
 }

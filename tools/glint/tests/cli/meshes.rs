@@ -120,6 +120,75 @@ fn light_on_a_mesh() {
     );
 }
 
+/// The background of a mesh, and its material in place of its colours.
+#[test]
+fn background_and_material_of_a_mesh() {
+    let folder = folder("background-of-a-mesh");
+    let render = |more: &[&str]| {
+        let arguments = [&["render", "icosphere:4", "--out", "a.png"], more].concat();
+        succeed(&folder, &arguments);
+        picture(&folder.join("a.png"))
+    };
+    let black = render(&[]);
+    for (text, colour) in [
+        ("white", [0xFF; 3]),
+        ("ff0000", [0xFF, 0, 0]),
+        // The sky at its horizon, in RGB565.
+        ("sky", [214, 227, 239]),
+    ] {
+        let seen = render(&["--background", text]);
+        let both = black.chunks_exact(3).zip(seen.chunks_exact(3));
+        for (before, after) in both {
+            let expected = if before == [0; 3] { &colour } else { before };
+            assert_eq!(after, expected, "{text}");
+        }
+    }
+    // Each triangle is grey before, and has the material's mixture of red, green and blue after.
+    let gold = render(&["--material", "gold"]);
+    let lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
+    assert!(lit.clone().count() > 5_000);
+    assert!(
+        lit.clone()
+            .all(|pixel| pixel[0] > pixel[1] && pixel[1] > pixel[2])
+    );
+    let object = ["--object", "icosphere:4", "--material", "gold"];
+    succeed(
+        &folder,
+        &[&["render", "--out", "b.png"], &object[..]].concat(),
+    );
+    assert!(picture(&folder.join("b.png")) == gold);
+    // An object's own colour stays.
+    let blue = [
+        "--object",
+        "icosphere:4 colour 0000ff",
+        "--material",
+        "gold",
+    ];
+    succeed(
+        &folder,
+        &[&["render", "--out", "c.png"], &blue[..]].concat(),
+    );
+    let blue = picture(&folder.join("c.png"));
+    assert!(blue.chunks_exact(3).all(|pixel| pixel[..2] == [0; 2]));
+    let cube = ["render", "cube", "--out", "d.png"];
+    for (more, expected) in [
+        (
+            &["--material", "normal"][..],
+            "error: --material: expected a material of one colour on meshes, found normal",
+        ),
+        (
+            &["--material", "gold", "--wireframe", "over"],
+            "error: --material: expected a mesh with faces, found --wireframe",
+        ),
+        (
+            &["--background", "green"],
+            "error: --background: expected white, sky or a colour RRGGBB, found 'green'",
+        ),
+    ] {
+        assert_eq!(refused(&folder, &[&cube, more].concat()), expected);
+    }
+}
+
 /// A supersampled picture is the mean of one of twice the size, and has colours between those of the mesh.
 #[test]
 fn supersampled_pictures() {

@@ -262,7 +262,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
             .into_iter()
             .collect(),
         ambient: Some([0x30, 0x20, 0x28]),
-        background: Background::Sky,
+        background: Some(Background::Sky),
         fog: U4_28::lit("0.2"),
         occlusion: true,
         undecided: true,
