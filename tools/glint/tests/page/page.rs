@@ -175,7 +175,8 @@ fn rates() {
     let mut browser = Browser::start();
     let page = browser.open(&served.url);
     browser.wait(&page, "document.body.dataset.holder === 'you'");
-    let turn = "dispatch(new KeyboardEvent('keydown', { key: ['ArrowLeft', 'ArrowRight'][Math.floor(performance.now() / 1000) % 2] }))";
+    // About 20° to either side, so that the sponge stays in view.
+    let turn = "dispatch(new KeyboardEvent('keydown', { key: ['ArrowLeft', 'ArrowRight'][Math.floor(performance.now() / 160) % 2] }))";
     let hand = "dispatch(new PointerEvent('pointermove', { buttons: 1, clientX: box.x + box.width * (0.5 + 0.2 * Math.sin(performance.now() / 640)), clientY: box.y + box.height * (0.5 + 0.2 * Math.cos(performance.now() / 640)) }))";
     for (scene, element, event) in [
         ("holoforge", "hand", hand),
