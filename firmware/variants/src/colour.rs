@@ -17,27 +17,9 @@ pub struct Pixel {
 
 /// All pixel formats, from cheap to exact.
 pub const PIXELS: &[Pixel] = &[
-    Pixel {
-        pack: other("colour_332", "RGB332, truncated", Fixed(0), |rgb| {
-            cut(rgb, [3, 3, 2])
-        }),
-        bits: 8,
-        shown: |pixel| widened(pixel, [3, 3, 2]),
-    },
-    Pixel {
-        pack: other("colour_444", "RGB444, truncated", Fixed(0), |rgb| {
-            cut(rgb, [4, 4, 4])
-        }),
-        bits: 12,
-        shown: |pixel| widened(pixel, [4, 4, 4]),
-    },
-    Pixel {
-        pack: other("colour_565_cut", "RGB565, truncated", Fixed(0), |rgb| {
-            cut(rgb, [5, 6, 5])
-        }),
-        bits: 16,
-        shown: |pixel| widened(pixel, [5, 6, 5]),
-    },
+    truncated::<3, 3, 2>("colour_332", "RGB332, truncated"),
+    truncated::<4, 4, 4>("colour_444", "RGB444, truncated"),
+    truncated::<5, 6, 5>("colour_565_cut", "RGB565, truncated"),
     Pixel {
         pack: shipped("colour_565", "RGB565, to nearest", Fixed(0), |rgb| {
             let [_, r, g, b] = rgb.to_be_bytes();
@@ -56,6 +38,18 @@ pub const PIXELS: &[Pixel] = &[
 /// Returns the input of a phase.
 pub const fn input(phase: u32) -> u32 {
     phase >> 8
+}
+
+/// The pixel format with these numbers of bits of red, green and blue, each the highest ones.
+const fn truncated<const R: u32, const G: u32, const B: u32>(
+    name: &'static str,
+    config: &'static str,
+) -> Pixel {
+    Pixel {
+        pack: other(name, config, Fixed(0), |rgb| cut(rgb, [R, G, B])),
+        bits: R + G + B,
+        shown: |pixel| widened(pixel, [R, G, B]),
+    }
 }
 
 /// Keeps the highest bits of each channel.

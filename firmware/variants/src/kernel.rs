@@ -76,10 +76,7 @@ pub(crate) const fn shipped<I, O>(
     run: fn(I) -> O,
 ) -> Kernel<I, O> {
     Kernel {
-        name,
-        config,
         shipped: true,
-        format,
-        run,
+        ..other(name, config, format, run)
     }
 }

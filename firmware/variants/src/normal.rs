@@ -1,6 +1,7 @@
 //! Normals turned by the inverse transpose of a model matrix, in 32 bits.
 
 use crate::matrix::Rows;
+use crate::unit::unit_32;
 
 /// The cofactors of a matrix with 24 fraction bits and entries within ±16, cut so that the largest has 14 bits.
 pub fn cofactors(rows: &Rows<i32>) -> Rows<i32> {
@@ -20,21 +21,6 @@ pub fn turned<const BITS: u32>(cofactors: &Rows<i32>, normal: [i16; 3]) -> [i16;
     let [x, y, z] = normal.map(i32::from);
     // Each product is at most 2^28.
     let turned = cofactors.map(|[a, b, c]| a * x + b * y + c * z);
-    let size = turned.map(i32::unsigned_abs);
-    let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
-        return [0; 3];
-    };
-    // The largest component gets 15 bits, and the sum of the squares has at most 32.
-    let size = size.map(|x| {
-        if lead < 14 {
-            x << (14 - lead)
-        } else {
-            x >> (lead - 14)
-        }
-    });
-    let length = (size[0] * size[0] + size[1] * size[1] + size[2] * size[2]).isqrt();
-    [0, 1, 2].map(|i| {
-        let quotient = (((size[i] << (BITS + 1)) / length + 1) >> 1) as i16;
-        if turned[i] < 0 { -quotient } else { quotient }
-    })
+    // A component is at most 2^14.
+    unit_32::<BITS>(turned).map(|x| x as i16)
 }

@@ -9,9 +9,12 @@ use crate::kernel::{Kernel, other, shipped};
 
 /// All kernels, from cheap to exact; other libraries last.
 pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
-    other("unit_32", "14 fraction bits, in 32 bits", Fixed(14), |q| {
-        unit_32(q)
-    }),
+    other(
+        "unit_32",
+        "14 fraction bits, in 32 bits",
+        Fixed(14),
+        unit_32::<14>,
+    ),
     other(
         "unit_newton_1",
         "192 entries, one Newton step",
@@ -48,12 +51,14 @@ fn exact<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     vector::unit::<BITS>(q.map(i64::from)).unwrap_or_default()
 }
 
-/// Scales to 14 fraction bits with products and quotients of 32 bits. The zero vector stays.
-fn unit_32(q: [i32; 3]) -> [i32; 3] {
+/// Scales to `BITS` fraction bits, at most 14, with products and quotients of 32 bits, rounded to nearest. The zero vector stays.
+#[inline(always)]
+pub fn unit_32<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     let size = q.map(i32::unsigned_abs);
     let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
         return q;
     };
+    // The largest component gets 15 bits, and the sum of the squares has at most 32.
     let size = size.map(|x| {
         if lead < 14 {
             x << (14 - lead)
@@ -63,8 +68,8 @@ fn unit_32(q: [i32; 3]) -> [i32; 3] {
     });
     let length = (size[0] * size[0] + size[1] * size[1] + size[2] * size[2]).isqrt();
     [0, 1, 2].map(|i| {
-        let quotient = (((size[i] << 15) / length + 1) >> 1) as i32;
-        quotient * q[i].signum()
+        let quotient = (((size[i] << (BITS + 1)) / length + 1) >> 1) as i32;
+        if q[i] < 0 { -quotient } else { quotient }
     })
 }
 

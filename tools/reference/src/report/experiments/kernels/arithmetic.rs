@@ -47,13 +47,7 @@ fn relative<I: Copy>(
             let found = value(kernel.format, (kernel.run)(number(kernel.format, input)));
             errors.add(&[found / exact(input) - 1.0], || describe(input));
         }
-        Trial {
-            kernel: kernel.name,
-            config: kernel.config.to_owned(),
-            shipped: kernel.shipped,
-            bits: None,
-            errors,
-        }
+        Trial::of(kernel, errors)
     };
     kernels.iter().map(trial).collect()
 }
@@ -142,13 +136,7 @@ pub fn units(thinning: u32) -> Vec<Trial> {
             let off = [0, 1, 2].map(|i| found[i] - f64::from(input[i]) / length);
             errors.add(&off, || format!("{input:?}"));
         }
-        Trial {
-            kernel: kernel.name,
-            config: kernel.config.to_owned(),
-            shipped: kernel.shipped,
-            bits: None,
-            errors,
-        }
+        Trial::of(kernel, errors)
     };
     unit::KERNELS.iter().map(trial).collect()
 }

@@ -98,11 +98,8 @@ pub fn colours(thinning: u32) -> Vec<Trial> {
             errors.add(&off, || format!("{rgb:06x}"));
         }
         Trial {
-            kernel: pixel.pack.name,
-            config: pixel.pack.config.to_owned(),
-            shipped: pixel.pack.shipped,
             bits: Some(pixel.bits),
-            errors,
+            ..Trial::of(&pixel.pack, errors)
         }
     };
     PIXELS.iter().map(trial).collect()

@@ -1,5 +1,7 @@
 //! What an experiment finds.
 
+use glint_variants::kernel::Kernel;
+
 /// Names, cost in bits, and errors of a configuration: what an experiment finds.
 pub struct Trial {
     /// Name of the kernel.
@@ -12,6 +14,19 @@ pub struct Trial {
     pub bits: Option<u32>,
     /// Errors at all inputs.
     pub errors: Errors,
+}
+
+impl Trial {
+    /// The errors of a kernel, whose cost is its cycles.
+    pub fn of<I, O>(kernel: &Kernel<I, O>, errors: Errors) -> Self {
+        Self {
+            kernel: kernel.name,
+            config: kernel.config.to_owned(),
+            shipped: kernel.shipped,
+            bits: None,
+            errors,
+        }
+    }
 }
 
 /// Statistics of errors, with the input of the largest one.
