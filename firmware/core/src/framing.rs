@@ -53,7 +53,8 @@ impl fmt::Display for FramingError {
                 radius,
             } => write!(
                 f,
-                "meshes in a sphere of radius {radius:.3} about ({x:.3}, {y:.3}, {z:.3}): expected an eye outside of it within 7.9 of the origin"
+                "meshes in a sphere of radius {radius:.3} about ({x:.3}, {y:.3}, {z:.3}): expected an eye outside of it within {:.1} of the origin",
+                world(FARTHEST)
             ),
             Self::View(error) => error.fmt(f),
         }

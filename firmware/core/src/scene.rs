@@ -11,11 +11,11 @@ use crate::picture::Backend;
 pub struct LineError<'a> {
     /// Number of the line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Reason why the line is refused.
     pub reason: Reason<'a>,
 }
 
-/// What is wrong with a line of a scene.
+/// Reason why a line of a scene is refused.
 #[derive(Clone, Copy, Debug)]
 pub enum Reason<'a> {
     /// It is not a command.

@@ -52,7 +52,7 @@ impl<'l> CameraCommands<'l> for Machine {
 
     fn zoom(&mut self, factor: U8_28) -> Outcome<'l> {
         let view = self.scene.view();
-        // A factor of 0 makes a half width out of range.
+        // Rounded down. A factor that is too small makes a half width out of range.
         let half_width = view.half_width().checked_div(factor);
         let half_width = half_width.unwrap_or(U8_28::lit("256"));
         let view = view.with_half_width(half_width);

@@ -31,7 +31,7 @@ pub enum ConsoleError {
         /// The end of the received text.
         last: String,
     },
-    /// The board keeps sending, but not what is awaited.
+    /// The board keeps sending, without the expected reply.
     #[error(
         "expected {expected}, found more than {limit} bytes of other text; the last lines were {last:?}"
     )]

@@ -80,7 +80,7 @@ commands! {
         lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen";
         fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees";
         orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective";
-        zoom Zoom(factor: U8_28): "enlarge what is in the middle of the picture by FACTOR, by a smaller half width";
+        zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more";
         fit Fit(lens: Option<Fit>) in MESH: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }

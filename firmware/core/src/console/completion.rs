@@ -27,8 +27,7 @@ pub fn complete(line: &str, offer: &mut dyn FnMut(&'static str, &'static str)) {
     match shape {
         Some((Shape::Flag, name)) => offer(name),
         Some((Shape::Word(Kind::Words(words)), _)) => words.iter().for_each(|word| offer(word)),
-        Some((&Shape::Word(kind @ Kind::Either(..)), _)) => {
-            let mut kind = kind;
+        Some((&Shape::Word(mut kind @ Kind::Either(..)), _)) => {
             while let Kind::Either(keyword, other) = kind {
                 offer(keyword);
                 kind = other;

@@ -104,6 +104,7 @@ impl<'a> Command<'a> {
             _ => &[],
         }
     }
+
     /// Name of the mesh that the command shows as a line of a scene, where the command `scene` shows meshes alone.
     pub const fn mesh(&self) -> Option<&'a str> {
         match self {

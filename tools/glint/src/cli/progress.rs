@@ -168,7 +168,7 @@ fn every(
     sender
 }
 
-/// Adds to `line` what is done, the rate, and the time that is left. Returns whether the step has begun.
+/// Appends the progress, the rate and the remaining time to `line`. Returns whether the step has begun.
 fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: Duration) -> bool {
     let seconds = elapsed.as_secs_f64();
     let rate = done as f64 / seconds;
@@ -195,7 +195,7 @@ fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: 
     true
 }
 
-/// The time that is left, once something is done.
+/// The remaining time, once a part of the step is done.
 fn left(done: u64, all: u64, rate: f64) -> String {
     if done == 0 {
         return String::new();

@@ -1,4 +1,4 @@
-//! Tests of the console with boards that say what is prepared.
+//! Tests of the console with boards that send prepared output.
 
 use super::*;
 use std::collections::VecDeque;

@@ -42,7 +42,7 @@ const WAIT: &[u8] = b"\x1e\n";
 
 /// A board that sends the bytes of a stream, whatever the host sends.
 struct Stream<'s> {
-    /// What is left of the present part.
+    /// Remaining bytes of the current part.
     rest: &'s [u8],
     /// All further parts, the next one last.
     later: Vec<&'s [u8]>,
