@@ -162,6 +162,8 @@ pub enum Error<E> {
     Silent,
     /// Many successive samples are all equal, so the chip does not measure.
     Frozen,
+    /// The chip sent only a part of its sample.
+    Cut,
 }
 
 impl<E> From<E> for Error<E> {
@@ -193,6 +195,7 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
             ),
             Self::Silent => write!(f, "no samples: expected {} per second", 1_000_000 / PERIOD),
             Self::Frozen => f.write_str("all samples are equal: expected noise"),
+            Self::Cut => f.write_str("the sensor vanished within a sample: expected all its bytes"),
         }
     }
 }
@@ -291,11 +294,17 @@ impl<B: I2c> Mpu6050<B> {
     }
 }
 
-/// The bytes of one periodic read: INT_STATUS, then the sample.
-type Look = [u8; 1 + Measurement::BYTES];
+/// The bytes of one periodic read: INT_STATUS, the sample, then EXT_SENS_DATA_00, which is 0.
+///
+/// A master acknowledges the bytes that it receives, so it does not notice a chip that vanishes within them: the released bus
+/// reads as ones. EXT_SENS_DATA_00 shows that the chip was there until the end of its sample.
+type Look = [u8; 1 + Measurement::BYTES + 1];
+
+/// What a byte reads as, when no device sends it.
+const RELEASED: u8 = 0xff;
 
 impl<B: PeriodicI2c> Mpu6050<B> {
-    /// Starts to read the chip every `period` µs. A read is one burst, which takes 0.43 ms at 400 kHz; during a burst the chip
+    /// Starts to read the chip every `period` µs. A read is one burst, which takes 0.45 ms at 400 kHz; during a burst the chip
     /// keeps its data constant.
     ///
     /// # Errors
@@ -314,11 +323,14 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     /// earlier read already returned, the result is `None`.
     ///
     /// # Errors
-    /// Errors of the bus.
+    /// Errors of the bus, or the chip vanished within the sample.
     pub async fn look(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
         let mut bytes = Look::default();
         let time = self.bus.next(&mut bytes).await?;
-        let [status, data @ ..] = bytes;
+        let [status, data @ .., end] = bytes;
+        if end == RELEASED {
+            return Err(Error::Cut);
+        }
         let is_new = status & DATA_RDY != 0;
         Ok((time, is_new.then(|| Measurement::from_bytes(&data))))
     }

@@ -319,6 +319,21 @@ fn it_comes_back_from_faults_of_the_bus() {
 }
 
 #[test]
+fn a_sample_that_is_cut_off_is_refused() {
+    // A read has 16 bytes. The last one follows the sample, so a chip that vanishes before it gives no sample.
+    for bytes in 0..32 {
+        let record = recovers(|chip| chip.fault = Some(Fault::Vanishing(bytes)), 100);
+        if bytes % 16 != 0 {
+            assert_eq!(record.errors[0].1, Error::Cut, "after {bytes} bytes");
+        }
+        for (at, _, measurement) in record.samples {
+            let turns = measurement.gyro.into_iter().any(|count| count.abs() > 100);
+            assert!(!turns, "after {bytes} bytes: {measurement:?} at {at}");
+        }
+    }
+}
+
+#[test]
 fn a_chip_that_lost_its_configuration_is_set_up_again() {
     // The sensor is unplugged and plugged in again.
     let unplug = |chip: &mut Chip| {

@@ -163,6 +163,8 @@ pub enum Fault {
     Stalled,
     /// WHO_AM_I reads as this value.
     Identity(u8),
+    /// The chip sends this number of bytes, and is missing from then on: the released bus reads as ones.
+    Vanishing(u32),
 }
 
 /// A virtual MPU-6050, as its I2C master sees it.
@@ -265,8 +267,16 @@ impl Chip {
         (internal * divider / (1.0 + self.imperfections.clock)) as u64
     }
 
-    /// Reads a register. Reading INT_STATUS clears it.
+    /// Reads a register. Reading INT_STATUS clears it. A missing chip reads as ones.
     pub fn read(&mut self, register: u8) -> u8 {
+        match &mut self.fault {
+            Some(Fault::Absent | Fault::Vanishing(0)) => {
+                self.fault = Some(Fault::Absent);
+                return 0xff;
+            }
+            Some(Fault::Vanishing(left)) => *left -= 1,
+            _ => {}
+        }
         match register & 0x7f {
             WHO_AM_I => match self.fault {
                 Some(Fault::Identity(identity)) => identity,
