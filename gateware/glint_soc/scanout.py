@@ -26,6 +26,12 @@ class Scanout(LiteXModule):
         if port.data_width != 128:
             raise ValueError(f"scan-out needs a memory port of 128 bits, got {port.data_width}")
         self.video = Record(VIDEO_LAYOUT)
+        self.constants = {
+            "screen_width": (mode.width, "Pixels of a line of the screen."),
+            "screen_height": (mode.height, "Lines of the screen."),
+            "frame_ticks": (mode.frame_ticks, "Ticks of the pixel clock in a frame, with its blanking."),
+            "pixel_clock": (int(mode.clk_freq), "Frequency of the pixel clock in Hz."),
+        }
 
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`SCAN` in ASCII; 0 where the block is absent.")
         self._caps = CSRStatus(name="caps", fields=[

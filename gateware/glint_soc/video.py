@@ -30,6 +30,11 @@ class VideoMode:
         return self.lines[0]
 
     @property
+    def frame_ticks(self):
+        """Ticks of the pixel clock in a frame, with its blanking."""
+        return sum(self.pixels) * sum(self.lines)
+
+    @property
     def scales(self):
         """The scales at which the picture sizes fill the screen, as a mask: bit k for 2^k."""
         return sum(1 << code for code, _ in enumerate(self._shown()))

@@ -2625,6 +2625,18 @@ pub mod scanout {
         /// Value of `ident` where the block is present.
         pub const IDENT: u32 = 0x5343_414e;
 
+        /// Pixels of a line of the screen.
+        pub const SCREEN_WIDTH: u32 = 1_280;
+
+        /// Lines of the screen.
+        pub const SCREEN_HEIGHT: u32 = 720;
+
+        /// Ticks of the pixel clock in a frame, with its blanking.
+        pub const FRAME_TICKS: u32 = 1_237_500;
+
+        /// Frequency of the pixel clock in Hz.
+        pub const PIXEL_CLOCK: u32 = 74_250_000;
+
         /// Another handle, beside the one that [`Peripherals::take`](crate::Peripherals::take) hands out.
         ///
         /// # Safety

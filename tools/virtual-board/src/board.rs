@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use litex_pac::memories::MAIN_RAM;
+use litex_pac::scanout::Scanout;
 use virtual_flash::{Flash, Pins};
 use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
@@ -28,8 +29,8 @@ const PORT_QUEUE: usize = 2 * SLICE as usize;
 /// Cycles without a period of the image sensor's master clock, after which the sensor has none.
 const CLOCK_LOST: u64 = 2 * SLICE;
 
-/// Ticks of the pixel clock, of 74.25 MHz, in two video frames.
-const TICKS_OF_TWO_FRAMES: u64 = 2 * 1650 * 750;
+/// Ticks of the pixel clock in two video frames.
+const TICKS_OF_TWO_FRAMES: u64 = 2 * Scanout::FRAME_TICKS as u64;
 
 /// How a board starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -414,7 +415,9 @@ impl VirtualBoard {
         let was_on = self.monitor.is_on();
         self.monitor.turn_on();
         self.monitor.take_picture();
-        let two_frames = TICKS_OF_TWO_FRAMES * u64::from(self.clock_hz()) / 74_250_000 + SLICE;
+        let two_frames = TICKS_OF_TWO_FRAMES * u64::from(self.clock_hz())
+            / u64::from(Scanout::PIXEL_CLOCK)
+            + SLICE;
         let shown = self.run_until(two_frames, |board| board.monitor.has_picture());
         if !was_on {
             self.monitor.turn_off();

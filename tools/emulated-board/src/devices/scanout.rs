@@ -9,12 +9,6 @@ use crate::{Device, Events, MainMemory};
 /// The event, by its bit in the event registers.
 const VBLANK: u32 = 1;
 
-/// The video mode: pixels of a line and lines of a frame that are visible, ticks of a whole frame, and ticks a second.
-const WIDTH: u16 = 1280;
-const HEIGHT: u16 = 720;
-const FRAME_TICKS: u64 = 1650 * 750;
-const TICK_RATE: u64 = 74_250_000;
-
 /// Cycle of the first vertical blanking. The video timing begins at the end of the last visible line.
 const FIRST: u64 = 130;
 
@@ -88,15 +82,15 @@ impl Scanout {
 
     /// Cycle of the next vertical blanking.
     pub fn next_blanking(&self) -> u64 {
-        let ticks = u128::from(self.blanking) * u128::from(FRAME_TICKS);
+        let ticks = u128::from(self.blanking) * u128::from(Block::FRAME_TICKS);
         let clock = u128::from(CONFIG_CLOCK_FREQUENCY);
-        FIRST + (ticks * clock / u128::from(TICK_RATE)) as u64
+        FIRST + (ticks * clock / u128::from(Block::PIXEL_CLOCK)) as u64
     }
 
     fn blank(&mut self) {
         if self.enabled {
-            let lines = u32::from(HEIGHT) / self.scale_current;
-            let words = u32::from(WIDTH) / self.scale_current * 2 / WORD * lines;
+            let lines = Block::SCREEN_HEIGHT / self.scale_current;
+            let words = Block::SCREEN_WIDTH / self.scale_current * 2 / WORD * lines;
             self.items_out = self.items_out.wrapping_add(lines);
             self.items_in = self.items_in.wrapping_add(words);
             self.busy = self.busy.wrapping_add(words + lines * FETCH_OVERHEAD);
@@ -120,7 +114,8 @@ impl Scanout {
 
     /// The frame that is shown; black while the picture is switched off, like pixels outside main memory.
     pub fn frame(&self, ram: &MainMemory) -> Frame {
-        let [width, height] = [WIDTH, HEIGHT].map(|length| u32::from(length) / self.scale_current);
+        let [width, height] =
+            [Block::SCREEN_WIDTH, Block::SCREEN_HEIGHT].map(|length| length / self.scale_current);
         let size = (width * height) as usize;
         let colour = |number: usize| {
             let colour = ram.array(self.current.wrapping_add(2 * number as u32));
@@ -149,8 +144,8 @@ impl Device for Scanout {
         match offset {
             offset::IDENT => Block::IDENT,
             offset::CAPS => Caps::default()
-                .with_width(WIDTH)
-                .with_height(HEIGHT)
+                .with_width(Block::SCREEN_WIDTH as u16)
+                .with_height(Block::SCREEN_HEIGHT as u16)
                 .with_scales(0b111)
                 .bits(),
             offset::CONTROL => self.control,

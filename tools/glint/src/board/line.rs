@@ -26,6 +26,27 @@ pub trait Board {
     }
 }
 
+/// Reads what `board` has sent as [`Board::read`] does, by calls of `step`, which reads for at most the given milliseconds.
+///
+/// # Errors
+/// Errors of `step`.
+pub fn read_in_steps<B: Board>(
+    board: &mut B,
+    bytes: &mut Vec<u8>,
+    wait_ms: u64,
+    mut step: impl FnMut(&mut B, &mut Vec<u8>, u64) -> Result<(), BoardError>,
+) -> Result<(), BoardError> {
+    let before = bytes.len();
+    let end = board.now_ms() + wait_ms;
+    loop {
+        let left = end.saturating_sub(board.now_ms());
+        step(board, bytes, left)?;
+        if bytes.len() > before || left == 0 {
+            return Ok(());
+        }
+    }
+}
+
 /// Direct access to a board's main memory; addresses are those of the board's CPU.
 pub trait Memory {
     /// Fills `bytes` with the main memory from `address` on.

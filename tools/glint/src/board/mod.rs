@@ -9,7 +9,7 @@ mod simulated;
 
 pub use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
 pub use error::BoardError;
-pub use line::{Board, Memory};
+pub use line::{Board, Memory, read_in_steps};
 pub use name::{BoardName, ModelOrBoard};
 pub use ports::{Port, ports};
 pub use serial::SerialBoard;

@@ -3,7 +3,9 @@
 use super::inputs::{Hold, Levels};
 use super::message::Pins;
 use super::motion::Motion;
-use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
+use crate::board::{
+    Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation, read_in_steps,
+};
 use std::sync::Arc;
 use std::time::Instant;
 use virtual_board::Pace;
@@ -73,15 +75,12 @@ impl<S: Simulation> Board for LiveSimulation<S> {
     }
 
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        let before = bytes.len();
-        let end = self.now_ms() + wait_ms;
-        loop {
-            self.board.read(bytes, 0)?;
-            if bytes.len() > before || self.now_ms() >= end {
-                return Ok(());
+        read_in_steps(self, bytes, wait_ms, |live, bytes, left| {
+            if left > 0 {
+                live.step();
             }
-            self.step();
-        }
+            live.board.read(bytes, 0)
+        })
     }
 
     fn now_ms(&self) -> u64 {

@@ -4,7 +4,7 @@ use super::hub::Hub;
 use super::inputs::Inputs;
 use super::live::Live;
 use super::message::{Entry, Pins, ToPage};
-use crate::board::{Board, BoardError};
+use crate::board::{Board, BoardError, read_in_steps};
 use crate::console::{self, Console, ConsoleError};
 use crate::transfer::{self, TransferError};
 use glint_core::console::PROMPT;
@@ -69,16 +69,10 @@ impl Board for Watched<'_> {
     }
 
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        let before = bytes.len();
-        let end = self.now_ms() + wait_ms;
-        loop {
-            self.exchange()?;
-            let left = end.saturating_sub(self.now_ms());
-            self.board.read(bytes, left.min(LOOK_MS))?;
-            if bytes.len() > before || left == 0 {
-                return Ok(());
-            }
-        }
+        read_in_steps(self, bytes, wait_ms, |watched, bytes, left| {
+            watched.exchange()?;
+            watched.board.read(bytes, left.min(LOOK_MS))
+        })
     }
 
     fn now_ms(&self) -> u64 {
