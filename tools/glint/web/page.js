@@ -41,6 +41,8 @@ function setHolder(found) {
 
 element("control").addEventListener("click", () => send({ type: holder === "you" ? "release" : "take" }));
 
+element("fetch").addEventListener("click", () => send({ type: "picture" }));
+
 function showBoard({ name, has_pins }) {
   element("board").textContent = `board ${name}`;
   document.body.classList.toggle("no-pins", !has_pins);

@@ -169,6 +169,8 @@ pub enum FromPage {
         /// Its centre as parts of the width and the height of the frame; null for no hand.
         place: Option<[f64; 2]>,
     },
+    /// Fetches the picture over the console, from a board whose monitor the host does not reach.
+    Picture,
     /// Announces a mesh file, whose bytes follow in binary messages.
     Upload {
         /// Name of the file, which determines its format.

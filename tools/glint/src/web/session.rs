@@ -4,10 +4,11 @@ use super::hub::Hub;
 use super::inputs::Inputs;
 use super::live::Live;
 use super::message::{Entry, Pins, ToPage};
-use crate::board::{Board, BoardError, read_in_steps};
+use crate::board::{Board, BoardError, MonitorFrame, read_in_steps};
 use crate::console::{self, Console, ConsoleError};
 use crate::transfer::{self, TransferError};
 use glint_core::console::PROMPT;
+use glint_core::picture::Size;
 use serde_json::Value;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,6 +33,8 @@ pub enum Request {
     Interrupt,
     /// Asks for the description of a command.
     Help(String),
+    /// Fetches the picture over the console.
+    Picture,
     /// Uploads a mesh, and shows it.
     Upload(Vec<u8>),
 }
@@ -137,8 +140,10 @@ impl Session<'_> {
                 match next {
                     Some(Request::Command(line)) => self.type_line(&line)?,
                     Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
-                    // An upload waits for the end of the command.
-                    Some(Request::Upload(mesh)) => waiting = Some(Request::Upload(mesh)),
+                    // Transfers wait for the end of the command.
+                    Some(transfer @ (Request::Upload(_) | Request::Picture)) => {
+                        waiting = Some(transfer);
+                    }
                     Some(Request::Help(_)) | None => {}
                 }
                 continue;
@@ -153,6 +158,7 @@ impl Session<'_> {
                     let session = self.uploads;
                     self.ask(|console, hub| upload(console, hub, &mesh, session))?;
                 }
+                Some(Request::Picture) => self.ask(send_picture)?,
                 Some(Request::Interrupt) => {}
                 None if self.sampled.elapsed() >= self.period && self.hub.has_viewers() => {
                     self.ask(send_sample)?;
@@ -264,20 +270,53 @@ fn send_sample(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfer
     Ok(())
 }
 
+/// Fetches the colours of the last frame.
+fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
+    let command = "info size";
+    let lines = console.command(command)?;
+    let size: String = console::value(command, &lines, "size")?;
+    let size = size
+        .split_once(' ')
+        .and_then(|(width, height)| Size::of(width.parse().ok()?, height.parse().ok()?));
+    let Some(size) = size else {
+        hub.notify(
+            format!("{command}: expected a width and a height, found {lines:?}"),
+            true,
+        );
+        return Ok(());
+    };
+    let length = 2 * size.pixel_count();
+    let data = transfer::download(console, "frame", length, &mut reporter(hub))?;
+    let (pixels, _) = data.as_chunks();
+    hub.show(&MonitorFrame {
+        width: size.width() as usize,
+        height: size.height() as usize,
+        pixels: pixels
+            .iter()
+            .map(|&pixel| u16::from_le_bytes(pixel))
+            .collect(),
+    });
+    Ok(())
+}
+
+/// Passes the progress of a transfer to the pages.
+fn reporter(hub: &Hub) -> impl FnMut(u64, u64) {
+    let mut reported = Instant::now();
+    move |done, all| {
+        if done == all || reported.elapsed() >= REPORT {
+            reported = Instant::now();
+            hub.send(&ToPage::Progress { done, all });
+        }
+    }
+}
+
 fn upload(
     console: &mut Console<Watched>,
     hub: &Hub,
     mesh: &[u8],
     session: u8,
 ) -> Result<(), TransferError> {
-    let mut reported = Instant::now();
-    let mut report = |done, all| {
-        if done == all || reported.elapsed() >= REPORT {
-            reported = Instant::now();
-            hub.send(&ToPage::Progress { done, all });
-        }
-    };
-    transfer::upload(console, mesh, None, session, &mut report)?;
+    transfer::upload(console, mesh, None, session, &mut reporter(hub))?;
     let size = mesh.len() as u64;
     hub.send(&ToPage::Progress {
         done: size,

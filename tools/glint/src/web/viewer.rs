@@ -161,6 +161,7 @@ fn handle(
             request(channels, Request::Command(line));
         }
         FromPage::Interrupt => request(channels, Request::Interrupt),
+        FromPage::Picture => request(channels, Request::Picture),
         FromPage::Buttons { pressed } => channels.inputs.press(pressed),
         FromPage::Switches { on } => channels.inputs.switch(on),
         FromPage::Turn { attitude } => {

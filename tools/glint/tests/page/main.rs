@@ -3,4 +3,5 @@
 mod browser;
 mod page;
 mod refusals;
+mod serial;
 mod served;

@@ -1,4 +1,4 @@
-//! `glint board --web` in a process of its own, with an emulated board.
+//! `glint board` in a process of its own, with an emulated board.
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
@@ -15,16 +15,23 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// A board with its page.
 pub struct Served {
     child: Child,
-    /// Address of the page.
+    /// Address of the page, or of the serial port.
     pub url: String,
 }
 
 impl Served {
-    /// Starts a board, whose ready file has this name.
+    /// Starts an emulated board, whose ready file has this name.
     pub fn start(name: &str) -> Self {
+        Self::start_with(name, &["--web"])
+    }
+
+    /// Starts `glint board` with arguments. Without `--web` its address is that of a serial port.
+    pub fn start_with(name: &str, arguments: &[&str]) -> Self {
         let ready = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
         let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args(["board", "--web", "--ready-file"])
+            .arg("board")
+            .args(arguments)
+            .arg("--ready-file")
             .arg(&ready)
             .stdout(Stdio::piped())
             .spawn()
