@@ -2,7 +2,7 @@
 
 use super::mutate::MAX_INPUT;
 use super::targets::Target;
-use super::{host, transfer};
+use super::{firmware, host, transfer};
 use crate::convert::{self, Options};
 use crate::error::Place;
 use crate::formats::write;
@@ -24,6 +24,10 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
         Target::Upload => transfer::seeds(),
         Target::Host => host::seeds(),
         Target::Console => texts(CONSOLE),
+        Target::Firmware => texts(CONSOLE)
+            .into_iter()
+            .chain(firmware::seeds())
+            .collect(),
         Target::Obj => texts(OBJ).into_iter().chain(written(write::obj)).collect(),
         Target::Stl => texts(STL).into_iter().chain(written(write::stl)).collect(),
         Target::Ply => texts(PLY).into_iter().chain(written(write::ply)).collect(),

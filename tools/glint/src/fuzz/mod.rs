@@ -3,6 +3,7 @@
 //! The seed and the number of an input determine its bytes, on any thread, so runs can be split and findings repeated.
 
 mod corpus;
+mod firmware;
 mod flash;
 mod gltf;
 mod host;

@@ -1,6 +1,6 @@
 //! Fuzz targets.
 
-use super::{flash, host, transfer};
+use super::{firmware, flash, host, transfer};
 use crate::convert::{self, Options};
 use crate::formats::{glm, gltf, obj, ply, stl};
 use crate::imu::{log, replay};
@@ -46,6 +46,8 @@ pub enum Target {
     Flash,
     /// The host's side of a board's line: replies of the console, transfers and the serial boot, from a board that sends anything.
     Host,
+    /// The whole firmware on the emulated board: anything on its serial line.
+    Firmware,
 }
 
 /// Result of a target on an input.
@@ -59,7 +61,7 @@ pub enum Verdict {
 
 impl Target {
     /// Every target.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Upload,
         Self::Console,
         Self::Obj,
@@ -74,6 +76,7 @@ impl Target {
         Self::Scene,
         Self::Flash,
         Self::Host,
+        Self::Firmware,
     ];
 
     /// Words with a meaning in the target's format, for the mutator to insert.
@@ -81,7 +84,7 @@ impl Target {
         match self {
             Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => &[],
             Self::Flash => &["scene", "field", "menger:4", "torus", "lamp", "start", "\n"],
-            Self::Console => &[
+            Self::Console | Self::Firmware => &[
                 "help", "view", "camera", "field", "box:", "spheres:", "union:", "stereo", "load",
                 "size", "on", "off", "depth", "json", "0x", "1e5", "\r", "\x1b[",
             ],
@@ -178,6 +181,7 @@ impl Target {
             }
             Self::Flash => flash::repair(input),
             Self::Console
+            | Self::Firmware
             | Self::Obj
             | Self::Ply
             | Self::Imu
@@ -211,6 +215,7 @@ impl Target {
             Self::WireframeWords => run_program(Form::Binary, input),
             Self::Scene => run_scene(input),
             Self::Flash => verdict(flash::run(input)),
+            Self::Firmware => verdict(firmware::run(input)),
         }
     }
 }

@@ -1,0 +1,94 @@
+//! The fuzz target of the whole firmware on the emulated board: anything on its serial line.
+
+use super::transfer::{SESSION, upload_data};
+use crate::board::{Board, BoardError, EmulatedBoard, SimulatedBoard, built_firmware};
+use crate::console::Console;
+use crate::transfer::upload;
+use glint_core::console::PROMPT;
+use std::sync::LazyLock;
+
+/// Silence in ms of the board's time after which it has taken an input.
+const SILENCE_MS: u64 = 20;
+/// Time in ms of the board's time after which no silence is awaited, because a command of the input prints without end.
+const LIMIT_MS: u64 = 300;
+
+/// Bytes of the meshes whose uploads are seeds.
+const LENGTHS: [usize; 2] = [16, 1500];
+
+static FIRMWARE: LazyLock<Vec<u8>> =
+    LazyLock::new(|| built_firmware(None).expect("`cargo xtask firmware` has built the firmware"));
+
+/// The bytes that the host sends in whole uploads.
+pub fn seeds() -> Vec<Vec<u8>> {
+    let uploads = LENGTHS.map(|length| {
+        let mut line = Recorded {
+            board: start(),
+            written: Vec::new(),
+        };
+        // The data are no mesh, so the firmware refuses them after the transfer.
+        let console = &mut Console::new(&mut line);
+        let _ = upload(console, &upload_data(length), None, SESSION, &mut |_, _| {});
+        line.written
+    });
+    uploads.into()
+}
+
+/// Sends the input to a board that has just started. The firmware must not halt, and must answer a command after it. Returns whether it
+/// has carried out a command of the input.
+pub fn run(input: &[u8]) -> bool {
+    let mut board = start();
+    let mut said = Vec::new();
+    let sent = board.write(input);
+    let taken = sent.and_then(|()| {
+        let end = board.now_ms() + LIMIT_MS;
+        let mut heard = usize::MAX;
+        while heard != said.len() && board.now_ms() < end {
+            heard = said.len();
+            board.read(&mut said, SILENCE_MS)?;
+        }
+        Ok(())
+    });
+    assert!(
+        taken.is_ok(),
+        "an emulated board has no broken line: {taken:?}"
+    );
+    let text = String::from_utf8_lossy(&said);
+    assert!(!text.contains("halted, press Enter"), "{text}");
+    let mut console = Console::new(&mut board);
+    let answer = console.synchronise().and_then(|()| console.info("staging"));
+    assert!(answer.is_ok(), "after {text:?}: {answer:?}");
+    text.contains("\r\nok\r\n")
+}
+
+/// A board whose firmware has just started, and waits for a command.
+fn start() -> SimulatedBoard<EmulatedBoard> {
+    let mut board = SimulatedBoard::emulated(&FIRMWARE).expect("the firmware fits");
+    let mut said = Vec::new();
+    while !said.ends_with(PROMPT.as_bytes()) {
+        board
+            .read(&mut said, 1000)
+            .expect("an emulated board has no broken line");
+    }
+    board
+}
+
+/// A board and all that was written to it.
+struct Recorded {
+    board: SimulatedBoard<EmulatedBoard>,
+    written: Vec<u8>,
+}
+
+impl Board for Recorded {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.written.extend_from_slice(bytes);
+        self.board.write(bytes)
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        self.board.read(bytes, wait_ms)
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.now_ms()
+    }
+}
