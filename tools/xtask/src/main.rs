@@ -12,6 +12,7 @@ mod pac;
 mod paths;
 mod resources;
 mod run;
+mod rust_tests;
 mod scenes;
 mod test;
 mod walk;

@@ -1,6 +1,5 @@
 //! `cargo xtask test`: every check, on a machine that it sets up itself.
 
-use std::ffi::OsStr;
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, mpsc};
@@ -10,6 +9,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board};
+use crate::rust_tests::{self, Programs};
 use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
@@ -61,10 +61,11 @@ pub fn test() -> Result<()> {
             ],
         ));
         results.add(documentation());
-        results.add(cargo("build of the tests", &["test", "--no-run"]));
+        let tests = Programs::build(&[])?;
         scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)).map(|()| 1)));
         models.recv().expect("the gateware's checks do not panic");
-        results.add(cargo_tests(&[], &[]));
+        results.add(tests.run(&[]));
+        results.add(rust_tests::run_examples());
         Ok(())
     })?;
 
@@ -82,10 +83,8 @@ pub fn test_at_clock(megahertz: &str) -> Result<()> {
     bootstrap::bootstrap()?;
     let folder = gateware::build_beside(Board::Virtual, megahertz, &["--clock", megahertz])?;
     firmware::build(Board::Virtual, &[])?;
-    let passed = cargo_tests(
-        &["-p", "virtual-board", "-p", "glint", "--test", "board"],
-        &[("GLINT_VIRTUAL_BOARD", folder.as_os_str())],
-    )?;
+    let tests = Programs::build(&["-p", "virtual-board", "-p", "glint", "--test", "board"])?;
+    let passed = tests.run(&[("GLINT_VIRTUAL_BOARD", folder.as_os_str())])?;
     println!("{passed} passed at {megahertz} MHz");
     Ok(())
 }
@@ -157,50 +156,4 @@ fn gateware_check(name: &str, program: &str) -> Result<u32> {
             .current_dir(paths::root()),
     )?;
     Ok(1)
-}
-
-/// Runs the Rust tests that `selection` selects, or without a selection all of them, including those on the virtual board, with
-/// `environment`. Returns the number of passed tests. Output of failed tests is printed again at the end.
-fn cargo_tests(selection: &[&str], environment: &[(&str, &OsStr)]) -> Result<u32> {
-    let mut passed = 0;
-    let mut failures = Vec::new();
-    let mut in_failures = false;
-    let outcome = run::watched_step(
-        "cargo test",
-        Command::new("cargo")
-            .args(["test", "--no-fail-fast"])
-            .args(selection)
-            .envs(environment.iter().copied())
-            .current_dir(paths::root()),
-        |line| {
-            passed += passed_tests(line).unwrap_or(0);
-            in_failures = line == "failures:" || in_failures && !line.starts_with("test result: ");
-            if in_failures {
-                failures.push(line.to_owned());
-            }
-        },
-    );
-    for line in failures {
-        println!("    {line}");
-    }
-    outcome.map(|()| passed)
-}
-
-/// Returns the number of passed tests from the last line of a test program's output: `test result: ok. 12 passed; 0 failed; …`.
-fn passed_tests(line: &str) -> Option<u32> {
-    let counts = line.strip_prefix("test result: ")?;
-    let before = counts.split(" passed;").next()?;
-    before.rsplit(' ').next()?.parse().ok()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::passed_tests;
-
-    #[test]
-    fn counts_the_tests_of_a_closing_line() {
-        let line = "test result: ok. 12 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
-        assert_eq!(passed_tests(line), Some(12));
-        assert_eq!(passed_tests("running 12 tests"), None);
-    }
 }

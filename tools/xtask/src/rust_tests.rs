@@ -1,0 +1,235 @@
+//! The Rust tests: builds the test programs, and runs three of them at a time.
+//!
+//! `cargo test` runs the programs one after another, and the long ones end with a test on one core. Three programs at a time keep
+//! both cores of a small machine busy.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, MutexGuard};
+use std::thread;
+
+use anyhow::{Result, bail};
+use serde::Deserialize;
+
+use crate::{paths, run};
+
+/// Number of programs that run at a time: one for each of [`LONGEST`].
+const AT_A_TIME: usize = LONGEST.len();
+
+/// The programs that take longest, by package and target. They run first, so that none of them is left alone at the end.
+const LONGEST: [(&str, &str); 3] = [
+    ("virtual-board", "board"),
+    ("testbench", "triangle"),
+    ("glint", "board"),
+];
+
+/// A built test program.
+struct Program {
+    path: PathBuf,
+    /// Folder of the package, in which its tests run.
+    package: PathBuf,
+    target: String,
+}
+
+impl Program {
+    /// The program's place in [`LONGEST`], or the length of the list.
+    fn rank(&self) -> usize {
+        let is_it = |(package, target): &(&str, &str)| {
+            self.package.ends_with(package) && self.target == *target
+        };
+        LONGEST.iter().position(is_it).unwrap_or(LONGEST.len())
+    }
+
+    fn name(&self) -> String {
+        let root = paths::root();
+        let package = self.package.strip_prefix(&root).unwrap_or(&self.package);
+        format!("tests of {}: {}", package.display(), self.target)
+    }
+}
+
+/// The parts of cargo's messages that tell of a built test program.
+#[derive(Deserialize)]
+struct Artifact {
+    executable: Option<PathBuf>,
+    manifest_path: PathBuf,
+    target: Target,
+    profile: Profile,
+}
+
+#[derive(Deserialize)]
+struct Target {
+    name: String,
+}
+
+#[derive(Deserialize)]
+struct Profile {
+    test: bool,
+}
+
+/// The built test programs.
+pub struct Programs(Vec<Program>);
+
+impl Programs {
+    /// Builds the test programs that `selection` selects, as arguments of `cargo test`; without a selection all of them.
+    ///
+    /// # Errors
+    /// The build fails.
+    pub fn build(selection: &[&str]) -> Result<Self> {
+        let mut programs = Vec::new();
+        run::watched_step(
+            "build of the tests",
+            Command::new("cargo")
+                .args([
+                    "test",
+                    "--no-run",
+                    "--message-format",
+                    "json-render-diagnostics",
+                ])
+                .args(selection)
+                .current_dir(paths::root()),
+            |line| programs.extend(test_program(line)),
+        )?;
+        programs.sort_by_key(Program::rank);
+        Ok(Self(programs))
+    }
+
+    /// Runs the programs with `environment`. Returns the number of passed tests. The output of failed tests is printed again at the
+    /// end.
+    ///
+    /// # Errors
+    /// A test fails; the error names the programs.
+    pub fn run(self, environment: &[(&str, &OsStr)]) -> Result<u32> {
+        let waiting = Mutex::new(self.0.into_iter());
+        let results = Mutex::new(Results::default());
+        thread::scope(|scope| {
+            for _ in 0..AT_A_TIME {
+                scope.spawn(|| {
+                    while let Some(program) = lock(&waiting).next() {
+                        let mut command = Command::new(&program.path);
+                        command.current_dir(&program.package);
+                        run_tests(&program.name(), command, environment, &results);
+                    }
+                });
+            }
+        });
+        let results = results.into_inner().expect("tests do not panic");
+        for line in results.output {
+            println!("    {line}");
+        }
+        if !results.failed.is_empty() {
+            bail!("{}", results.failed.join("\n"));
+        }
+        Ok(results.passed)
+    }
+}
+
+/// Runs the examples in the documentation. Returns the number of passed ones.
+///
+/// # Errors
+/// An example fails.
+pub fn run_examples() -> Result<u32> {
+    let results = Mutex::new(Results::default());
+    let mut command = Command::new("cargo");
+    command.args(["test", "--doc"]).current_dir(paths::root());
+    run_tests("examples in the documentation", command, &[], &results);
+    let results = results.into_inner().expect("tests do not panic");
+    match results.failed.first() {
+        Some(error) => bail!("{error}"),
+        None => Ok(results.passed),
+    }
+}
+
+#[derive(Default)]
+struct Results {
+    passed: u32,
+    /// Output of the failed tests.
+    output: Vec<String>,
+    /// The error of each program that failed.
+    failed: Vec<String>,
+}
+
+/// Runs `command`, which runs tests, as the step `name`, and adds its results.
+fn run_tests(
+    name: &str,
+    mut command: Command,
+    environment: &[(&str, &OsStr)],
+    results: &Mutex<Results>,
+) {
+    let (mut passed, mut output, mut in_failures) = (0, Vec::new(), false);
+    let outcome = run::watched_step(name, command.envs(environment.iter().copied()), |line| {
+        passed += passed_tests(line).unwrap_or(0);
+        in_failures = line == "failures:" || in_failures && !line.starts_with("test result: ");
+        if in_failures {
+            output.push(line.to_owned());
+        }
+    });
+    let mut results = lock(results);
+    results.passed += passed;
+    results.output.append(&mut output);
+    results
+        .failed
+        .extend(outcome.err().map(|error| error.to_string()));
+}
+
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().expect("tests do not panic")
+}
+
+/// Returns the test program of a line of cargo's output, which also has lines that are no messages.
+fn test_program(line: &str) -> Option<Program> {
+    let Artifact {
+        executable: Some(path),
+        manifest_path,
+        target,
+        profile: Profile { test: true },
+    } = serde_json::from_str(line).ok()?
+    else {
+        return None;
+    };
+    Some(Program {
+        path,
+        package: manifest_path.parent().map(Path::to_owned)?,
+        target: target.name,
+    })
+}
+
+/// Returns the number of passed tests from the last line of a test program's output: `test result: ok. 12 passed; 0 failed; …`.
+fn passed_tests(line: &str) -> Option<u32> {
+    let counts = line.strip_prefix("test result: ")?;
+    let before = counts.split(" passed;").next()?;
+    before.rsplit(' ').next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_the_tests_of_a_closing_line() {
+        let line = "test result: ok. 12 passed; 0 failed; 1 ignored; 0 measured; 0 filtered out";
+        assert_eq!(passed_tests(line), Some(12));
+        assert_eq!(passed_tests("running 12 tests"), None);
+    }
+
+    #[test]
+    fn finds_the_test_programs_in_the_messages_of_cargo() {
+        let message = |executable: &str, test: bool| {
+            format!(
+                r#"{{"reason":"compiler-artifact","manifest_path":"/a/tools/glint/Cargo.toml","target":{{"name":"board"}},"profile":{{"test":{test}}},"executable":{executable}}}"#
+            )
+        };
+        let program = test_program(&message(r#""/a/board-1""#, true)).expect("a program");
+        assert_eq!(program.path, Path::new("/a/board-1"));
+        assert_eq!(program.package, Path::new("/a/tools/glint"));
+        assert_eq!((program.rank(), &*program.target), (2, "board"));
+        for line in [
+            &*message("null", true),
+            &*message(r#""/a/board-1""#, false),
+            r#"{"reason":"build-finished","success":true}"#,
+            "   Compiling glint v0.1.0",
+        ] {
+            assert!(test_program(line).is_none(), "{line}");
+        }
+    }
+}
