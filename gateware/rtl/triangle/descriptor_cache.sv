@@ -13,8 +13,8 @@
 // descriptor comes from its line, also one that missed, so no selection follows the block RAM. An item without a descriptor
 // (`in_end`) passes in order.
 //
-// Latency 7 clocks for a hit, and the latency of memory plus 10 clocks for a miss. Throughput an item in 4 clocks, with SMOOTH a
-// miss in 7. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
+// Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput a hit in 4 clocks and a miss in 5, with
+// SMOOTH in 8. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
 // is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
@@ -132,66 +132,82 @@ module descriptor_cache #(
         if (rst) ask_valid <= 1'b0;
     end
 
-    logic                 marked, mark_end, mark_hit, mark_done, read_free;
+    logic                 marked, mark_end, mark_hit, mark_done, reads, reads_again;
     logic [LINE_BITS-1:0] mark_line;
 
     fifo #(.WIDTH(2 + LINE_BITS), .DEPTH(MARKS)) marks (
         .clk, .rst, .in_valid(passes), .in_ready(mark_ready), .in_data({is_end, hit, line}),
-        .out_valid(marked), .out_ready(mark_done && read_free), .out_data({mark_end, mark_hit, mark_line})
+        .out_valid(marked), .out_ready(reads_again), .out_data({mark_end, mark_hit, mark_line})
     );
 
     // Second stage: the words of a descriptor that missed go to its cache line, one a clock.
     logic [WORD_BITS-1:0] words;
 
-    assign mark_done = mark_end || mark_hit || words == WORD_BITS'(WORDS);
+    assign mark_done  = mark_end || mark_hit || words == WORD_BITS'(WORDS);
+    assign data_ready = marked && !mark_done;
 
     always_ff @(posedge clk) begin
         if (data_ready && data_valid) words <= words + 1'b1;
-        if (marked && mark_done && read_free) words <= '0;
+        if (reads_again) words <= '0;
         if (rst) words <= '0;
     end
 
-    // Third stage: each descriptor is read from its cache line, in a clock in which no line is written. The block RAM holds it
-    // until the item has moved, so the register behind the block RAM needs no enable.
-    logic                 read_valid, reads, arrives;
-    logic [128*WORDS-1:0] cached, descriptor;
+    // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM has two words of
+    // each line, because one word of each fills only half of it: the first ones are read a clock before the second ones. The
+    // block RAM holds the second ones until the item has moved, so the register behind it needs no enable.
+    localparam int unsigned PAIRS = WORDS / 2 + WORDS % 2;
 
-    assign read_free  = !read_valid;
-    assign reads      = marked && mark_done && read_free;
-    assign data_ready = marked && !mark_done;
+    logic                        read_valid, arrives;
+    logic [PAIRS-1:0][1:0][127:0] descriptor;
 
-    for (genvar i = 0; i < WORDS; i++) begin : columns
+    assign reads = marked && mark_done && !read_valid;
+
+    for (genvar i = 0; i < PAIRS; i++) begin : pairs
         (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
-        logic [127:0] lines [0:2**LINE_BITS-1];
+        logic [127:0] lines [0:2**(LINE_BITS+1)-1];
+        logic [127:0] cached;
+        // A copy of `reads_again` for each block RAM, so that it enables no more than 128 flip-flops. `reads` is never high in two
+        // successive clocks; each copy depends on itself, because synthesis merges registers with equal inputs.
+        logic first_is_read;
 
         always_ff @(posedge clk) begin
-            if (data_ready && data_valid && words == WORD_BITS'(i)) lines[mark_line] <= data;
-            if (reads) cached[128*i +: 128] <= lines[mark_line];
+            first_is_read <= reads && !first_is_read;
+            if (data_ready && data_valid && words[WORD_BITS-1:1] == (WORD_BITS-1)'(i)) lines[{words[0], mark_line}] <= data;
+            if (reads || reads_again) cached <= lines[{reads_again, mark_line}];
+            if (first_is_read) descriptor[i][0] <= cached;
+            descriptor[i][1] <= cached;
         end
     end
 
     always_ff @(posedge clk) begin
-        read_valid <= reads || read_valid && !(out_valid && out_ready);
-        arrives    <= reads;
-        out_valid  <= arrives || out_valid && !out_ready;
-        descriptor <= cached;
+        read_valid  <= reads || read_valid && !(out_valid && out_ready);
+        reads_again <= reads;
+        arrives     <= reads_again;
+        out_valid   <= arrives || out_valid && !out_ready;
         if (reads) out_end <= mark_end;
 
         if (rst) begin
-            read_valid <= 1'b0;
-            arrives    <= 1'b0;
-            out_valid  <= 1'b0;
+            read_valid  <= 1'b0;
+            reads_again <= 1'b0;
+            arrives     <= 1'b0;
+            out_valid   <= 1'b0;
         end
     end
 
-    assign out_descriptor = descriptor[383:0];
+    // Word k of a line is `descriptor[k / 2][k % 2]`.
+    logic [256*PAIRS-1:0] words_of_line;
+
+    assign words_of_line  = descriptor;
+    assign out_descriptor = words_of_line[383:0];
 
     if (SMOOTH) begin : light
-        assign out_planes = descriptor[384 +: PLANES_BITS];
+        assign out_planes = words_of_line[384 +: PLANES_BITS];
 
-        wire _unused = &{1'b0, descriptor[767:673]};
+        wire _unused = &{1'b0, words_of_line[767:673]};
     end else begin : flat
         assign out_planes = '0;
+
+        wire _unused = &{1'b0, words_of_line[511:384]};
     end
 endmodule
 
