@@ -68,6 +68,8 @@ def main():
         # Link-time optimisation inlines the calls in the loop of the BIOS's serial boot, so that the loop stays in the
         # instruction cache.
         bios_lto=True,
+        # Without its history of commands the BIOS fits in six block RAMs.
+        bios_console="no-history",
         # The tools of the FPGA are run separately: by `gateware/ecp5`, or by hand on a computer with the vendor tool.
         compile_gateware=False)
     builder.build()
