@@ -9,6 +9,7 @@
 //! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
+//! - [`stiff`]: the catalogue of stiff and extreme cases.
 //! - [`triangle`]: an exact rasterizer, the visible surface of each pixel, and the errors of smooth shading.
 //! - [`wireframe`]: drift of the wireframe simulator's motions over many steps.
 
@@ -22,5 +23,6 @@ pub mod line;
 pub mod raymarch;
 pub mod report;
 pub mod sine;
+pub mod stiff;
 pub mod triangle;
 pub mod wireframe;

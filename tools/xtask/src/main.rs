@@ -113,7 +113,7 @@ enum Task {
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`; or `pages`: rebuild all pages from their tables
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `stiff`; or `pages`: rebuild all pages from their tables
         page: String,
         /// Options of the page; `cargo xtask report PAGE -- --help` lists them
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]

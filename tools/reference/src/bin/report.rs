@@ -4,11 +4,11 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::{Args, Parser, Subcommand};
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, kernels, raymarch, sine, triangle,
+    geometry, gesture, gouraud, imu, kernels, raymarch, sine, stiff, triangle,
 };
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
@@ -95,6 +95,14 @@ enum Page {
         #[command(flatten)]
         bench: Bench,
     },
+    /// Stiff and extreme cases: runs the catalogue tools/reference/stiff, and fails where an outcome differs
+    Stiff {
+        /// Run only cases whose name or subject contains TEXT, and write no page
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+        #[command(flatten)]
+        output: Output,
+    },
     /// Rebuild all pages and diagrams from their CSV files, without measuring
     Pages {
         /// Folder of CSV files, pages and diagrams [default: docs/report]
@@ -175,6 +183,7 @@ fn main() -> Result<()> {
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Gesture { bench } => measure_gesture(&bench),
         Page::Kernels { quick, bench } => measure_kernels(quick, &bench),
+        Page::Stiff { only, output } => measure_stiff(only.as_deref(), &output),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
             PAGES
@@ -282,6 +291,30 @@ fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
     let folder = output.folder(quick)?;
     write_csv(&rows, &folder.join("kernels.csv"))?;
     written("kernels", &folder, pages::kernels::rebuild)
+}
+
+fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
+    let rows = stiff::measure(only)?;
+    output.print(&rows, pages::stiff::sections)?;
+    let differing: Vec<_> = rows.iter().filter(|row| !row.holds).collect();
+    for row in &differing {
+        eprintln!(
+            "{}: expected {:?}, measured {:?}",
+            row.case, row.expected, row.measured
+        );
+    }
+    ensure!(
+        differing.is_empty(),
+        "{} of {} cases differ: mend the code, or state and explain the outcome in tools/reference/stiff",
+        differing.len(),
+        rows.len()
+    );
+    if only.is_some() {
+        return Ok(());
+    }
+    let folder = output.folder(false)?;
+    write_csv(&rows, &folder.join("stiff.csv"))?;
+    written("stiff", &folder, pages::stiff::rebuild)
 }
 
 fn measure_geometry(bench: &Bench) -> Result<()> {

@@ -7,4 +7,5 @@ pub mod imu;
 pub mod kernels;
 pub mod raymarch;
 pub mod sine;
+pub mod stiff;
 pub mod triangle;

@@ -9,6 +9,7 @@ mod index;
 pub mod kernels;
 pub mod raymarch;
 pub mod sine;
+pub mod stiff;
 mod template;
 pub mod triangle;
 
@@ -20,7 +21,7 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 9] = [
+pub const PAGES: [(&str, Rebuild); 10] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
@@ -29,6 +30,7 @@ pub const PAGES: [(&str, Rebuild); 9] = [
     ("geometry", geometry::rebuild),
     ("gesture", gesture::rebuild),
     ("kernels", kernels::rebuild),
+    ("stiff", stiff::rebuild),
     // The index is made from the tables of all other pages.
     ("README", index::rebuild),
 ];

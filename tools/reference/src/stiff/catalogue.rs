@@ -1,0 +1,104 @@
+//! Reading of the catalogue.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use serde::Deserialize;
+
+use super::outcome::Expected;
+
+/// A file of the catalogue: the cases of a subject.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Subject {
+    /// Title of its section in the report.
+    pub title: String,
+    /// The cases.
+    #[serde(rename = "case")]
+    pub cases: Vec<Case>,
+}
+
+/// A case. It has one of `exact`, `at_most` and `refused`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Name, which no other case has.
+    pub name: String,
+    /// Name of its kind.
+    pub kind: String,
+    /// Input, in the form that its kind has.
+    pub input: toml::Value,
+    /// Why the input is hard, or why the outcome is right.
+    pub why: String,
+    exact: Option<String>,
+    at_most: Option<f64>,
+    refused: Option<String>,
+}
+
+impl Case {
+    /// The expected outcome.
+    ///
+    /// # Errors
+    /// The case has none, or several.
+    pub fn expected(&self) -> Result<Expected> {
+        match (&self.exact, self.at_most, &self.refused) {
+            (Some(text), None, None) => Ok(Expected::Exact(text.clone())),
+            (None, Some(bound), None) => Ok(Expected::AtMost(bound)),
+            (None, None, Some(message)) => Ok(Expected::Refused(message.clone())),
+            _ => bail!("{}: expected one of exact, at_most and refused", self.name),
+        }
+    }
+}
+
+/// Reads all files of a folder, in the order of their names.
+///
+/// # Errors
+/// A file is no file of the catalogue, or a case has no explanation or the name of another one.
+pub fn read(folder: &Path) -> Result<Vec<Subject>> {
+    let entries =
+        std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
+    let mut paths = entries
+        .map(|entry| Ok(entry?.path()))
+        .collect::<Result<Vec<_>>>()?;
+    paths.sort();
+    let subject = |path: &std::path::PathBuf| {
+        let text = std::fs::read_to_string(path)?;
+        parse(&text)
+    };
+    let subjects = paths
+        .iter()
+        .map(|path| subject(path).with_context(|| path.display().to_string()))
+        .collect::<Result<Vec<_>>>()?;
+    let mut names = std::collections::BTreeSet::new();
+    for case in subjects.iter().flat_map(|subject| &subject.cases) {
+        ensure!(names.insert(&case.name), "two cases named {:?}", case.name);
+    }
+    Ok(subjects)
+}
+
+fn parse(text: &str) -> Result<Subject> {
+    let subject: Subject = toml::from_str(text)?;
+    for case in &subject.cases {
+        ensure!(!case.why.is_empty(), "{}: expected a why", case.name);
+        case.expected()?;
+    }
+    Ok(subject)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_case_is_explained_and_has_one_expectation() {
+        let read = |why: &str, outcome: &str| {
+            let case = format!("[[case]]\nname = 'a'\nkind = 'b'\ninput = 1\nwhy = '{why}'\n");
+            parse(&format!("title = 'x'\n{case}{outcome}"))
+        };
+        assert!(read("because", "exact = '1'").is_ok());
+        assert!(read("", "exact = '1'").is_err());
+        assert!(read("because", "").is_err());
+        assert!(read("because", "exact = '1'\nrefused = '2'").is_err());
+        assert!(read("because", "exact = '1'\nmore = 2").is_err());
+    }
+}

@@ -1,0 +1,109 @@
+//! Directions along each other, and the ends of the range of fields of view.
+
+use anyhow::Result;
+use glint_core::camera::{View, ViewError};
+use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_model::triangle::vertex::{project, transform};
+use glint_model::{MeshSetup, Projected, SIZES};
+use glint_vectors::Camera;
+use glint_vectors::math::world;
+use serde::Deserialize;
+
+use crate::stiff::kind::Kind;
+use crate::stiff::outcome::Outcome;
+
+/// The largest radius of a mesh.
+const RADIUS: u32 = glint_core::mesh::MAX_RADIUS;
+
+pub fn kinds() -> Vec<Kind> {
+    vec![
+        Kind::new("camera-towards", towards),
+        Kind::new("camera-field-of-view", |degrees| {
+            let view = with_field_of_view(above(), degrees);
+            Ok(Outcome::of(view, |view| {
+                format!("half width {}", view.half_width())
+            }))
+        }),
+        Kind::new("camera-field-of-view-error", field_of_view_error),
+        Kind::new("camera-width", |width: f64| {
+            let view = above().with_width(U8_28::from_num(width));
+            Ok(Outcome::of(view, |view| {
+                format!("half width {}", view.half_width())
+            }))
+        }),
+    ]
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Towards {
+    gaze: [f64; 3],
+    up: [f64; 3],
+}
+
+fn towards(Towards { gaze, up }: Towards) -> Result<Outcome> {
+    let number = |v: [f64; 3]| v.map(Q32_32::from_num);
+    let view = View::towards(number([0.0, 0.0, 2.0]), number(gaze), number(up));
+    Ok(Outcome::of(view, |view| {
+        let [ux, uy, uz] = view.u();
+        let [vx, vy, vz] = view.v();
+        format!("right ({ux}, {uy}, {uz}), down ({vx}, {vy}, {vz})")
+    }))
+}
+
+/// A camera above the origin.
+fn above() -> View {
+    View::spherical(Q32_32::from_num(2), Turns::HALF, Turns(0)).expect("a radius in range")
+}
+
+fn with_field_of_view(view: View, degrees: f64) -> Result<View, ViewError> {
+    view.with_field_of_view(Turns::from_degrees(Q32_32::from_num(degrees)))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Seen {
+    degrees: f64,
+    near: f64,
+    eye: [f64; 3],
+    /// Depths of the nearest and the farthest vertex.
+    depths: [f64; 2],
+}
+
+/// The largest error of positions on the screen for vertices that a camera at `eye` with a gaze along y sees, against f64.
+fn field_of_view_error(input: Seen) -> Result<Outcome> {
+    let Seen {
+        degrees,
+        near,
+        eye,
+        depths,
+    } = input;
+    let view = Camera::looking(eye, [0.0; 3], 0.9, near).rounded();
+    let view = with_field_of_view(view, degrees)?;
+    let camera = Camera::of(&view);
+    let mut worst: f64 = 0.0;
+    for (width, height) in SIZES {
+        let frame = MeshSetup::new(&view, width, height, RADIUS)?;
+        let (columns, rows, levels) = (64, 36, 4);
+        for i in 0..columns * rows * levels {
+            let [column, row, level] = [i % columns, i / columns % rows, i / columns / rows];
+            let part = |i: i32, count: i32| f64::from(i) / f64::from(count - 1);
+            let across = (2.0 * part(column, columns) - 1.0) * camera.half_width;
+            let down = (2.0 * part(row, rows) - 1.0) * camera.half_width * 9.0 / 16.0;
+            let depth = depths[0] + (depths[1] - depths[0]) * part(level, levels);
+            let place = [0, 1, 2].map(|k| {
+                eye[k] + (camera.n[k] + across * camera.u[k] + down * camera.v[k]) * depth
+            });
+            let position = place.map(|x| (x * 16384.0).round() as i16);
+            let Projected::Visible(found) = project(&frame, &transform(&frame, position)) else {
+                continue;
+            };
+            let [x, y, _] = camera.project(world(position), width, height);
+            if (0.0..f64::from(width)).contains(&x) && (0.0..f64::from(height)).contains(&y) {
+                let error = |found: i32, exact: f64| (f64::from(found) - 256.0 * exact).abs();
+                worst = worst.max(error(found.x, x)).max(error(found.y, y));
+            }
+        }
+    }
+    Ok(Outcome::Error(worst, "of 1/256 pixel"))
+}

@@ -1,0 +1,100 @@
+//! Segments of the wireframe simulator, from the program to the picture.
+
+use anyhow::{Context, Result};
+use glint_core::colour::Rgb565;
+use glint_core::picture::Size;
+use glint_core::wireframe::text::assemble;
+use glint_core::wireframe::{Motion, Program, Projection};
+use glint_model::wireframe::render_wireframe;
+use glint_model::{WireframeStats, WireframeSubject};
+use glint_vectors::Picture;
+use serde::Deserialize;
+
+use crate::stiff::kind::Kind;
+use crate::stiff::outcome::Outcome;
+
+pub fn kinds() -> Vec<Kind> {
+    vec![
+        Kind::new("wireframe-segment", segment),
+        Kind::new("wireframe-segments", segments),
+        Kind::new("wireframe-program", |text: String| {
+            Ok(Outcome::of(assemble(&text), |program| {
+                format!("{} bytes", program.len())
+            }))
+        }),
+    ]
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Viewed {
+    /// The coordinates of both end points.
+    segment: String,
+    /// z of the view plane. The eye is at z = 4, and the window has 160 pixels a unit in a picture 640 wide.
+    #[serde(default = "two")]
+    plane: String,
+}
+
+fn two() -> String {
+    "2".to_owned()
+}
+
+/// The start of a program with a window of ±2 × ±1.125.
+fn head(plane: &str) -> String {
+    format!("eye 0 0 4\nplane {plane}\nwindow -2 -1.125 2 1.125\n")
+}
+
+/// Projects and draws a segment.
+fn segment(Viewed { segment, plane }: Viewed) -> Result<Outcome> {
+    let text = format!("{}segment {segment}\nend\n", head(&plane));
+    let bytes = match assemble(&text) {
+        Ok(bytes) => bytes,
+        Err(error) => return Ok(Outcome::Refused(error.to_string())),
+    };
+    let program = Program::new_checked(&bytes)?;
+    let moved = Motion::default()
+        .pose()
+        .segment(program.segments().next().context("a segment")?);
+    let ends = Projection::new(program.viewing(), Size::W640).line(moved);
+    let pixels = draw(&bytes, Size::W640)?.pixels;
+    Ok(Outcome::exact(match ends {
+        None => format!("left out, {pixels} pixels"),
+        Some(ends) => {
+            let [[ax, ay], [bx, by]] = ends.map(|end| end.map(|x| f64::from(x) / 256.0));
+            format!("from ({ax}, {ay}) to ({bx}, {by}), {pixels} pixels")
+        }
+    }))
+}
+
+fn draw(bytes: &[u8], size: Size) -> Result<WireframeStats> {
+    let subject = WireframeSubject {
+        program: Program::new_checked(bytes).map_err(|error| anyhow::anyhow!("{error}"))?,
+        pose: Motion::default().pose(),
+    };
+    let [width, height] = size.pixels();
+    let mut picture = Picture::blank((width, height));
+    Ok(render_wireframe(
+        &subject,
+        Rgb565(0),
+        &mut picture.target(),
+        &mut || {},
+    )?)
+}
+
+/// Draws this number of horizontal segments across the window, 1/1024 apart.
+fn segments(count: u32) -> Result<Outcome> {
+    let y = |i: u32| f64::from(i % 2304) / 1024.0 - 1.125;
+    let lines: String = (0..count)
+        .map(|i| format!("segment -2 {y} 2 2 {y} 2\n", y = y(i)))
+        .collect();
+    match assemble(&format!("{}{lines}end\n", head("2"))) {
+        Ok(bytes) => {
+            let stats = draw(&bytes, Size::W320)?;
+            Ok(Outcome::exact(format!(
+                "{} lines of {} segments",
+                stats.lines, stats.segments
+            )))
+        }
+        Err(error) => Ok(Outcome::Refused(error.to_string())),
+    }
+}
