@@ -22,6 +22,9 @@ pub struct Tree {
     place: Vec<u32>,
     removed: Vec<bool>,
     nodes: Vec<Node>,
+    /// Number of nodes that searches have visited, the measure of their work.
+    #[cfg(test)]
+    pub visited: std::cell::Cell<u64>,
 }
 
 #[derive(Clone, Copy, Default)]
@@ -106,6 +109,8 @@ impl Tree {
         first: usize,
         end: usize,
     ) -> bool {
+        #[cfg(test)]
+        self.visited.update(|visited| visited + 1);
         let Node { low, high, count } = self.nodes[node];
         let box_corners = [low, [high[0], low[1]], [low[0], high[1]], high];
         if count == 0

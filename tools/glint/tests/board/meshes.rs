@@ -315,3 +315,27 @@ fn an_orbit_on_a_board_is_the_models() {
         );
     }
 }
+
+/// `pixels_tested` is the count of the model and of the soft core alone. The gateware tests groups of pixels, and counts those under
+/// another name.
+#[test]
+fn pixels_tested_are_counted_alike_or_have_another_name() {
+    let mesh = mesh("icosphere:4");
+    let frame = mesh_frame(&mesh, "2,30,60", Size::W320);
+    let expected = render::on_model(&frame).unwrap().stats;
+    assert!(expected.triangles().pixels_tested > Some(0));
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board);
+    for (backend, has_pixels) in [(Backend::Cpu, true), (Backend::Gateware, false)] {
+        renderer.set_backend(backend);
+        let stats = renderer
+            .show(&frame, Route::Memory, &mut |_, _| {})
+            .unwrap();
+        assert_eq!(stats.backend.as_deref(), Some(backend.name()));
+        let tested = stats.triangles().pixels_tested;
+        let of_model = expected.triangles().pixels_tested;
+        assert_eq!(tested, of_model.filter(|_| has_pixels));
+        let groups = stats.engine.get("cycles_walking");
+        assert_eq!(groups.is_ok(), !has_pixels);
+    }
+}

@@ -133,16 +133,6 @@ fn programs_use_one_board_in_turn() {
         "{error}"
     );
 
-    let send = ["--send", "info triangles", "--send", "infor", "--json"];
-    let output = stay.glint(&[&["console", "port"], &send[..]].concat(), "");
-    assert_eq!(output.status.code(), Some(1));
-    assert_eq!(output.stdout, b"[[\"triangles 320\"]]\n");
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        error.starts_with("error: the board refused `infor`"),
-        "{error}"
-    );
-
     let litex_term = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/litex_term");
     let mut terminal = Terminal::start(&litex_term, &[port.to_str().unwrap()]);
     let mut seconds = 0;

@@ -117,3 +117,31 @@ fn logs_of_a_gyroscope() {
         assert!(!folder.join("x.csv").exists());
     }
 }
+
+/// `--still 0` is a replay without a calibration, also of a log that begins in motion.
+#[test]
+fn a_rest_of_zero_seconds_is_none() {
+    let folder = folder("no-rest");
+    let mut log = String::from("t_us,ax,ay,az,gx,gy,gz\n");
+    for i in 0..200 {
+        log += &format!("{},0,0,4096,{},20,-5\n", i * 1000, 40 * (i % 50));
+    }
+    std::fs::write(folder.join("log.csv"), log).unwrap();
+    let replay = |more: &[&str]| {
+        let arguments = ["imu", "replay", "log.csv", "--out", "o.csv", "--json"];
+        let said = succeed(&folder, &[&arguments, more].concat());
+        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
+        assert!(summary["calibration"].is_null(), "{more:?}: {said}");
+        std::fs::read_to_string(folder.join("o.csv")).unwrap()
+    };
+    let expected = replay(&[]);
+    for zero in ["0", "0.0"] {
+        assert!(replay(&["--still", zero]) == expected);
+    }
+    // A rest is checked.
+    let rest = [
+        "imu", "replay", "log.csv", "--out", "r.csv", "--still", "0.1",
+    ];
+    let error = refused(&folder, &rest);
+    assert!(error.contains("keep it still"), "{error}");
+}

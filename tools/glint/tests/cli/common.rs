@@ -22,16 +22,23 @@ pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
 
 /// Runs the program with variables of the environment in which it finds its settings.
 pub fn glint_in(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
+    glint_within(256, folder, arguments, variables)
+}
+
+/// Runs the program with this many MiB of address space.
+pub fn glint_within(
+    mebibytes: u32,
+    folder: &Path,
+    arguments: &[&str],
+    variables: &[(&str, &str)],
+) -> Output {
+    let limited = format!("ulimit -v {}; exec \"$0\" \"$@\"", mebibytes << 10);
     Command::new("sh")
         .env_remove("GLINT_BOARD")
         .env_remove("GLINT_BAUD")
         .env("XDG_CONFIG_HOME", folder)
         .envs(variables.iter().copied())
-        .args([
-            "-c",
-            "ulimit -v 262144; exec \"$0\" \"$@\"",
-            env!("CARGO_BIN_EXE_glint"),
-        ])
+        .args(["-c", &limited, env!("CARGO_BIN_EXE_glint")])
         .args(arguments)
         .current_dir(folder)
         .output()

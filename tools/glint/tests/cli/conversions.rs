@@ -1,6 +1,6 @@
 //! `glint model` and `glint convert`.
 
-use crate::common::{SQUARE, folder, picture, refused, succeed};
+use crate::common::{SQUARE, folder, glint_within, picture, refused, succeed};
 use glint::fuzz::{TWO_MESHES, as_binary};
 
 #[test]
@@ -142,5 +142,37 @@ fn a_material_file_beside_the_mesh() {
     assert_eq!(
         error,
         "error: sub/a.mtl: line 2: expected a number within ±1e30, found 'x'"
+    );
+}
+
+/// 260 concave polygons of 8,000 corners have nearly as many triangles as a mesh may have. They take at most 512 MiB.
+#[test]
+fn concave_polygons_of_8000_corners_load_in_bounded_memory() {
+    let folder = folder("large-polygons");
+    let (polygons, corners) = (260, 8000);
+    let mut obj = String::new();
+    for i in 0..corners {
+        let radius = if i % 2 == 0 { 1.0 } else { 100.0 };
+        let (sin, cos) = (f64::from(i) / f64::from(corners) * std::f64::consts::TAU).sin_cos();
+        obj += &format!("v {:.6} {:.6} 0\n", radius * cos, radius * sin);
+    }
+    let face = (1..=corners).map(|corner| format!(" {corner}"));
+    let face = format!("f{}\n", face.collect::<String>());
+    obj += &face.repeat(polygons as usize);
+    std::fs::write(folder.join("large.obj"), obj).unwrap();
+    let convert = ["convert", "large.obj", "a.glm", "--json"];
+    let output = glint_within(512, &folder, &convert, &[]);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{error}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let number = |key: &str| report[key].as_i64().unwrap();
+    assert_eq!(
+        [number("points"), number("faces")],
+        [corners, polygons].map(i64::from)
+    );
+    let triangles = polygons * (corners - 2);
+    assert_eq!(
+        number("triangles") + number("degenerate"),
+        i64::from(triangles)
     );
 }

@@ -195,3 +195,35 @@ fn warnings_of_pictures_that_show_nothing() {
         assert!(error.ends_with(expected), "{arguments:?}: {error}");
     }
 }
+
+/// Rays that reach the step limit have the colour of the horizon, which the sky and the fog have in the distance. They are counted, and
+/// magenta on request alone.
+#[test]
+fn undecided_rays_have_the_colour_of_the_horizon() {
+    let folder = folder("undecided");
+    let render = |out: &str, more: &[&str]| {
+        let field = ["render", "--field", "cubes:2,0.3", "--stats", "a.json"];
+        let background = ["--background", "000000", "--out", out];
+        let arguments = [&field[..], &background, more].concat();
+        succeed(&folder, &arguments);
+        let undecided = json(&folder.join("a.json"))["undecided"].as_u64().unwrap();
+        (picture(&folder.join(out)), undecided as usize)
+    };
+    for more in [&[][..], &["--fog", "0.2"]] {
+        let (plain, undecided) = render("a.png", more);
+        assert!(undecided > 0);
+        let (marked, counted) = render("b.png", &[more, &["--undecided"]].concat());
+        assert_eq!(counted, undecided);
+        let mut marks = 0;
+        for (plain, marked) in plain.chunks_exact(3).zip(marked.chunks_exact(3)) {
+            assert_ne!(plain, [0xff, 0, 0xff]);
+            if marked == [0xff, 0, 0xff] {
+                assert_eq!(plain, [0; 3]);
+                marks += 1;
+            } else {
+                assert_eq!(plain, marked);
+            }
+        }
+        assert_eq!(marks, undecided);
+    }
+}

@@ -1,0 +1,171 @@
+//! Uploads that stop half done: their program is killed, or a person cancels them on the console.
+
+use crate::common::{begin_upload, console, emulator, info, mesh};
+use crate::terminal::Terminal;
+use glint::board::{Board, EmulatedBoard, SimulatedBoard};
+use glint::console::Console;
+use glint::transfer;
+use std::path::Path;
+use std::process::Command;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+use virtual_board::pty::{Pty, Uart};
+
+/// Received bytes after which a transfer counts as half done: more than all commands together, less than the mesh.
+const PART: usize = 4_000;
+/// The mesh of an upload that is killed: some 100,000 bytes.
+const LARGE: &str = "icosphere:16";
+/// Seconds without progress after which a test fails.
+const PATIENCE: u32 = 120;
+
+/// An emulated board that reports when it has received a number of bytes.
+struct Counted {
+    board: SimulatedBoard<EmulatedBoard>,
+    received: usize,
+    report: Option<(usize, Sender<()>)>,
+}
+
+impl Uart for Counted {
+    fn run(&mut self, cycles: u64) {
+        self.board.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.board.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.board.clock_hz()
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.board.uart_queued()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.received += bytes.len();
+        if let Some((_, report)) = self.report.take_if(|(at, _)| self.received >= *at) {
+            report.send(()).unwrap();
+        }
+        self.board.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.board.uart_read(output);
+    }
+}
+
+/// A board on a serial port, which shows a mesh of 20 triangles.
+struct Port(Pty<Counted>);
+
+impl Port {
+    fn start() -> Self {
+        let mut board = emulator();
+        console(&mut board);
+        let board = Counted {
+            board,
+            received: 0,
+            report: None,
+        };
+        let port = Self(Pty::start(board).unwrap());
+        port.succeed(&["upload", "icosphere:1"]);
+        assert_eq!(port.triangles(), "20");
+        port
+    }
+
+    fn path(&self) -> &str {
+        self.0.path().to_str().unwrap()
+    }
+
+    /// The program with this port as its board.
+    fn glint(&self, arguments: &[&str]) -> Command {
+        let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
+        glint.args(arguments).env("GLINT_BOARD", self.path());
+        glint
+    }
+
+    fn succeed(&self, arguments: &[&str]) -> Vec<u8> {
+        let output = self.glint(arguments).output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {error}");
+        output.stdout
+    }
+
+    fn triangles(&self) -> String {
+        let info = self.succeed(&["info", "--json"]);
+        let info: serde_json::Value = serde_json::from_slice(&info).unwrap();
+        info["triangles"].as_str().unwrap().to_owned()
+    }
+
+    /// Kills an upload with SIGKILL when the board has received a part of the mesh.
+    fn kill_an_upload(&self) {
+        let (report, half_done): (_, Receiver<()>) = channel();
+        self.0
+            .with(move |board| board.report = Some((board.received + PART, report)));
+        let mut upload = self.glint(&["upload", LARGE]).spawn().unwrap();
+        let wait = Duration::from_secs(PATIENCE.into());
+        half_done.recv_timeout(wait).unwrap();
+        upload.kill().unwrap();
+        assert!(!upload.wait().unwrap().success());
+    }
+}
+
+#[test]
+fn a_killed_upload_leaves_the_old_model_and_the_next_upload_works() {
+    let port = Port::start();
+    port.kill_an_upload();
+    assert_eq!(port.triangles(), "20");
+    port.kill_an_upload();
+    port.succeed(&["upload", "icosphere:4"]);
+    assert_eq!(port.triangles(), "320");
+}
+
+/// The key cancels a transfer that another program has left in the middle of a frame, as litex_term sends it.
+#[test]
+fn ctrl_c_cancels_a_half_done_upload() {
+    let mut board = emulator();
+    let quiet: &mut transfer::Progress = &mut |_, _| {};
+    let mut console = console(&mut board);
+    transfer::upload(&mut console, &mesh("icosphere:1"), None, 1, quiet).unwrap();
+    begin_upload(&mut console, &mesh("icosphere:4"));
+    let board = console.board();
+    let mut said = Vec::new();
+    // A person is not as fast as a program.
+    let typed = board.now_ms() + 100;
+    while board.now_ms() < typed {
+        board.read(&mut said, 10).unwrap();
+    }
+    said.clear();
+    board.write(b"\x03").unwrap();
+    let cancelled = b"cancelled by the other side";
+    while !said.windows(cancelled.len()).any(|part| part == cancelled) {
+        board.read(&mut said, 100).unwrap();
+        assert!(board.now_ms() - typed < 500, "{}", said.escape_ascii());
+    }
+    let mut console = Console::new(board).patience(2_000);
+    console.synchronise().unwrap();
+    assert_eq!(info::<u32>(&mut console, "triangles"), 20);
+}
+
+/// In a session of `glint console`, the key cancels a transfer that was begun by hand.
+#[test]
+fn ctrl_c_in_a_session_cancels_a_transfer() {
+    let port = Port::start();
+    let program = Path::new(env!("CARGO_BIN_EXE_glint"));
+    let mut terminal = Terminal::start(program, &["console", port.path()]);
+    let mut seconds = 0;
+    let mut is_over = || {
+        seconds += 1;
+        seconds > PATIENCE
+    };
+    // From the prompt on, the terminal passes all keys to the board.
+    terminal.wait_for("glint> ", &mut is_over);
+    terminal.type_in(b"load 100 0\r");
+    terminal.wait_for("ready", &mut is_over);
+    terminal.type_in(b"\x03");
+    terminal.wait_for("cancelled by the other side", &mut is_over);
+    terminal.type_in(b"info triangles\r");
+    terminal.wait_for("triangles 20", &mut is_over);
+    terminal.type_in(b"\x1d");
+    assert!(terminal.child.wait().unwrap().success());
+}

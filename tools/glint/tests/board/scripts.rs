@@ -1,0 +1,50 @@
+//! Console commands from `--send` and from a pipe.
+
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+/// Runs `glint console` on a new emulated board, with commands on its standard input.
+fn console(arguments: &[&str], input: &str) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["console", "emulated"])
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    child
+        .stdin
+        .take()
+        .unwrap()
+        .write_all(input.as_bytes())
+        .unwrap();
+    child.wait_with_output().unwrap()
+}
+
+/// The replies to the commands before the one that fails are printed, as lines and as JSON, and no later command is sent.
+#[test]
+fn replies_before_a_failed_command_are_kept() {
+    let send = ["--send", "info triangles", "--send", "infor", "--send"];
+    for (more, expected) in [
+        (&["info backend"][..], "triangles 12\n"),
+        (&["info backend", "--json"], "[[\"triangles 12\"]]\n"),
+    ] {
+        let output = console(&[&send[..], more].concat(), "");
+        assert_eq!(output.status.code(), Some(1));
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), expected);
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            error.starts_with("error: the board refused `infor`"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn a_pipe_of_commands_gets_replies() {
+    let output = console(&[], "info triangles\n# a comment\n\ninfo scene\n");
+    assert!(output.status.success());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.starts_with("triangles 12\nscene "), "{said}");
+}
