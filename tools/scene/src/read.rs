@@ -1,11 +1,17 @@
 //! Scenes by their names.
 
-use std::fs;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::Path;
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source};
 use crate::scene::Scene;
+
+/// The name of standard input.
+const STDIN: &str = "-";
+/// Largest length of a scene file in bytes.
+const MAX_BYTES: u64 = 1 << 20;
 
 /// The built-in scene with this name; `None` for another name.
 pub fn built_in(name: &str) -> Option<Scene> {
@@ -14,7 +20,7 @@ pub fn built_in(name: &str) -> Option<Scene> {
     Scene::parse(name, &format!("scenes/{name}.toml"), text).ok()
 }
 
-/// Reads a scene: a built-in one by its name, or a scene file by its path, which ends in `.toml`.
+/// Reads a scene: a built-in one by its name, or a scene file by its path, which ends in `.toml`; `-` is one from standard input.
 ///
 /// # Errors
 /// No built-in scene has the name, the file cannot be read, or it is no scene file.
@@ -25,14 +31,30 @@ pub fn read(name: &str) -> Result<Scene, SceneError> {
     let path = Path::new(name);
     let file = &name.escape_debug().to_string();
     let source = Source { file, text: "" };
-    if path.extension().is_none_or(|extension| extension != "toml") {
+    let is_stdin = name == STDIN;
+    if !is_stdin && path.extension().is_none_or(|extension| extension != "toml") {
         let message = format!(
             "expected a scene file FILE.toml or one of {}",
             NAMES.join(", ")
         );
         return Err(source.whole(message));
     }
-    let text = fs::read_to_string(path).map_err(|error| source.whole(error.to_string()))?;
+    let text = match is_stdin {
+        true => contents(io::stdin().lock()),
+        false => File::open(path).and_then(contents),
+    };
+    let text = text.map_err(|error| source.whole(error.to_string()))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     Scene::parse(&stem, file, &text)
+}
+
+/// The text of a scene file.
+fn contents(file: impl Read) -> io::Result<String> {
+    let mut text = String::new();
+    file.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > MAX_BYTES {
+        let message = format!("expected at most {MAX_BYTES} bytes, found more");
+        return Err(io::Error::other(message));
+    }
+    Ok(text)
 }

@@ -35,8 +35,8 @@ use std::path::PathBuf;
 pub struct RenderArguments {
     /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
     model: Option<String>,
-    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md). It states camera and size, which the
-    /// options of the camera and --size replace.
+    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
+    /// states camera and size, which the options of the camera and --size replace.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = ["model", "field", "object"])]
     scene: Option<String>,
     /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or

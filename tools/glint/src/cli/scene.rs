@@ -19,14 +19,14 @@ pub enum SceneCommand {
 
 #[derive(Args)]
 pub struct CheckArguments {
-    /// Scene files, or names of built-in scenes.
+    /// Scene files, `-` for one from standard input, or names of built-in scenes.
     #[arg(required = true, value_name = "NAME|FILE.toml")]
     scenes: Vec<String>,
 }
 
 #[derive(Args)]
 pub struct ShowArguments {
-    /// A scene file, or the name of a built-in scene.
+    /// A scene file, `-` for one from standard input, or the name of a built-in scene.
     #[arg(value_name = "NAME|FILE.toml")]
     scene: String,
 }

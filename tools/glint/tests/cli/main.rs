@@ -12,5 +12,6 @@ mod orbits;
 mod output;
 mod package;
 mod settings;
+mod standard_input;
 mod tolerance;
 mod wireframes;

@@ -28,7 +28,7 @@ use std::path::{Path, PathBuf};
 /// attitude is held.
 #[derive(Args)]
 pub struct ReplayArguments {
-    /// Log to read.
+    /// Log to read; `-` is standard input.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
     /// Backend: `model` (the firmware's arithmetic on this host), `emulated` (the firmware in an emulator), `virtual`
