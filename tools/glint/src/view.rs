@@ -5,7 +5,8 @@ use crate::formats::read_file;
 use glint_core::camera::{Projection, UP, View, ViewError};
 use glint_core::choice::Choice;
 use glint_core::fixed::fixed::traits::Fixed;
-use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::fixed::{Q2_23, Q32_32, Turns, U8_28};
+use glint_core::trig::sin_cos_q30;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -181,6 +182,40 @@ pub fn zoomed(view: View, factor: f64) -> Result<View, FormatError> {
     zoomed.ok_or_else(|| FormatError::whole(expected, factor.to_string()))
 }
 
+/// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn it is `view`.
+///
+/// # Errors
+/// The eye is at the largest distance from the origin, and rounding moves it beyond.
+pub fn turned(view: &View, by: Turns) -> Result<View, FormatError> {
+    let (sin, cos) = sin_cos_q30(by);
+    let [sin, cos] = [sin, cos].map(|x| i128::from(x.to_bits()));
+    // Rounds to nearest. The bits of both coordinates are below 2^38 in magnitude.
+    let rotate = |x: i64, y: i64| {
+        let [x, y] = [x, y].map(i128::from);
+        [cos * x - sin * y, sin * x + cos * y].map(|sum| ((sum + (1 << 29)) >> 30) as i64)
+    };
+    let eye = |[x, y, z]: [Q32_32; 3]| {
+        let [x, y] = rotate(x.to_bits(), y.to_bits()).map(Q32_32::from_bits);
+        [x, y, z]
+    };
+    let row = |[x, y, z]: [Q2_23; 3]| {
+        let turned = rotate(x.to_bits().into(), y.to_bits().into());
+        let [x, y] = turned.map(|bits| Q2_23::from_bits(bits as i32));
+        [x, y, z]
+    };
+    let turned = View::new_checked(
+        eye(view.eye()),
+        row(view.u()),
+        row(view.v()),
+        row(view.n()),
+        view.half_width(),
+        view.near(),
+    );
+    turned
+        .map(|turned| turned.with_lens_of(view))
+        .map_err(no_camera)
+}
+
 /// Parses decimals that are separated by commas.
 fn decimals(text: &str) -> Option<Vec<Q32_32>> {
     text.split(',')
@@ -302,6 +337,24 @@ mod tests {
             let message = look(text).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");
         }
+    }
+
+    #[test]
+    fn turns_about_the_z_axis() {
+        for first in ["3,0,60", "4,30,90"].map(|text| spherical(text).unwrap()) {
+            let first = with_field_of_view(first, "40").unwrap();
+            assert_eq!(turned(&first, Turns(0)).unwrap(), first);
+            let mut view = first;
+            for _ in 0..4 {
+                view = turned(&view, Turns(1 << 30)).unwrap();
+            }
+            assert_eq!(view, first);
+        }
+        let quarter = turned(&spherical("3,0,60").unwrap(), Turns(1 << 30)).unwrap();
+        assert_eq!(quarter, spherical("3,90,60").unwrap());
+        let third = turned(&look("2,1,0.5,-20,10,5").unwrap(), Turns(u32::MAX / 3)).unwrap();
+        assert!((third.eye()[2].to_num::<f64>() - 0.5).abs() < 1e-9);
+        assert!(third.is_within(3) && !third.is_within(2));
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub struct CameraArguments {
 
 /// Options of any camera, and of one that shows the whole model.
 #[derive(Args)]
-pub struct LensArguments {
+struct LensArguments {
     /// The axis of the model that is up on the screen, without a camera [default: y for .obj, .gltf and .glb, otherwise z].
     #[arg(long, value_parser = named(Axis::ALL, Axis::name))]
     up: Option<Axis>,
@@ -72,6 +72,8 @@ pub struct Shown<'a> {
     pub model: Option<&'a str>,
     /// Whether a mesh limits the distance of the eye.
     pub has_mesh: bool,
+    /// Whether a field needs perspective.
+    pub has_field: bool,
 }
 
 impl CameraArguments {
@@ -83,11 +85,6 @@ impl CameraArguments {
             || self.view.is_some()
     }
 
-    /// Whether the projection is orthographic.
-    pub const fn is_orthographic(&self) -> bool {
-        self.lens.orthographic.is_some()
-    }
-
     /// The file of the camera, if it has one.
     pub fn file(&self) -> Option<&Path> {
         self.view.as_deref()
@@ -95,6 +92,9 @@ impl CameraArguments {
 
     /// The camera.
     pub fn view(&self, shown: &Shown) -> anyhow::Result<View> {
+        if shown.has_field && self.lens.orthographic.is_some() {
+            return Err(bad_value("--orthographic", "a mesh", "a --field").into());
+        }
         let view = match (
             &self.view,
             &self.look_at,
@@ -139,17 +139,37 @@ impl CameraArguments {
         };
         self.lens.projected(view)
     }
+
+    /// The cameras of a whole turn in this number of steps, the first one that of [`view`](Self::view). A camera that shows the whole model
+    /// goes around the model about the axis that is up, any other one around the origin about z.
+    pub fn turn(&self, shown: &Shown, steps: u16) -> anyhow::Result<Vec<View>> {
+        match shown.sphere.filter(|_| !self.is_given()) {
+            Some(sphere) => {
+                let name = shown.model.unwrap_or("--object");
+                let up = self.lens.up_of(shown.model);
+                angles(steps)
+                    .map(|angle| self.lens.framed(&sphere, name, up, angle))
+                    .collect()
+            }
+            None => turn(&self.view(shown)?, steps),
+        }
+    }
+}
+
+/// The angles of a whole turn in this number of steps, from 0 on.
+fn angles(steps: u16) -> impl Iterator<Item = Turns> {
+    (0..steps).map(move |step| Turns(((u64::from(step) << 32) / u64::from(steps)) as u32))
+}
+
+/// The cameras of a whole turn about the z axis through the origin in this number of steps, from `first` on.
+pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
+    let turned = |angle| Ok(view::turned(first, angle).map_err(|error| error.in_file("camera"))?);
+    angles(steps).map(turned).collect()
 }
 
 impl LensArguments {
     /// The camera that shows the whole of the model `name`, `turned` about the axis `up`.
-    pub fn framed(
-        &self,
-        sphere: &Sphere,
-        name: &str,
-        up: Axis,
-        turned: Turns,
-    ) -> anyhow::Result<View> {
+    fn framed(&self, sphere: &Sphere, name: &str, up: Axis, turned: Turns) -> anyhow::Result<View> {
         let angle = self.fov.as_deref().map(view::field_of_view).transpose();
         let angle = angle.map_err(|error| error.in_file("--fov"))?;
         let view = sphere.framed(up, turned, angle);
@@ -157,7 +177,7 @@ impl LensArguments {
     }
 
     /// The axis that is up, by the option or by the format of the model, which a note says.
-    pub fn up_of(&self, model: Option<&str>) -> Axis {
+    fn up_of(&self, model: Option<&str>) -> Axis {
         self.up.unwrap_or_else(|| {
             let extension = model.and_then(|model| Path::new(model).extension()?.to_str());
             let is_upright = |known: &str| {

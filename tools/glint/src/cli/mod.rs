@@ -54,7 +54,7 @@ enum Command {
     Model(convert::ModelArguments),
     Convert(convert::ConvertArguments),
     Render(Box<render::RenderArguments>),
-    Orbit(orbit::OrbitArguments),
+    Orbit(Box<orbit::OrbitArguments>),
     Upload(flash::UploadArguments),
     Flash(flash::FlashArguments),
     Console(terminal::ConsoleArguments),

@@ -1,31 +1,48 @@
 //! `glint orbit`.
 
-use super::camera::LensArguments;
-use super::common::{TransferArguments, named, size};
+use super::camera::{CameraArguments, Shown, turn};
+use super::common::{TransferArguments, bad_value, named, size};
 use super::convert::load;
+use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
+use super::render::{nothing, subject};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
 use glint::picture::{Image, write_animation, write_gif};
 use glint::render::{
-    BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
+    BoardRenderer, FieldSubject, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
 };
+use glint::scene::{self, Changes};
+use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::fixed::Turns;
+use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
+use glint_model::{Object, Placement};
+use glint_scene::Scene;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Render an animation in which the camera goes once around a model.
+/// Render an animation in which the camera goes once around a model, a distance field, a model in a field, or a scene.
+///
+/// A camera that shows the whole model goes around the model about the axis that is up. With an option for the camera, in a field and in
+/// a scene it goes around the origin about the z axis, from the camera of the picture that `glint render` draws.
 #[derive(Args)]
 pub struct OrbitArguments {
-    /// A mesh file, `-` for one from standard input, or a generator's name.
-    model: String,
+    /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
+    model: Option<String>,
+    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
+    /// states camera and size, which the options of the camera and --size replace.
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = ["model", "field"])]
+    scene: Option<String>,
+    #[command(flatten)]
+    field: FieldArguments,
+    #[command(flatten)]
+    camera: CameraArguments,
     /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame. `-` is standard output, for a PNG.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
     out: PathBuf,
@@ -35,8 +52,6 @@ pub struct OrbitArguments {
     /// Frames a second of the animation. A GIF has steps of 1/100 s.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
     rate: u16,
-    #[command(flatten)]
-    lens: LensArguments,
     /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
     /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
@@ -44,14 +59,14 @@ pub struct OrbitArguments {
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
-    /// Size of the pictures: 320x180, 640x360 or 1280x720.
-    #[arg(long, value_name = "WxH", default_value = "320x180")]
-    size: String,
-    /// Source of the colours: `flat` (triangles), or `smooth` (vertices, interpolated).
-    #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t)]
+    /// Size of the pictures: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+    /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
+    #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
     shading: Shading,
     /// Draw back faces too.
-    #[arg(long)]
+    #[arg(long, requires = "model")]
     no_cull: bool,
     #[command(flatten)]
     transfer: TransferArguments,
@@ -60,7 +75,12 @@ pub struct OrbitArguments {
 /// The output of `--json`.
 #[derive(Serialize)]
 struct Outcome<'a> {
-    model: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    model: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<&'a str>,
     board: String,
     size: [u32; 2],
     frames: u16,
@@ -71,25 +91,105 @@ struct Outcome<'a> {
 
 impl OrbitArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        let size = size(&self.size)?;
-        let out = Output::open(&self.out, ANIMATION, [&self.model])?;
-        let model = load(&self.model, false)?;
-        let mesh = Mesh::new_checked(&model.mesh)?;
-        let sphere = self.subject(mesh).sphere();
-        let sphere = sphere.context("expected a mesh with vertices")?;
-        let up = self.lens.up_of(Some(&self.model));
-        let views = (0..self.frames).map(|number| {
-            let turned = (u64::from(number) << 32) / u64::from(self.frames);
-            self.lens
-                .framed(&sphere, &self.model, up, Turns(turned as u32))
+        match &self.scene {
+            Some(name) => self.run_scene(&glint_scene::read(name)?),
+            None => self.run_subject(),
+        }
+    }
+
+    fn run_scene(&self, scene: &Scene) -> anyhow::Result<()> {
+        let out = self.open(Some(scene))?;
+        let shown = Shown {
+            sphere: None,
+            model: None,
+            has_mesh: false,
+            has_field: false,
+        };
+        let view = self.camera.is_given().then(|| self.camera.view(&shown));
+        let changes = Changes {
+            view: view.transpose()?,
+            shading: None,
+            size: self.size.as_deref().map(size).transpose()?,
+        };
+        let written = scene::draw(scene, &changes, |frame| {
+            if let Subject::Wireframe(_) = frame.subject {
+                let expected = "a scene with a camera";
+                return Err(bad_value("--scene", expected, "a wireframe program").into());
+            }
+            let views = turn(&frame.view, self.frames)?;
+            self.write(out, frame, &views, Some(scene))
         });
-        let views = views.collect::<anyhow::Result<Vec<_>>>()?;
-        let frames: Vec<Frame> = views
-            .into_iter()
-            .map(|view| Frame::new(self.subject(mesh), view, size))
-            .collect();
-        let drawn = self.draw(&frames)?;
-        if let (Some(frame), Some(first)) = (frames.first(), drawn.first()) {
+        written.map_err(anyhow::Error::from_boxed)?
+    }
+
+    fn run_subject(&self) -> anyhow::Result<()> {
+        let out = self.open(None)?;
+        let size = self.size.as_deref().map(size).transpose()?;
+        let field = self.field.field()?;
+        let appearance = self.field.appearance()?;
+        let field = match &field {
+            Some(field) => Some(FieldSubject {
+                field,
+                appearance: &appearance,
+                stereo: self.field.stereo(self.model.is_some())?,
+                prepass: self.field.prepass(),
+            }),
+            None => None,
+        };
+        let model = self.model.as_deref().map(|name| load(name, false));
+        let model = model.transpose()?;
+        let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
+        let mesh = mesh.transpose()?.map(|mesh| MeshSubject {
+            cull: !self.no_cull,
+            shading: self.shading,
+            ..MeshSubject::new(mesh)
+        });
+        let colour = self.field.mesh_colour()?;
+        let objects = mesh.filter(|_| colour.is_some()).map(|subject| Object {
+            subject,
+            placement: Placement::new(Matrix::IDENTITY),
+            colour,
+        });
+        let subject = subject(mesh, field, objects.as_slice());
+        let subject = subject.ok_or_else(|| nothing("--field or --scene"))?;
+        let views = self.camera.turn(
+            &Shown {
+                sphere: subject.sphere(),
+                model: self.model.as_deref(),
+                has_mesh: self.model.is_some(),
+                has_field: field.is_some(),
+            },
+            self.frames,
+        )?;
+        let first = views.first().context("expected a frame")?;
+        let frame = Frame::in_appearance(subject, *first, size.unwrap_or_default(), &appearance);
+        self.write(out, &frame, &views, None)
+    }
+
+    /// The output, which is none of the inputs.
+    fn open(&self, scene: Option<&Scene>) -> anyhow::Result<Output> {
+        let names = [
+            self.model.as_deref(),
+            self.scene.as_deref(),
+            self.field.file(),
+        ];
+        let names = names.into_iter().flatten();
+        let meshes = scene.into_iter().flat_map(scene::meshes);
+        let files = names.chain(meshes).map(PathBuf::from);
+        let camera = self.camera.file().map(PathBuf::from);
+        Output::open(&self.out, ANIMATION, files.chain(camera))
+    }
+
+    /// Renders a frame from all cameras, and writes the animation.
+    fn write(
+        &self,
+        out: Output,
+        frame: &Frame,
+        views: &[View],
+        scene: Option<&Scene>,
+    ) -> anyhow::Result<()> {
+        let drawn = self.draw(frame, views, scene)?;
+        if let Some(first) = drawn.first() {
             remarks(frame, &first.stats)?.iter().for_each(warn);
         }
         let cycles: Option<Vec<u64>> = drawn.iter().map(|drawn| drawn.stats.cycles).collect();
@@ -107,63 +207,70 @@ impl OrbitArguments {
             false => write_animation(out, &images, self.rate),
         })?;
         let outcome = Outcome {
-            model: &self.model,
+            model: self.model.as_deref(),
+            field: self.field.name(),
+            scene: self.scene.as_deref(),
             board: self.board.to_string(),
-            size: size.pixels(),
+            size: frame.size.pixels(),
             frames: self.frames,
             cycles,
         };
         if self.transfer.json {
             return print_json(&outcome);
         }
+        let shown = outcome.model.or(outcome.field).or(outcome.scene);
         let cycles = cycles.map_or(String::new(), |cycles| format!(", {cycles} cycles each"));
         say(format_args!(
-            "{} frames around {}, {size}, by {}{cycles}",
-            self.frames, self.model, self.board
+            "{} frames around {}, {}, by {}{cycles}",
+            self.frames,
+            shown.unwrap_or_default(),
+            frame.size,
+            self.board
         ))
     }
 
-    fn subject<'m>(&self, mesh: Mesh<'m>) -> Subject<'m> {
-        Subject::Mesh(MeshSubject {
-            cull: !self.no_cull,
-            shading: self.shading,
-            ..MeshSubject::new(mesh)
-        })
-    }
-
-    fn draw(&self, frames: &[Frame]) -> anyhow::Result<Vec<Rendered>> {
+    fn draw(
+        &self,
+        frame: &Frame,
+        views: &[View],
+        scene: Option<&Scene>,
+    ) -> anyhow::Result<Vec<Rendered>> {
         let bar = count_bar("drawing", "frames");
-        bar.set_length(frames.len() as u64);
+        bar.set_length(views.len() as u64);
         let drawn = match &self.board {
-            ModelOrBoard::Model => frames
+            ModelOrBoard::Model => views
                 .iter()
-                .map(|frame| {
-                    let drawn = on_model(frame)?;
+                .map(|&view| {
+                    let drawn = on_model(&Frame { view, ..*frame })?;
                     bar.inc();
                     Ok(drawn)
                 })
                 .collect(),
-            ModelOrBoard::Board(name) => self.draw_on(name, frames, &mut || bar.inc()),
+            ModelOrBoard::Board(name) => self.draw_on(name, frame, views, scene, &mut || bar.inc()),
         };
         bar.finish();
         drawn
     }
 
-    /// Draws frames of one mesh on a board, which gets the mesh once.
+    /// Draws a frame from all cameras on a board, which gets its meshes once.
     fn draw_on(
         &self,
         name: &BoardName,
-        frames: &[Frame],
+        frame: &Frame,
+        views: &[View],
+        scene: Option<&Scene>,
         advance: &mut dyn FnMut(),
     ) -> anyhow::Result<Vec<Rendered>> {
         let mut board = self.transfer.line.board(name)?;
         let route = self.transfer.transfer.unwrap_or(Route::of(name));
-        let mut renderer = BoardRenderer::new(Console::new(&mut *board)).with_backend(self.backend);
+        let mut renderer = BoardRenderer::new(Console::new(&mut *board))
+            .with_backend(self.backend)
+            .with_scene(scene.cloned());
         let mut drawn = Vec::new();
-        for frame in frames {
+        for &view in views {
             let stats = match drawn.is_empty() {
-                true => renderer.show(frame, route, &mut |_, _| {})?,
-                false => renderer.look(&frame.view)?,
+                true => renderer.show(&Frame { view, ..*frame }, route, &mut |_, _| {})?,
+                false => renderer.look(&view)?,
             };
             let image = Image {
                 colour: renderer.colour(frame.size, route, &mut |_, _| {})?,

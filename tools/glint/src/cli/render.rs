@@ -131,13 +131,6 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
-        if self.model.is_none()
-            && self.field.name().is_none()
-            && self.object.is_empty()
-            && self.scene.is_none()
-        {
-            return Err(nothing());
-        }
         let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;
@@ -145,6 +138,7 @@ impl RenderArguments {
                 sphere: None,
                 model: None,
                 has_mesh: false,
+                has_field: false,
             };
             let view = self.camera.is_given().then(|| self.camera.view(&shown));
             let changes = Changes {
@@ -157,9 +151,6 @@ impl RenderArguments {
         }
         let size = size.unwrap_or_default();
         let field = self.field.field()?;
-        if field.is_some() && self.camera.is_orthographic() {
-            return Err(bad_value("--orthographic", "a mesh", "a --field").into());
-        }
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo(self.model.is_some())?;
         let clip = self.clip()?;
@@ -199,20 +190,16 @@ impl RenderArguments {
                 })
             })
             .collect::<Result<Vec<_>, MeshError>>()?;
-        let subject = match (mesh, field) {
-            _ if !objects.is_empty() => Subject::Objects(&objects),
-            (Some(mesh), Some(field)) => Subject::MeshInField(mesh, field),
-            (Some(mesh), None) => match self.wireframe {
-                None => Subject::Mesh(mesh),
-                Some(edges) => Subject::edges(mesh, edges),
-            },
-            (None, Some(field)) => Subject::Field(field),
-            (None, None) => return Err(nothing()),
+        let subject = match (mesh, self.wireframe) {
+            (Some(mesh), Some(edges)) => Some(Subject::edges(mesh, edges)),
+            _ => subject(mesh, field, &objects),
         };
+        let subject = subject.ok_or_else(|| nothing("--field, --object or --scene"))?;
         let shown = Shown {
             sphere: subject.sphere(),
             model: self.model.as_deref(),
             has_mesh: self.model.is_some(),
+            has_field: field.is_some(),
         };
         let view = self.camera.view(&shown)?;
         let frame = Frame::in_appearance(subject, view, size, &appearance);
@@ -399,11 +386,25 @@ impl RenderArguments {
     }
 }
 
-/// The error for a command that has nothing to draw.
-fn nothing() -> anyhow::Error {
-    let expected =
-        "a mesh file or a generator such as teapot, or --field, --object or --scene in its place";
-    bad_value("MODEL", expected, "none").into()
+/// The subject of a frame with objects, with a mesh, with a field or with both; `None` without any.
+pub fn subject<'a>(
+    mesh: Option<MeshSubject<'a>>,
+    field: Option<FieldSubject<'a>>,
+    objects: &'a [Object<'a>],
+) -> Option<Subject<'a>> {
+    match (mesh, field) {
+        _ if !objects.is_empty() => Some(Subject::Objects(objects)),
+        (Some(mesh), Some(field)) => Some(Subject::MeshInField(mesh, field)),
+        (Some(mesh), None) => Some(Subject::Mesh(mesh)),
+        (None, Some(field)) => Some(Subject::Field(field)),
+        (None, None) => None,
+    }
+}
+
+/// The error for a command that has nothing to draw, with the options that stand in place of a model.
+pub fn nothing(options: &str) -> anyhow::Error {
+    let expected = format!("a mesh file or a generator such as teapot, or {options} in its place");
+    bad_value("MODEL", &expected, "none").into()
 }
 
 /// Captures the frame on a board's monitor, scaled back to the frame's own size.

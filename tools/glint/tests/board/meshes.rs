@@ -289,12 +289,13 @@ fn depths_come_over_the_line() {
 fn an_orbit_on_a_board_is_the_models() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
     std::fs::create_dir_all(&folder).unwrap();
-    let orbit = |board: &[&str]| {
+    let orbit = |subject: &[&str], board: &[&str]| {
         let arguments = [
-            "orbit", "gear", "--frames", "6", "--force", "--out", "a.png", "--json",
+            "orbit", "--frames", "6", "--force", "--out", "a.png", "--json",
         ];
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(arguments)
+            .args(subject)
             .args(board)
             .current_dir(&folder)
             .output()
@@ -307,11 +308,19 @@ fn an_orbit_on_a_board_is_the_models() {
         assert_eq!(counts_cycles, !board.is_empty(), "{board:?}: {report}");
         std::fs::read(folder.join("a.png")).unwrap()
     };
-    let expected = orbit(&[]);
-    for more in [&[][..], &["--backend", "cpu"], &["--transfer", "serial"]] {
+    let emulated = ["--board", "emulated"];
+    for (subject, more) in [
+        (&["gear"][..], &[][..]),
+        (&["gear"], &["--backend", "cpu"]),
+        (&["gear"], &["--transfer", "serial"]),
+        (&["gear", "--field", "box:1,1,0.1"], &[]),
+        (&["--field", "menger:2", "--fog", "0.1"], &[]),
+        (&["--scene", "mesh-in-field", "--size", "320x180"], &[]),
+        (&["--scene", "objects", "--size", "320x180"], &[]),
+    ] {
         assert!(
-            orbit(&[&["--board", "emulated"], more].concat()) == expected,
-            "{more:?}"
+            orbit(subject, &[&emulated[..], more].concat()) == orbit(subject, &[]),
+            "{subject:?} {more:?}"
         );
     }
 }

@@ -68,6 +68,98 @@ fn both_forms_show_one_turn() {
     assert_eq!(frames_of_png(&folder.join("a.png")).len(), 4);
 }
 
+/// An animation of a field or a scene begins with the picture of `glint render`, and goes about the z axis.
+#[test]
+fn fields_and_scenes() {
+    let folder = folder("orbit-fields");
+    let lamp = "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 0 70\"\nbackground = \"sky\"\n";
+    std::fs::write(folder.join("lamp.toml"), lamp).unwrap();
+    for (subject, quarter) in [
+        (&["--field", "menger:2", "--material", "clay"][..], None),
+        (
+            &["--field", "cubes:2,0.3", "--fog", "0.2", "--fov", "40"],
+            None,
+        ),
+        (
+            &["--field", "menger:1", "--camera", "4,0,60"],
+            Some("4,90,60"),
+        ),
+        (&["torus-knot", "--field", "box:1,1,0.1"], None),
+        (&["teapot", "--camera", "3,0,40"], Some("3,90,40")),
+        (
+            &["torus-knot", "--material", "jade", "--background", "sky"],
+            None,
+        ),
+        (&["--scene", "lamp.toml"], Some("4,90,70")),
+        (&["--scene", "objects", "--size", "320x180"], None),
+    ] {
+        let frames = [&["orbit", "--frames", "4", "--out", "a.png"], subject].concat();
+        succeed(&folder, &frames);
+        let frames = frames_of_png(&folder.join("a.png"));
+        assert_eq!(frames.len(), 4);
+        // Some subjects have the same picture after a quarter or half a turn.
+        assert!(
+            frames.iter().any(|frame| *frame != frames[0]),
+            "{subject:?}"
+        );
+        succeed(&folder, &[&["render", "--out", "a.png"], subject].concat());
+        assert!(picture(&folder.join("a.png")) == frames[0], "{subject:?}");
+        if let Some(camera) = quarter {
+            let kept = subject.iter().take_while(|word| **word != "--camera");
+            let kept: Vec<&str> = kept.copied().collect();
+            let render = ["render", "--out", "a.png", "--camera", camera];
+            succeed(&folder, &[&render[..], &kept].concat());
+            assert!(picture(&folder.join("a.png")) == frames[1], "{subject:?}");
+        }
+    }
+    let said = succeed(
+        &folder,
+        &[
+            "orbit",
+            "--scene",
+            "lamp.toml",
+            "--frames",
+            "2",
+            "--out",
+            "a.gif",
+            "--json",
+        ],
+    );
+    assert_eq!(
+        said,
+        "{\"scene\":\"lamp.toml\",\"board\":\"model\",\"size\":[320,180],\"frames\":2}\n"
+    );
+    for (arguments, error) in [
+        (
+            &["orbit", "--out", "b.gif"][..],
+            "MODEL: expected a mesh file or a generator such as teapot, or --field or --scene in its place, found none",
+        ),
+        (
+            &["orbit", "--scene", "wireframe", "--out", "b.gif"],
+            "--scene: expected a scene with a camera, found a wireframe program",
+        ),
+        (
+            &[
+                "orbit",
+                "--field",
+                "menger:1",
+                "--orthographic",
+                "2",
+                "--out",
+                "b.gif",
+            ],
+            "--orthographic: expected a mesh, found a --field",
+        ),
+        (
+            &["orbit", "cube", "--fog", "1", "--out", "b.gif"],
+            "--fog: expected a --field, found a mesh",
+        ),
+    ] {
+        assert_eq!(refused(&folder, arguments), format!("error: {error}"));
+    }
+    assert!(!folder.join("b.gif").exists());
+}
+
 #[test]
 fn notes_warnings_and_errors() {
     let folder = folder("orbit-errors");
