@@ -241,6 +241,13 @@ impl<S: Simulation> SimulatedBoard<S> {
         self.meter.clone()
     }
 
+    /// Runs the board, and counts its cycles for other threads.
+    fn advance(&mut self, cycles: u64) {
+        self.board.run(cycles);
+        let cycles = self.board.cycles();
+        self.meter.cycles.store(cycles, Ordering::Relaxed);
+    }
+
     /// The underlying board, for access to its pins, its monitor and its cycle counter.
     pub fn inner(&mut self) -> &mut S {
         &mut self.board
@@ -310,7 +317,7 @@ pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, BoardError> {
 
 impl<S: Simulation + Send + 'static> Uart for SimulatedBoard<S> {
     fn run(&mut self, cycles: u64) {
-        self.board.run(cycles);
+        self.advance(cycles);
     }
 
     fn cycles(&self) -> u64 {
@@ -346,9 +353,7 @@ impl<S: Simulation> Board for SimulatedBoard<S> {
         let end = self.board.cycles().saturating_add(limit);
         self.board.uart_read(bytes);
         while bytes.len() == before && self.board.cycles() < end {
-            self.board.run(SLICE);
-            let cycles = self.board.cycles();
-            self.meter.cycles.store(cycles, Ordering::Relaxed);
+            self.advance(SLICE);
             self.board.uart_read(bytes);
         }
         Ok(())

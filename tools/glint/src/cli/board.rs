@@ -3,6 +3,7 @@
 use super::common::{LineArguments, bad_value};
 use super::messages::{say, warn};
 use super::output::Output;
+use super::progress::{show_simulation, spinner};
 use super::terminal::talk;
 use anyhow::Context;
 use clap::Args;
@@ -16,9 +17,12 @@ use std::os::unix::fs::symlink;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::channel;
+use std::sync::mpsc::{Sender, channel};
 use virtual_board::pty::{Pty, Uart};
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
+
+/// Ends of the prompts of firmware and BIOS.
+const PROMPTS: [&[u8]; 2] = [b"glint> ", b"litex\x1b[0m> "];
 
 /// Run a board that stays, for programs or in a web page: print its serial port or the page's address, and run until Ctrl-C.
 ///
@@ -116,17 +120,23 @@ impl BoardArguments {
             }
             board.inner().plug_flash(Flash::new(image));
         }
+        show_simulation(board.meter());
         Ok(board)
     }
 
     fn stay<B: Uart>(&self, start: impl FnOnce() -> anyhow::Result<B>) -> anyhow::Result<()> {
         let ready = self.ready()?;
-        let (end, ended) = channel();
+        let (report, events) = channel();
+        let end = report.clone();
         ctrlc::set_handler(move || {
             // Without a receiver the program ends already.
-            let _ = end.send(());
+            let _ = end.send(Event::End);
         })?;
-        let pty = Pty::start(start()?)?;
+        let pty = Pty::start(Watched {
+            board: start()?,
+            heard: Vec::new(),
+            report: Some(report),
+        })?;
         let port = pty.path();
         let link = self.pty.as_deref().map(|link| Link::new(link, port));
         let _link = link.transpose()?;
@@ -138,7 +148,75 @@ impl BoardArguments {
             let port = port.to_string_lossy();
             return talk(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
         }
-        Ok(ended.recv()?)
+        // A board without the BIOS has started already.
+        let bios = self.bios || self.flash.is_some();
+        let mut starting = bios.then(|| spinner("the board starts"));
+        while let Event::Started = events.recv()? {
+            starting = None;
+        }
+        drop(starting);
+        Ok(())
+    }
+}
+
+/// What `glint board` waits for.
+enum Event {
+    /// The first prompt.
+    Started,
+    /// Ctrl-C.
+    End,
+}
+
+/// A board that reports its first prompt.
+struct Watched<B> {
+    board: B,
+    /// The end of the output, in which a prompt may have begun.
+    heard: Vec<u8>,
+    /// Taken at the first prompt.
+    report: Option<Sender<Event>>,
+}
+
+impl<B: Uart> Uart for Watched<B> {
+    fn run(&mut self, cycles: u64) {
+        self.board.run(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.board.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.board.clock_hz()
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.board.uart_queued()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.board.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        let before = output.len();
+        self.board.uart_read(output);
+        if self.report.is_none() {
+            return;
+        }
+        self.heard.extend(output.iter().skip(before));
+        let is_said = |prompt: &&[u8]| {
+            let mut parts = self.heard.windows(prompt.len());
+            parts.any(|part| part == *prompt)
+        };
+        if PROMPTS.iter().any(is_said)
+            && let Some(report) = self.report.take()
+        {
+            // Without a receiver the program ends already.
+            let _ = report.send(Event::Started);
+        }
+        let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);
+        let surplus = self.heard.len().saturating_sub(longest);
+        self.heard.drain(..surplus);
     }
 }
 

@@ -2,11 +2,12 @@
 
 use crate::common::{begin_upload, mesh};
 use crate::terminal::Terminal;
-use glint::board::{Board, SerialBoard};
+use glint::board::{Board, SerialBoard, SimulatedBoard};
 use glint::console::Console;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use virtual_board::pty::Pty;
 
 /// Seconds without output after which litex_term counts as failed.
 const PATIENCE: u32 = 120;
@@ -182,4 +183,38 @@ fn a_board_starts_from_an_image() {
     // Whatever scene the demo shows by now.
     let scenes = stay.succeed(&["console", "port", "--send", "scene"], "");
     assert!(scenes.contains("scene start flash\n"), "{scenes}");
+}
+
+/// The step `the board starts` ends at the prompt of the BIOS, or of the firmware from the flash, and counts the board's cycles.
+#[test]
+fn the_start_with_the_bios_has_progress() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-progress");
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let firmware = root.join("target/firmware/glint.bin");
+    let (image, link) = (path("image.bin"), path("port"));
+    let made = Command::new(env!("CARGO_BIN_EXE_glint"))
+        .args(["image", "make", "--firmware", firmware.to_str().unwrap()])
+        .args(["--force", "--out", &image])
+        .status();
+    assert!(made.unwrap().success());
+    let program = env!("CARGO_BIN_EXE_glint");
+    for start in [&["--bios"][..], &["--flash", &image]] {
+        let board = ["-c", "exec \"$0\" board --verbose --pty \"$@\" 2>&1"];
+        let arguments = [&board[..], &[program, &link], start].concat();
+        let mut terminal = Terminal::start(Path::new("sh"), &arguments);
+        let mut seconds = 0;
+        terminal.wait_for("the board starts: ", &mut || {
+            seconds += 1;
+            seconds > PATIENCE
+        });
+    }
+    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let meter = board.meter();
+    board.read(&mut Vec::new(), 1).unwrap();
+    assert_eq!(meter.cycles(), board.inner().cycles());
+    let port = Pty::start(board).unwrap();
+    let counted = port.with(move |board| (meter.cycles(), board.inner().cycles()));
+    assert_eq!(counted.0, counted.1);
 }
