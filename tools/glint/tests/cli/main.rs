@@ -11,6 +11,7 @@ mod meshes;
 mod orbits;
 mod output;
 mod package;
+mod scenes;
 mod settings;
 mod standard_input;
 mod tolerance;

@@ -1,0 +1,65 @@
+//! The scene that docs/scenes.md writes from nothing: each command of the page works on its file as it stands there.
+
+use crate::common::{folder, json, picture, succeed};
+use std::path::Path;
+
+/// The first code block of the page in a language.
+fn block<'p>(page: &'p str, language: &str) -> &'p str {
+    let (_, rest) = page.split_once(&format!("```{language}\n")).unwrap();
+    rest.split_once("```").unwrap().0
+}
+
+#[test]
+fn a_scene_from_nothing() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let page = std::fs::read_to_string(root.join("docs/scenes.md")).unwrap();
+    let folder = folder("scene-from-nothing");
+    std::fs::write(folder.join("lamp.toml"), block(&page, "toml")).unwrap();
+    // The commands of the table, in the first column, whose other column says what they do.
+    let commands: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| `glint "))
+        .map(|line| line.split_once('`').unwrap().0)
+        .collect();
+    assert_eq!(commands.len(), 4, "{commands:?}");
+    let words = |start: &str| -> Vec<&str> {
+        let command = commands.iter().find(|command| command.starts_with(start));
+        command.unwrap().split(' ').collect()
+    };
+    assert_eq!(
+        succeed_as_is(&folder, &words("scene check")),
+        "lamp.toml: valid\n"
+    );
+    let shown = succeed_as_is(&folder, &words("scene show"));
+    for expected in [
+        "field union:box:2,2,0.1+sphere:0.6",
+        "material jade",
+        "--blocks scanout raymarch --fields box,spheres --lanes 2",
+    ] {
+        assert!(shown.contains(expected), "{expected}: {shown}");
+    }
+    assert!(succeed_as_is(&folder, &words("scene list")).contains("menger"));
+    let render = [words("render"), vec!["--stats", "lamp.json"]].concat();
+    succeed(&folder, &render);
+    // The sphere above the floor in the middle, the sky in the upper corners.
+    let pixels = picture(&folder.join("lamp.png"));
+    let pixel = |x: usize, y: usize| &pixels[3 * (640 * y + x)..][..3];
+    assert_eq!(pixels.len(), 3 * 640 * 360);
+    let [red, green, blue] = pixel(320, 150) else {
+        unreachable!()
+    };
+    assert!(green > red && green > blue, "jade {:?}", pixel(320, 150));
+    let [red, _, blue] = pixel(2, 2) else {
+        unreachable!()
+    };
+    assert!(blue > red, "sky {:?}", pixel(2, 2));
+    assert!(json(&folder.join("lamp.json")).is_object());
+}
+
+/// Runs a command that has no option `--force`.
+fn succeed_as_is(folder: &Path, arguments: &[&str]) -> String {
+    let output = crate::common::glint(folder, arguments);
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments:?}: {error}");
+    String::from_utf8(output.stdout).unwrap()
+}
