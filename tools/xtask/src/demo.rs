@@ -28,17 +28,21 @@ pub fn demo(arguments: &[String]) -> Result<()> {
 
 /// Builds everything, makes the measurements of the report's page `name`, and writes the page. For the page `raymarch` it also
 /// builds the SoC whose raymarcher evaluates the field four times a clock, and the raymarcher without a SoC, for the page `gouraud` the
-/// rasterizer. With `pages` as name it writes all pages from the tables of earlier measurements, with `stiff` it runs the catalogue of stiff
-/// cases, and with `--help` as an argument it lists the options of the page. For these it builds only the report program.
+/// rasterizer. With `pages` as name it writes all pages from the tables of earlier measurements, with `stiff` it needs the
+/// firmware alone, and with `--help` as an argument it lists the options of the page. For pages and help it builds only the report program.
 ///
 /// # Errors
 /// A build or a measurement fails.
 pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     let asks_for_help = || arguments.iter().any(|argument| argument == "--help");
-    if matches!(name, "pages" | "stiff") || asks_for_help() {
+    if name == "pages" || asks_for_help() {
         return tool("glint-reference", "report", name, arguments);
     }
     bootstrap::bootstrap()?;
+    if name == "stiff" {
+        firmware::build(Board::Virtual, &[])?;
+        return tool("glint-reference", "report", name, arguments);
+    }
     gateware::build(Board::Virtual)?;
     if name == "raymarch" {
         let sponge = "sponge";

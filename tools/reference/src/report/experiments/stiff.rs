@@ -37,7 +37,7 @@ pub struct Row {
 /// Runs all cases, or those whose name or subject contains `only`.
 ///
 /// # Errors
-/// The catalogue cannot be read, a case has an unknown kind, or an input of another form than its kind has.
+/// The catalogue cannot be read, or a case has an unknown kind.
 pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
     let subjects = read(&workspace::path("tools/reference/stiff"))?;
     let kinds = kinds::all().into_iter().map(|kind| (kind.name, kind));
@@ -57,9 +57,11 @@ pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
 
 fn run(subject: &str, case: &Case, kind: &Kind) -> Result<Row> {
     let expected = case.expected()?;
-    // A panic of one case must not hide the others.
+    // A case that cannot be run, or panics, must not hide the others.
     let outcome = match catch_unwind(AssertUnwindSafe(|| kind.run(case.input.clone()))) {
-        Ok(outcome) => outcome?,
+        Ok(outcome) => {
+            outcome.unwrap_or_else(|error| Outcome::exact(format!("cannot be run: {error:#}")))
+        }
         Err(_) => Outcome::exact("panicked"),
     };
     Ok(Row {

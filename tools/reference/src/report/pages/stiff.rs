@@ -5,8 +5,6 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 use super::template::{fill, write};
-use crate::report::experiments::gesture::Stiff as HandCase;
-use crate::report::experiments::imu::stiff::StiffCase as MotionCase;
 use crate::report::experiments::stiff::Row;
 use crate::report::table::{Table, read_csv};
 
@@ -18,15 +16,11 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     let rows: Vec<Row> = read_csv(&folder.join("stiff.csv"))?;
     let json = serde_json::to_string_pretty(&rows).context("stiff.json")?;
     write(&(json + "\n"), &folder.join("stiff.json"))?;
-    let motions: Vec<MotionCase> = read_csv(&folder.join("imu-stiff.csv"))?;
-    let hands: Vec<HandCase> = read_csv(&folder.join("gesture-stiff.csv"))?;
     let page = fill(
         include_str!("stiff.md"),
         &[
             ("count", rows.len().to_string()),
             ("cases", sections(&rows)),
-            ("motions", motions.len().to_string()),
-            ("hands", hands.len().to_string()),
         ],
     )?;
     write(&page, &folder.join("stiff.md"))
