@@ -1,7 +1,7 @@
 //! Frames of scene files, as the console commands of the scene make them on a board.
 
 use crate::convert::Options;
-use crate::error::InputError;
+use crate::error::{FormatError, InputError};
 use crate::model;
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
@@ -20,15 +20,16 @@ use glint_model::{
     Clip, FieldSubject, Frame, MeshOptions, Object, Placement, Subject, WireframeSubject,
 };
 use glint_scene::Scene;
+use std::fmt::Display;
 
-/// Reason why a scene has no frame.
-pub type Error = Box<dyn std::error::Error + Send + Sync>;
+/// The error for a scene that no board shows, for this reason.
+fn refuse(reason: impl Display) -> FormatError {
+    FormatError::whole("a scene that boards can show", reason.to_string())
+}
 
 /// What a frame of a scene has in place of what the scene states.
 #[derive(Clone, Copy, Default)]
 pub struct Changes {
-    /// Camera.
-    pub view: Option<View>,
     /// Shading of meshes.
     pub shading: Option<Shading>,
     /// Size of the picture.
@@ -72,7 +73,7 @@ struct State<'s> {
 }
 
 impl<'s> State<'s> {
-    fn of(scene: &'s Scene) -> Result<Self, Error> {
+    fn of(scene: &'s Scene) -> Result<Self, FormatError> {
         let degrees = |degrees| Turns::from_degrees(Q32_32::const_from_int(degrees));
         let mut state = Self {
             model: None,
@@ -84,7 +85,7 @@ impl<'s> State<'s> {
             prepass: false,
             edges: None,
             // Every scene states its camera; this one has the default field of view and near plane.
-            view: View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?,
+            view: View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65)).map_err(refuse)?,
             size: Size::default(),
             options: MeshOptions::default(),
         };
@@ -94,7 +95,7 @@ impl<'s> State<'s> {
         Ok(state)
     }
 
-    fn apply(&mut self, command: Command<'s>) -> Result<(), Error> {
+    fn apply(&mut self, command: Command<'s>) -> Result<(), FormatError> {
         let appearance = &mut self.appearance;
         let lens = self.view;
         match command {
@@ -109,12 +110,17 @@ impl<'s> State<'s> {
             Command::Edges { edges } => self.edges = edges.flatten(),
             Command::Size { size } => self.size = size,
             Command::Camera { r, theta, phi } => {
-                self.view = View::spherical(r, theta, phi)?.with_lens_of(&lens);
+                let view = View::spherical(r, theta, phi).map_err(refuse)?;
+                self.view = view.with_lens_of(&lens);
             }
             Command::LookAt { view } => self.view = view.with_lens_of(&lens),
             Command::View { view } => self.view = view.unwrap_or(lens),
-            Command::FieldOfView { angle } => self.view = lens.with_field_of_view(angle)?,
-            Command::Orthographic { width } => self.view = lens.with_width(width)?,
+            Command::FieldOfView { angle } => {
+                self.view = lens.with_field_of_view(angle).map_err(refuse)?
+            }
+            Command::Orthographic { width } => {
+                self.view = lens.with_width(width).map_err(refuse)?
+            }
             Command::Cull { on } => self.options.cull = on,
             Command::Clip { far } => {
                 self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
@@ -127,7 +133,7 @@ impl<'s> State<'s> {
             Command::Light { light } => match light.flatten() {
                 Some(light) => {
                     let added = appearance.lights.push(light);
-                    added.map_err(|_| format!("light: expected at most {MAX_LIGHTS} lights"))?;
+                    added.map_err(|_| refuse(format_args!("more than {MAX_LIGHTS} lights")))?;
                 }
                 None => appearance.lights.clear(),
             },
@@ -161,13 +167,14 @@ pub fn meshes(scene: &Scene) -> Vec<&str> {
 /// Calls `draw` with the frame of a scene, with `changes`.
 ///
 /// # Errors
-/// A mesh cannot be read, or the camera is out of range.
+/// A mesh cannot be read, or a setting is out of range.
 pub fn draw<T>(
     scene: &Scene,
     changes: &Changes,
     draw: impl FnOnce(&Frame) -> T,
-) -> Result<T, Error> {
-    let mut state = State::of(scene)?;
+) -> Result<T, InputError> {
+    let in_scene = |error: FormatError| error.in_file(scene.name());
+    let mut state = State::of(scene).map_err(in_scene)?;
     state.options.shading = changes.shading.unwrap_or(state.options.shading);
     let options = state.options;
     let names = meshes(scene);
@@ -177,7 +184,8 @@ pub fn draw<T>(
         let known = names.iter().position(|known| *known == name);
         let bytes = known.and_then(|known| meshes.get(known));
         let bytes = bytes.map_or(&[][..], Vec::as_slice);
-        Ok::<_, Error>(options.subject(Mesh::new_checked(bytes)?))
+        let mesh = Mesh::new_checked(bytes).map_err(|error| in_scene(refuse(error)))?;
+        Ok::<_, InputError>(options.subject(mesh))
     };
     let objects = state.objects.iter().map(|(name, place)| {
         Ok(Object {
@@ -186,7 +194,7 @@ pub fn draw<T>(
             colour: place.colour,
         })
     });
-    let objects = objects.collect::<Result<Vec<_>, Error>>()?;
+    let objects = objects.collect::<Result<Vec<_>, InputError>>()?;
     let field = state.field.as_ref().map(|field| FieldSubject {
         field,
         appearance: &state.appearance,
@@ -196,7 +204,8 @@ pub fn draw<T>(
     let model = state.model.map(mesh).transpose()?;
     let subject = match (model, field, state.edges) {
         _ if state.program => Subject::Wireframe(WireframeSubject {
-            program: Program::new_checked(CUBE.as_flattened())?,
+            program: Program::new_checked(CUBE.as_flattened())
+                .map_err(|error| in_scene(refuse(error)))?,
             pose: Motion::default().pose(),
         }),
         (None, None, _) => Subject::Objects(&objects),
@@ -205,14 +214,10 @@ pub fn draw<T>(
         (Some(mesh), None, Some(edges)) => Subject::edges(mesh, edges),
         (Some(mesh), None, None) => Subject::Mesh(mesh),
     };
-    let (view, size) = (
-        changes.view.unwrap_or(state.view),
-        changes.size.unwrap_or(state.size),
-    );
     Ok(draw(&Frame::in_appearance(
         subject,
-        view,
-        size,
+        state.view,
+        changes.size.unwrap_or(state.size),
         &state.appearance,
     )))
 }

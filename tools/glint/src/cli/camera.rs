@@ -78,7 +78,7 @@ pub struct Shown<'a> {
 
 impl CameraArguments {
     /// Whether a camera is given, and not only its lens.
-    pub const fn is_given(&self) -> bool {
+    const fn is_given(&self) -> bool {
         self.camera.is_some()
             || self.look_at.is_some()
             || self.look.is_some()
@@ -131,13 +131,24 @@ impl CameraArguments {
                 view::spherical(camera).map_err(|error| error.in_file("--camera"))?
             }
         };
-        let view = match &self.lens.fov {
-            Some(angle) => {
-                view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
-            }
-            None => view,
+        self.lens.applied(view)
+    }
+
+    /// The camera of a picture of a scene, whose own camera is `view`. The options of the lens apply to that camera too.
+    pub fn of_scene(&self, view: View) -> anyhow::Result<View> {
+        if self.lens.up.is_some() {
+            return Err(bad_value("--up", "a model", "a --scene").into());
+        }
+        let shown = Shown {
+            sphere: None,
+            model: None,
+            has_mesh: false,
+            has_field: false,
         };
-        self.lens.projected(view)
+        match self.is_given() {
+            true => self.view(&shown),
+            false => self.lens.applied(view),
+        }
     }
 
     /// The cameras of a whole turn in this number of steps, the first one that of [`view`](Self::view). A camera that shows the whole model
@@ -196,6 +207,17 @@ impl LensArguments {
                 None => Axis::Z,
             }
         })
+    }
+
+    /// The camera with the lens of the options.
+    fn applied(&self, view: View) -> anyhow::Result<View> {
+        let view = match &self.fov {
+            Some(angle) => {
+                view::with_field_of_view(view, angle).map_err(|error| error.in_file("--fov"))?
+            }
+            None => view,
+        };
+        self.projected(view)
     }
 
     /// The camera with the zoom or the orthographic projection of the options.

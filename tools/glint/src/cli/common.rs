@@ -12,6 +12,21 @@ use glint::transfer::Route;
 use glint_core::picture::Size;
 use std::path::PathBuf;
 
+/// Arguments that state what a scene states, so that they are refused beside one.
+pub const STATED: [&str; 11] = [
+    "model",
+    "field",
+    "stereo",
+    "material",
+    "light",
+    "ambient",
+    "background",
+    "fog",
+    "occlusion",
+    "undecided",
+    "prepass",
+];
+
 /// The speed of a serial port.
 #[derive(clap::Args)]
 pub struct Baud {

@@ -328,10 +328,8 @@ fn show_scene(
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(SIZE),
-        ..Changes::default()
     };
-    let expected = scene::draw(&scene, &changes, render::on_model);
-    let expected = expected.map_err(anyhow::Error::from_boxed)??;
+    let expected = scene::draw(&scene, &changes, render::on_model)??;
     anyhow::ensure!(
         stats.backend.as_deref() == Some("gateware") && image.colour == expected.image.colour,
         "scene {name}: the picture differs from the model's, or was drawn by the soft core"

@@ -1,7 +1,7 @@
 //! `glint orbit`.
 
 use super::camera::{CameraArguments, Shown, turn};
-use super::common::{TransferArguments, bad_value, named, size};
+use super::common::{STATED, TransferArguments, bad_value, named, size};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -37,7 +37,7 @@ pub struct OrbitArguments {
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
     /// states camera and size, which the options of the camera and --size replace.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = ["model", "field"])]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
     scene: Option<String>,
     #[command(flatten)]
     field: FieldArguments,
@@ -99,27 +99,18 @@ impl OrbitArguments {
 
     fn run_scene(&self, scene: &Scene) -> anyhow::Result<()> {
         let out = self.open(Some(scene))?;
-        let shown = Shown {
-            sphere: None,
-            model: None,
-            has_mesh: false,
-            has_field: false,
-        };
-        let view = self.camera.is_given().then(|| self.camera.view(&shown));
         let changes = Changes {
-            view: view.transpose()?,
-            shading: None,
             size: self.size.as_deref().map(size).transpose()?,
+            ..Changes::default()
         };
-        let written = scene::draw(scene, &changes, |frame| {
+        scene::draw(scene, &changes, |frame| {
             if let Subject::Wireframe(_) = frame.subject {
                 let expected = "a scene with a camera";
                 return Err(bad_value("--scene", expected, "a wireframe program").into());
             }
-            let views = turn(&frame.view, self.frames)?;
+            let views = turn(&self.camera.of_scene(frame.view)?, self.frames)?;
             self.write(out, frame, &views, Some(scene))
-        });
-        written.map_err(anyhow::Error::from_boxed)?
+        })?
     }
 
     fn run_subject(&self) -> anyhow::Result<()> {

@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{TransferArguments, bad_value, named, size};
+use super::common::{STATED, TransferArguments, bad_value, named, size};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -37,11 +37,11 @@ pub struct RenderArguments {
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
     /// states camera and size, which the options of the camera and --size replace.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = ["model", "field", "object"])]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
     scene: Option<String>,
     /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
     /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
-    #[arg(long, value_name = "MODEL PLACE", conflicts_with = "field")]
+    #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"])]
     object: Vec<String>,
     #[command(flatten)]
     field: FieldArguments,
@@ -134,20 +134,14 @@ impl RenderArguments {
         let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;
-            let shown = Shown {
-                sphere: None,
-                model: None,
-                has_mesh: false,
-                has_field: false,
-            };
-            let view = self.camera.is_given().then(|| self.camera.view(&shown));
             let changes = Changes {
-                view: view.transpose()?,
-                shading: None,
                 size,
+                ..Changes::default()
             };
-            let drawn = scene::draw(&scene, &changes, |frame| self.write(frame, Some(&scene)));
-            return drawn.map_err(anyhow::Error::from_boxed)?;
+            return scene::draw(&scene, &changes, |frame| {
+                let view = self.camera.of_scene(frame.view)?;
+                self.write(&Frame { view, ..*frame }, Some(&scene))
+            })?;
         }
         let size = size.unwrap_or_default();
         let field = self.field.field()?;

@@ -47,11 +47,8 @@ impl SceneCommand {
 fn check(name: &str) -> anyhow::Result<()> {
     let constants = scene::draw(&read(name)?, &Changes::default(), |frame| {
         frame.constants().map(|_| ())
-    });
-    let constants = constants.map_err(anyhow::Error::from_boxed);
-    constants
-        .with_context(|| name.to_owned())?
-        .with_context(|| name.to_owned())?;
+    })?;
+    constants.with_context(|| name.to_owned())?;
     say(format_args!("{name}: valid"))
 }
 

@@ -11,6 +11,7 @@ mod meshes;
 mod orbits;
 mod output;
 mod package;
+mod scene_options;
 mod scenes;
 mod settings;
 mod standard_input;

@@ -1,0 +1,89 @@
+//! Scenes with options beside them, and scenes that cannot be shown.
+
+use crate::common::{folder, glint, picture, refused, succeed};
+
+const LAMP: &str =
+    "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 30 70\"\n";
+
+/// A scene that no board shows is bad input of every command, with its name and the reason.
+#[test]
+fn scenes_that_cannot_be_shown() {
+    let folder = folder("scenes-refused");
+    let near = LAMP.replace("4 30 70", "1 30 70");
+    let missing = "title = \"A\"\nmodel = \"missing.obj\"\ncamera = \"3 30 60\"\n";
+    for (name, contents, error) in [
+        (
+            "near.toml",
+            near.as_str(),
+            "near: expected a scene that boards can show, found radius 1: expected 2 to 5",
+        ),
+        (
+            "missing.toml",
+            missing,
+            "missing.obj: expected a file to read, found No such file or directory (os error 2)",
+        ),
+    ] {
+        std::fs::write(folder.join(name), contents).unwrap();
+        for arguments in [
+            &["render", "--scene", name, "--out", "a.png"][..],
+            &["orbit", "--scene", name, "--out", "a.png"],
+            &["scene", "check", name],
+        ] {
+            assert_eq!(refused(&folder, arguments), format!("error: {error}"));
+        }
+    }
+    assert!(!folder.join("a.png").exists());
+}
+
+/// The options of the lens apply to the camera of a scene.
+#[test]
+fn the_lens_of_a_scene() {
+    let folder = folder("scene-lens");
+    std::fs::write(folder.join("wide.toml"), LAMP).unwrap();
+    std::fs::write(folder.join("narrow.toml"), format!("{LAMP}fov = 30\n")).unwrap();
+    let render = |arguments: &[&str]| {
+        let render = ["render", "--out", "a.png", "--scene"];
+        succeed(&folder, &[&render, arguments].concat());
+        picture(&folder.join("a.png"))
+    };
+    let narrow = render(&["narrow.toml"]);
+    assert!(narrow != render(&["wide.toml"]));
+    assert!(narrow == render(&["wide.toml", "--fov", "30"]));
+    assert!(narrow != render(&["narrow.toml", "--zoom", "2"]));
+    let camera = ["narrow.toml", "--camera", "4,30,70", "--fov", "30"];
+    assert!(narrow == render(&camera));
+}
+
+/// What a scene states is refused as an option beside it, rather than ignored.
+#[test]
+fn options_that_a_scene_states() {
+    let folder = folder("scene-options");
+    for option in [
+        "cube",
+        "--field box:1,1,1",
+        "--stereo 0.05,3",
+        "--material jade",
+        "--light 0,0,1",
+        "--ambient 404040",
+        "--background sky",
+        "--fog 1",
+        "--occlusion",
+        "--undecided",
+        "--prepass",
+    ] {
+        for command in ["render", "orbit"] {
+            let scene = [command, "--scene", "menger", "--out", "a.png"];
+            let option: Vec<&str> = option.split(' ').collect();
+            let output = glint(&folder, &[&scene[..], &option].concat());
+            let error = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(2), "{option:?}: {error}");
+            assert!(error.contains("cannot be used with"), "{error}");
+        }
+    }
+    let up = ["render", "--scene", "menger", "--up", "y", "--out", "a.png"];
+    assert_eq!(
+        refused(&folder, &up),
+        "error: --up: expected a model, found a --scene"
+    );
+    assert!(!folder.join("a.png").exists());
+}
