@@ -1,14 +1,17 @@
-//! Directions along each other, and the ends of the range of fields of view.
+//! Cameras: directions along each other, poles, fields of view, long orbits, and whole meshes in view.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use glint_core::camera::{View, ViewError};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::framing::Sphere;
+use glint_core::matrix::{Axis, Matrix};
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
-use glint_vectors::Camera;
-use glint_vectors::math::world;
+use glint_vectors::math::{dot, world};
+use glint_vectors::{Camera, Model};
 use serde::Deserialize;
 
+use super::frames::{mesh, number};
 use crate::stiff::kind::Kind;
 use crate::stiff::outcome::Outcome;
 
@@ -25,6 +28,30 @@ pub fn kinds() -> Vec<Kind> {
             }))
         }),
         Kind::new("camera-field-of-view-error", field_of_view_error),
+        Kind::new("camera-spherical", |Spherical { r, theta, phi }| {
+            let [theta, phi] = [theta, phi].map(|x| Turns::from_degrees(Q32_32::from_num(x)));
+            let view = View::spherical(Q32_32::from_num(r), theta, phi);
+            Ok(Outcome::of(view, |view| {
+                let [x, y, z] = view.eye();
+                format!("eye ({x}, {y}, {z}), {}", sides(&view))
+            }))
+        }),
+        Kind::new("camera-look-error", |angles: [f64; 3]| {
+            let [yaw, pitch, roll] = angles.map(|x| Turns::from_degrees(Q32_32::from_num(x)));
+            let view = View::look([Q32_32::ZERO; 3], yaw, pitch, roll)?;
+            Ok(Outcome::Error(distortion(&view), "of 2^-23"))
+        }),
+        Kind::new("camera-orbit-error", |frames: u32| {
+            let view = |frame: u32| {
+                let part = (u64::from(frame) << 32) / u64::from(frames);
+                View::spherical(Q32_32::from_num(3), Turns(part as u32), Turns(1 << 29))
+            };
+            let worst = (0..frames).try_fold(0.0, |worst: f64, frame| {
+                Ok::<_, ViewError>(worst.max(distortion(&view(frame)?)))
+            })?;
+            Ok(Outcome::Error(worst, "of 2^-23"))
+        }),
+        Kind::new("camera-fit", fit),
         Kind::new("camera-width", |width: f64| {
             let view = above().with_width(U8_28::from_num(width));
             Ok(Outcome::of(view, |view| {
@@ -44,10 +71,60 @@ struct Towards {
 fn towards(Towards { gaze, up }: Towards) -> Result<Outcome> {
     let number = |v: [f64; 3]| v.map(Q32_32::from_num);
     let view = View::towards(number([0.0, 0.0, 2.0]), number(gaze), number(up));
+    Ok(Outcome::of(view, |view| sides(&view)))
+}
+
+/// The directions of the sides of the screen.
+fn sides(view: &View) -> String {
+    let [ux, uy, uz] = view.u();
+    let [vx, vy, vz] = view.v();
+    format!("right ({ux}, {uy}, {uz}), down ({vx}, {vy}, {vz})")
+}
+
+/// The largest difference of a length of the basis from 1, or of a scalar product from 0, in units of 2^-23.
+fn distortion(view: &View) -> f64 {
+    let basis = [view.u(), view.v(), view.n()].map(|row| row.map(|x| x.to_num::<f64>()));
+    let mut worst: f64 = 0.0;
+    for i in 0..3 {
+        worst = worst.max((dot(basis[i], basis[i]).sqrt() - 1.0).abs());
+        worst = worst.max(dot(basis[i], basis[(i + 1) % 3]).abs());
+    }
+    worst * 2f64.powi(23)
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Spherical {
+    r: f64,
+    theta: f64,
+    phi: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Fitted {
+    /// Half the side of a cube in 2^-14, and its place in world units.
+    half: i16,
+    scale: f64,
+    place: [f64; 3],
+    /// Horizontal field of view in degrees.
+    angle: Option<f64>,
+}
+
+/// The camera that shows a whole cube.
+fn fit(input: Fitted) -> Result<Outcome> {
+    let bytes = Model::cube(input.half).encoded();
+    let place = Matrix::translation(input.place.map(number))?;
+    let matrix = Matrix::scale([number(input.scale); 3])?.then(&place)?;
+    let meshes = std::iter::once((mesh(&bytes), matrix));
+    let sphere = Sphere::around(meshes).context("a mesh")?;
+    let angle = input
+        .angle
+        .map(|x| Turns::from_degrees(Q32_32::from_num(x)));
+    let view = sphere.framed(Axis::Z, Turns(0), angle);
     Ok(Outcome::of(view, |view| {
-        let [ux, uy, uz] = view.u();
-        let [vx, vy, vz] = view.v();
-        format!("right ({ux}, {uy}, {uz}), down ({vx}, {vy}, {vz})")
+        let [x, y, z] = view.eye();
+        format!("eye ({x}, {y}, {z}), half width {}", view.half_width())
     }))
 }
 

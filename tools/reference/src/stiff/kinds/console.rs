@@ -2,12 +2,13 @@
 
 use std::sync::LazyLock;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use glint::board::{EmulatedBoard, SimulatedBoard, built_firmware};
 use glint::console::{Console, ConsoleError};
 use glint::transfer::{TransferError, upload};
 use glint_vectors::Model;
 use serde::Deserialize;
+use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
 use crate::stiff::kind::Kind;
 use crate::stiff::outcome::Outcome;
@@ -49,29 +50,107 @@ fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Resu
 #[serde(deny_unknown_fields)]
 struct Session {
     commands: Vec<String>,
+    /// Sensor on the pins; none by default.
+    sensor: Option<Sensor>,
+    /// Time in ms that the board runs before the last command.
+    #[serde(default)]
+    wait: u64,
     /// First words of the lines of the last reply that count; by default all lines.
     #[serde(default)]
     lines: Vec<String>,
 }
 
-/// Sends commands to a board that has just started; states the reply to the last one.
-fn console(Session { commands, lines }: Session) -> Result<Outcome> {
+/// A board with this sensor that has taken these commands, and has run for this number of milliseconds since.
+fn board_after(
+    sensor: Option<Sensor>,
+    commands: &[String],
+    wait: u64,
+) -> Result<SimulatedBoard<EmulatedBoard>> {
     let mut board = start()?;
+    if let Some(sensor) = sensor {
+        board.inner().plug(sensor.wires());
+    }
     let mut console = Console::new(&mut board);
     console.greet()?;
-    let mut reply = Ok(Vec::new());
     for command in commands {
-        reply = console.command(&command);
+        // A refusal may be what makes the next command hard.
+        let _ = console.command(command);
     }
-    outcome(reply, &lines)
+    let cycles = u64::from(board.inner().clock_hz()) / 1000 * wait;
+    board.inner().run(cycles);
+    Ok(board)
+}
+
+/// Sends commands to a board that has just started; states the reply to the last one.
+fn console(session: Session) -> Result<Outcome> {
+    let (last, before) = session.commands.split_last().context("commands")?;
+    let mut board = board_after(session.sensor, before, session.wait)?;
+    let reply = Console::new(&mut board).command(last);
+    outcome(reply, &session.lines)
+}
+
+/// A virtual MPU-6050 on the pins.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Sensor {
+    /// At rest.
+    Resting,
+    /// Turns at 100.03 °/s.
+    Turning,
+    /// Turns at 3,000 °/s about each axis, beyond its range.
+    Saturated,
+    /// Measures the same counts again and again.
+    Frozen,
+    /// Makes no measurements.
+    Stalled,
+    /// Holds the data wire low.
+    Stuck,
+    /// Another chip.
+    Unknown,
+    /// Is pulled off after 1,000 bytes.
+    Vanishing,
+}
+
+impl Sensor {
+    fn wires(self) -> Wires {
+        let rate = match self {
+            Self::Turning => [100.03, 0.0, 0.0],
+            Self::Saturated => [3000.0; 3],
+            _ => [0.0; 3],
+        };
+        let state = move |_| State {
+            rate,
+            ..State::default()
+        };
+        let imperfections = Imperfections {
+            noise: 0.005,
+            accel_noise: 0.0004,
+            ..Imperfections::NONE
+        };
+        let mut chip = Chip::new(Source::Motion(Box::new(state)), imperfections, 1);
+        chip.fault = match self {
+            Self::Resting | Self::Turning | Self::Saturated => None,
+            Self::Frozen => Some(Fault::Frozen),
+            Self::Stalled => Some(Fault::Stalled),
+            Self::Stuck => Some(Fault::StuckData(0)),
+            Self::Unknown => Some(Fault::Identity(0)),
+            Self::Vanishing => Some(Fault::Vanishing(1000)),
+        };
+        Wires::new(chip)
+    }
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Upload {
+    /// Sensor on the pins; none by default.
+    sensor: Option<Sensor>,
     /// Commands before it.
     #[serde(default)]
     before: Vec<String>,
+    /// Time in ms that the board runs after them.
+    #[serde(default)]
+    wait: u64,
     /// Bytes that are written over those of a cube: an offset and the byte.
     #[serde(default)]
     edits: Vec<(usize, u8)>,
@@ -91,12 +170,8 @@ fn uploaded(input: Upload) -> Result<Outcome> {
     for (offset, byte) in input.edits {
         bytes[offset] = byte;
     }
-    let mut board = start()?;
+    let mut board = board_after(input.sensor, &input.before, input.wait)?;
     let mut console = Console::new(&mut board);
-    console.greet()?;
-    for command in input.before {
-        console.command(&command)?;
-    }
     let refusal = match upload(&mut console, &bytes, None, 1, &mut |_, _| {}) {
         Ok(()) => "accepted".to_owned(),
         Err(TransferError::Console(ConsoleError::Refused { reason, .. })) => reason,

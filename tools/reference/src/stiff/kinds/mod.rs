@@ -7,6 +7,7 @@ mod decimals;
 mod fields;
 mod files;
 mod frames;
+mod hands;
 mod kernels;
 mod lines;
 mod matrices;
@@ -27,6 +28,7 @@ pub fn all() -> Vec<Kind> {
         decimals::kinds(),
         fields::kinds(),
         files::kinds(),
+        hands::kinds(),
         kernels::kinds(),
         lines::kinds(),
         matrices::kinds(),

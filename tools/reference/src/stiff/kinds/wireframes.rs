@@ -1,10 +1,12 @@
 //! Segments of the wireframe simulator, from the program to the picture.
 
 use anyhow::{Context, Result};
+use glint_core::choice::Choice;
 use glint_core::colour::Rgb565;
+use glint_core::fixed::Q5_11;
 use glint_core::picture::Size;
 use glint_core::wireframe::text::assemble;
-use glint_core::wireframe::{Motion, Program, Projection};
+use glint_core::wireframe::{Key, Motion, Point, Program, Projection};
 use glint_model::wireframe::render_wireframe;
 use glint_model::{WireframeStats, WireframeSubject};
 use glint_vectors::Picture;
@@ -17,6 +19,8 @@ pub fn kinds() -> Vec<Kind> {
     vec![
         Kind::new("wireframe-segment", segment),
         Kind::new("wireframe-segments", segments),
+        Kind::new("wireframe-there-and-back", there_and_back),
+        Kind::new("wireframe-pan", pan),
         Kind::new("wireframe-program", |text: String| {
             Ok(Outcome::of(assemble(&text), |program| {
                 format!("{} bytes", program.len())
@@ -97,4 +101,39 @@ fn segments(count: u32) -> Result<Outcome> {
         }
         Err(error) => Ok(Outcome::Refused(error.to_string())),
     }
+}
+
+/// The place of the point (1, 1, 1) after a motion.
+fn place(motion: &Motion) -> String {
+    let point: Point = [Q5_11::ONE; 3];
+    let [x, y, z] = motion.pose().point(point);
+    format!("(1, 1, 1) at ({x}, {y}, {z})")
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Turns {
+    /// Two keys that rotate in opposite directions.
+    keys: [String; 2],
+    times: u32,
+}
+
+/// Rotates this many times by the first key, then as often by the second one.
+fn there_and_back(Turns { keys, times }: Turns) -> Result<Outcome> {
+    let mut motion = Motion::default();
+    for name in keys {
+        let key = Key::from_word(&name).with_context(|| format!("no key {name:?}"))?;
+        for _ in 0..times {
+            motion.apply(key.step(true));
+        }
+    }
+    Ok(Outcome::exact(place(&motion)))
+}
+
+/// Pans to the right until it is not possible, at most this many times.
+fn pan(times: u32) -> Result<Outcome> {
+    let mut motion = Motion::default();
+    let steps = (0..times).take_while(|_| motion.apply(Key::Right.step(false)));
+    let steps = steps.count();
+    Ok(Outcome::exact(format!("{steps} steps; {}", place(&motion))))
 }
