@@ -2,7 +2,7 @@
 
 use crate::convert::{self, Options};
 use crate::error::{FormatError, InputError, Place, quote};
-use crate::formats::read_file;
+use crate::formats::{STDIN, read_file};
 use crate::polygons::Polygons;
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::text::assemble;
@@ -53,13 +53,24 @@ impl Form {
     }
 }
 
-/// Reads a program of either form, and returns its binary form.
+/// Reads a program of either form, and returns its binary form. `-` is standard input, whose contents tell the form.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
 pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
-    let form = Form::of(path)?;
-    let bytes = read_file(path)?;
+    let (form, bytes) = match path == Path::new(STDIN) {
+        true => {
+            let bytes = read_file(path)?;
+            // The three highest bytes of every binary word are 0, and text has no such byte.
+            let form = if bytes.contains(&0) {
+                Form::Binary
+            } else {
+                Form::Text
+            };
+            (form, bytes)
+        }
+        false => (Form::of(path)?, read_file(path)?),
+    };
     parse(form, bytes).map_err(|error| error.in_path(path))
 }
 

@@ -25,7 +25,7 @@ use std::process::Command;
 /// image, over the Urbana's USB port: an image without a bitstream leaves that of the flash as it is.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// Program to load, a flat binary; with --spi, an image that `glint image make` has made.
+    /// Program to load, a flat binary, `-` for one from standard input; with --spi, an image that `glint image make` has made.
     program: PathBuf,
     /// Write an image to the SPI flash of an Urbana by openFPGALoader.
     #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
@@ -99,8 +99,7 @@ impl FlashArguments {
         if self.spi {
             return write_flash(&self.program);
         }
-        let program = std::fs::read(&self.program)
-            .with_context(|| format!("{}: cannot be read", self.program.display()))?;
+        let program = read_file(&self.program)?;
         let mut board: Box<dyn Board> = match &self.board.name()? {
             BoardName::Emulated => metered(SimulatedBoard::emulated_bios()?),
             BoardName::Virtual => metered(SimulatedBoard::full()?),

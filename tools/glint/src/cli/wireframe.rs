@@ -32,7 +32,7 @@ pub enum WireframeCommand {
 /// Check a program, and show its viewing parameters and counts.
 #[derive(Args)]
 pub struct CheckArguments {
-    /// Program to read: .wft or .wfb.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
     program: PathBuf,
     /// Print the result as JSON.
     #[arg(long)]
@@ -42,7 +42,7 @@ pub struct CheckArguments {
 /// Convert a program between its text form and its binary form, without loss.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// Program to read: .wft or .wfb.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
     input: PathBuf,
     /// Output file; the extension selects the form: .wft or .wfb.
     out: PathBuf,
@@ -102,7 +102,7 @@ pub struct MakeArguments {
 /// Render a program to a picture, after a script of keys.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// Program to read: .wft or .wfb.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
     program: PathBuf,
     /// Picture file to write.
     #[arg(long, value_name = "PICTURE.png")]

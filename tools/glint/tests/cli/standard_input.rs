@@ -1,6 +1,6 @@
 //! `-` in place of an input file: standard input.
 
-use crate::common::{VIEW, folder};
+use crate::common::{VIEW, folder, succeed};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -17,15 +17,21 @@ fn glint(folder: &Path, arguments: &str, input: &str) -> Output {
 
 const SCENE: &str = "title = \"A box\"\nfield = \"box:1,1,1\"\ncamera = \"4 30 60\"\n";
 
-/// Scenes, cameras and recordings of the motion sensor from standard input do what they do from a file.
+/// Scenes, cameras, wireframe programs and recordings of the motion sensor from standard input do what they do from a file.
 #[test]
-fn scenes_cameras_and_recordings() {
+fn scenes_cameras_programs_and_recordings() {
     let folder = folder("standard-input");
     fs::write(folder.join("scene.toml"), SCENE).unwrap();
     fs::write(folder.join("view.json"), VIEW).unwrap();
     let log = "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,9\n1000,0,0,4096,0,0,900\n";
     fs::write(folder.join("log.csv"), log).unwrap();
+    let drawn = ["wireframe", "make", "cube", "--out"];
+    for program in ["cube.wft", "cube.wfb"] {
+        succeed(&folder, &[&drawn[..], &[program]].concat());
+    }
     for (file, command) in [
+        ("cube.wft", "wireframe render FILE --out -"),
+        ("cube.wfb", "wireframe render FILE --out -"),
         ("scene.toml", "render --scene FILE --out -"),
         ("scene.toml", "scene show FILE"),
         ("view.json", "render cube --view FILE --out -"),
