@@ -64,17 +64,20 @@ fn split(file: &[u8]) -> Result<Chunks<'_>, FormatError> {
         let json = file.strip_prefix(BYTE_ORDER_MARK).unwrap_or(file);
         return Ok((json.into(), None));
     }
+    let Some(length) = file.get(8..12).and_then(<[u8]>::first_chunk) else {
+        return Err(FormatError::whole(
+            "a header of 12 bytes",
+            file.len().to_string(),
+        ));
+    };
     // The crate subtracts the header's 12 bytes from this length without a check.
-    let length = file.get(8..12).and_then(|bytes| bytes.try_into().ok());
-    match length.map(u32::from_le_bytes) {
-        Some(length) if length >= 12 && length as usize <= file.len() => {}
-        length => {
-            return Err(FormatError::new(
-                Place::Byte(8),
-                format!("a length of 12 to {} bytes", file.len()),
-                length.map_or("no length".into(), |length| length.to_string()),
-            ));
-        }
+    let length = u32::from_le_bytes(*length);
+    if length < 12 || length as usize > file.len() {
+        return Err(FormatError::new(
+            Place::Byte(8),
+            format!("a length of 12 to {} bytes", file.len()),
+            length.to_string(),
+        ));
     }
     let chunks = Glb::from_slice(file).map_err(invalid)?;
     Ok((chunks.json, chunks.bin))
