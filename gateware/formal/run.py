@@ -101,7 +101,7 @@ mode {mode}
 depth {depth}
 multiclock {multiclock}
 [engines]
-smtbmc --stbv --nomem bitwuzla
+smtbmc --stbv --nomem --nopresat bitwuzla
 [script]
 read_verilog -sv -formal {names}
 {parameters}
