@@ -10,9 +10,13 @@ from .programs import ToolError
 
 parser = argparse.ArgumentParser(prog="verilate", description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("folder", type=Path, help="the folder of a virtual board's Verilog and BIOS")
-parser.add_argument("--waveforms", action="store_true", help="build the slower library that writes waveforms")
+kind = parser.add_mutually_exclusive_group()
+kind.add_argument("--waveforms", dest="kind", action="store_const", const=board.WAVEFORMS, default=board.PROFILED,
+                  help="build the slower library that writes waveforms")
+kind.add_argument("--quick", dest="kind", action="store_const", const=board.QUICK,
+                  help="compile once, without a profile: a shorter build, a slower library")
 arguments = parser.parse_args()
 try:
-    board.build(arguments.folder.resolve(), arguments.waveforms)
+    board.build(arguments.folder.resolve(), arguments.kind)
 except ToolError as error:
     sys.exit(str(error))

@@ -1,7 +1,7 @@
 """Builds the SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
 
-The model is compiled twice: a first build counts how often the BIOS takes each branch, and the second build, compiled with these
-counts, needs a quarter less time for a cycle.
+For speed the model is compiled twice: a first build counts how often the BIOS takes each branch, and the second build, compiled with
+these counts, needs a quarter less time for a cycle. A library for a few frames is compiled once.
 """
 
 import shutil
@@ -12,24 +12,28 @@ from .programs import GATEWARE, digest, files_below, is_current, run
 
 TOP = "glint_virtual"
 
+PROFILED, QUICK, WAVEFORMS = "profiled", "quick", "waveforms"
+"""Kinds of the library: compiled for speed, compiled once with little optimisation, and able to write waveforms."""
+
 _SOC = GATEWARE.parent / "tools" / "virtual-board" / "soc"
 _VERILATE = ["--no-timing", "--flatten", "--x-assign", "fast", "--x-initial", "fast", _SOC / "soc.vlt"]
 
 
-def build(folder, waveforms):
-    """Builds the library from the Verilog that LiteX left in `folder`, unless it is up to date: `libglint_soc.so`, or with
-    `waveforms` the slower `libglint_soc_trace.so`, which can write waveforms."""
+def build(folder, kind=PROFILED):
+    """Builds the library of a kind from the Verilog that LiteX left in `folder`, unless it is up to date: `libglint_soc.so`, or
+    `libglint_soc_trace.so` that can write waveforms."""
+    waveforms = kind == WAVEFORMS
     objects = folder / ("verilated-trace" if waveforms else "verilated")
     library = folder / ("libglint_soc_trace.so" if waveforms else "libglint_soc.so")
     verilog = folder / "gateware" / f"{TOP}.v"
     bios = folder / "software" / "bios" / "bios.bin"
     sources = [verilog, "-f", verilog.with_suffix(".f")]
 
-    options = [*compiler.flags(objects, waveforms), "-O3"]
+    options = [*compiler.flags(objects, waveforms), "-O1" if kind == QUICK else "-O3"]
     harness_options = [*options, f'-DGLINT_BIOS="{bios}"', f"-I{folder / 'software' / 'include'}", f"-I{_SOC}"]
 
     # First step: the model in C++ and its objects, which take most of the build's time.
-    inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], waveforms)
+    inputs = digest([verilog, *files_below(GATEWARE / "rtl", _SOC), *compiler.RECIPE, Path(__file__)], kind)
     stamp = objects / "model.stamp"
     if not is_current(stamp, inputs):
         # Verilator derives names of its output files from their content, so the files of an older build must go.
@@ -38,7 +42,7 @@ def build(folder, waveforms):
         print("Verilator", flush=True)
         trace = ["--trace-vcd"] if waveforms else []
         compiler.verilate(TOP, sources, {}, objects, [*_VERILATE, *trace])
-        _compile_model(objects, options, harness_options, waveforms)
+        _compile_model(objects, options, harness_options, kind)
         stamp.write_text(inputs)
 
     # Second step: the harness around the model, and the library.
@@ -51,13 +55,13 @@ def build(folder, waveforms):
     stamp.write_text(inputs)
 
 
-def _compile_model(objects, options, harness_options, waveforms):
-    sources = compiler.model_sources(objects, waveforms)
+def _compile_model(objects, options, harness_options, kind):
+    sources = compiler.model_sources(objects, kind == WAVEFORMS)
     slow = [source for source in sources if "__Slow" in source.name]
     hot = [source for source in sources if source not in slow]
     compiler.compile_all("compile what runs once", slow, objects, options)
-    # Waveforms cost more time than a profile gains, so a build with waveforms has no profile.
-    if not waveforms:
+    # Waveforms cost more time than a profile gains, and a few frames less than it takes.
+    if kind == PROFILED:
         harness = [_SOC / "soc.cpp", _SOC / "train.cpp"]
         compiler.compile_all("compile the training", harness, objects, harness_options)
         compiler.compile_all("compile with counters", hot, objects, [*options, "-fprofile-generate"])

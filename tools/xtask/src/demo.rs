@@ -4,7 +4,7 @@ use std::process::Command;
 
 use anyhow::Result;
 
-use crate::gateware::{self, Board};
+use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run};
 
 /// Builds everything and runs `glint demo` with `arguments`.
@@ -46,7 +46,7 @@ pub fn report(name: &str, arguments: &[String]) -> Result<()> {
     gateware::build(Board::Virtual)?;
     if name == "raymarch" {
         let sponge = "sponge";
-        gateware::build_beside(Board::Virtual, sponge, &["--fields", sponge])?;
+        gateware::build_beside(sponge, &["--fields", sponge], Library::Profiled)?;
         model("raymarcher")?;
     }
     if name == "gouraud" {

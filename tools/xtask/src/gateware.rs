@@ -124,25 +124,33 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     let folder = board.folder();
     generate(board, &folder, options)?;
     match board {
-        Board::Virtual => verilate(&folder, Waveforms::Without),
+        Board::Virtual => verilate(&folder, Library::Profiled),
         Board::Urbana => Ok(()),
         Board::Ulx3s => make_bitstream(&folder),
     }
 }
 
-/// Builds the virtual board, or generates the gateware of another board, with command-line options of `glint_soc` in
-/// `target/gateware/BOARD-NAME`, and leaves the standard build as it is. Returns the folder.
+/// Builds the virtual board as `library` with command-line options of `glint_soc` in `target/gateware/virtual-NAME`, and leaves the
+/// standard build as it is. Returns the folder.
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_beside(board: Board, name: &str, options: &[&str]) -> Result<PathBuf> {
+pub fn build_beside(name: &str, options: &[&str], library: Library) -> Result<PathBuf> {
+    let folder = generate_beside(Board::Virtual, name, options)?;
+    verilate(&folder, library)?;
+    Ok(folder)
+}
+
+/// Generates the gateware of a board with command-line options of `glint_soc` in `target/gateware/BOARD-NAME`, and leaves the
+/// standard build as it is. Returns the folder.
+///
+/// # Errors
+/// As [`build`].
+pub fn generate_beside(board: Board, name: &str, options: &[&str]) -> Result<PathBuf> {
     let folder = board
         .folder()
         .with_file_name(format!("{}-{name}", board.name()));
     generate(board, &folder, options)?;
-    if board == Board::Virtual {
-        verilate(&folder, Waveforms::Without)?;
-    }
     Ok(folder)
 }
 
@@ -153,7 +161,7 @@ pub fn build_beside(board: Board, name: &str, options: &[&str]) -> Result<PathBu
 pub fn build_with_waveforms() -> Result<()> {
     let folder = Board::Virtual.folder();
     generate(Board::Virtual, &folder, &[])?;
-    verilate(&folder, Waveforms::With)
+    verilate(&folder, Library::Waveforms)
 }
 
 /// Runs LiteX if its inputs have changed since its last run. It writes Verilog, the BIOS, `csr.json` and `soc.svd` to `folder`.
@@ -190,22 +198,23 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// Whether the library of the virtual board can write waveforms.
+/// How the library of the virtual board is compiled.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Waveforms {
-    With,
-    Without,
+pub enum Library {
+    /// For speed, with a profile of its branches.
+    Profiled,
+    /// Once, with little optimisation: a third of the compile time, for a board that runs a few frames.
+    Quick,
+    /// Able to write waveforms.
+    Waveforms,
 }
 
 /// Builds the library of the virtual board from the output of [`generate`].
-fn verilate(folder: &Path, waveforms: Waveforms) -> Result<()> {
-    let name = match waveforms {
-        Waveforms::Without => "verilated SoC",
-        Waveforms::With => "verilated SoC with waveforms",
-    };
-    let options: &[&str] = match waveforms {
-        Waveforms::Without => &[],
-        Waveforms::With => &["--waveforms"],
+fn verilate(folder: &Path, library: Library) -> Result<()> {
+    let (name, options): (_, &[&str]) = match library {
+        Library::Profiled => ("verilated SoC", &[]),
+        Library::Quick => ("verilated SoC, compiled once", &["--quick"]),
+        Library::Waveforms => ("verilated SoC with waveforms", &["--waveforms"]),
     };
     run::step(
         name,

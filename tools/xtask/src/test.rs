@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 
-use crate::gateware::{self, Board};
+use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
 use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk};
 
@@ -81,7 +81,7 @@ pub fn test() -> Result<()> {
 /// A build or a test fails.
 pub fn test_at_clock(megahertz: &str) -> Result<()> {
     bootstrap::bootstrap()?;
-    let folder = gateware::build_beside(Board::Virtual, megahertz, &["--clock", megahertz])?;
+    let folder = gateware::build_beside(megahertz, &["--clock", megahertz], Library::Profiled)?;
     firmware::build(Board::Virtual, &[])?;
     let tests = Programs::build(&["-p", "virtual-board", "-p", "glint", "--test", "board"])?;
     let passed = tests.run(&[("GLINT_VIRTUAL_BOARD", folder.as_os_str())])?;

@@ -14,7 +14,7 @@ use glint_core::block::Block;
 use glint_scene::Scene;
 use serde::Deserialize;
 
-use crate::gateware::{self, Board};
+use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run, scenes};
 
 /// Prefix of the name of a build with a single block.
@@ -153,7 +153,7 @@ impl Build {
         options.extend(blocks.iter().map(|block| block.name()));
         Ok(Self {
             name: name.to_owned(),
-            folder: gateware::build_beside(Board::Virtual, name, &options)?,
+            folder: gateware::build_beside(name, &options, Library::Quick)?,
             firmware: firmware_image("glint"),
         })
     }
@@ -166,7 +166,7 @@ impl Build {
         firmware::build_for(Board::Virtual, slice::from_ref(scene), &[])?;
         Ok(Self {
             name: name.to_owned(),
-            folder: gateware::build_beside(Board::Virtual, name, &options)?,
+            folder: gateware::build_beside(name, &options, Library::Quick)?,
             firmware: firmware_image(&format!("glint-{name}")),
         })
     }

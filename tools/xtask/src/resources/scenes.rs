@@ -81,7 +81,7 @@ pub fn resources(write: bool) -> Result<()> {
     );
     for (name, options) in &builds {
         let options: Vec<_> = options.iter().map(String::as_str).collect();
-        gateware::build_beside(Board::Urbana, name, &options)?;
+        gateware::generate_beside(Board::Urbana, name, &options)?;
     }
     let names = builds
         .iter()
