@@ -14,30 +14,35 @@ use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, wa
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
-/// The checks of the gateware run in parallel with those of cargo, because most checks keep one core busy. The Rust tests wait
-/// for the gateware tests, which build the verilated models that the Rust tests use.
+/// The gateware's builds and checks run beside those of cargo, because most of them keep one core busy. The Rust tests wait for the
+/// gateware tests, which build the verilated models that the Rust tests use.
 ///
 /// # Errors
 /// A build or a check fails; the error names the checks.
 pub fn test() -> Result<()> {
     let start = Instant::now();
     bootstrap::bootstrap()?;
-    gateware::build(Board::Virtual)?;
-    gateware::build(Board::Urbana)?;
 
     let results = CheckResults::default();
+    let (gateware_is_built, gateware_builds) = mpsc::channel();
     let (models_are_built, models) = mpsc::channel();
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
+            let built =
+                gateware::build(Board::Virtual).and_then(|()| gateware::build(Board::Urbana));
+            let is_built = built.is_ok();
+            // Errors of sending are ignored: the receiver is gone only if another build has failed.
+            let _ = gateware_is_built.send(built);
+            if !is_built {
+                return;
+            }
             results.add(gateware_check("gateware tests", "gateware/tests/run.py"));
-            // The error is ignored: sending fails only if the receiver is gone because a build has failed.
             let _ = models_are_built.send(());
             results.add(gateware_check("proofs", "gateware/formal/run.py"));
             results.add(resources::check_own_blocks().map(|()| 1));
             results.add(resources::check_clock_rates().map(|()| 1));
         });
         firmware::build(Board::Virtual, &[])?;
-        results.add(pac::generate(true).map(|()| 1));
         results.add(scenes::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
@@ -62,6 +67,8 @@ pub fn test() -> Result<()> {
         ));
         results.add(documentation());
         let tests = Programs::build(&[])?;
+        gateware_builds.recv().expect("the builds do not panic")?;
+        results.add(pac::generate(true).map(|()| 1));
         scope.spawn(|| results.add(walk::walk(&walk::SAMPLE.map(str::to_owned)).map(|()| 1)));
         models.recv().expect("the gateware's checks do not panic");
         results.add(tests.run(&[]));
