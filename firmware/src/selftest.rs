@@ -8,6 +8,7 @@ use glint_core::feature::{GESTURE, IMU, MESH};
 use glint_core::{image_sensor, mpu6050};
 use glint_hal::gesture::SetUpError;
 use glint_hal::i2c::BusError;
+use glint_hal::timer::whole_millis;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use litex_pac::cpu;
 
@@ -94,7 +95,7 @@ impl fmt::Display for Failure {
             Self::Blanking => write!(
                 f,
                 "no vertical blanking for {} ms, expected one each 17 ms",
-                BLANKING.as_millis()
+                whole_millis(BLANKING)
             ),
             Self::Underflows(count) => write!(f, "{count} underflows since reset, expected none"),
             Self::Checksum { expected, found } => {
@@ -102,7 +103,7 @@ impl fmt::Display for Failure {
             }
             Self::Engine(error) => error.fmt(f),
             Self::Sensor(error) if IMU.is_built => error.fmt(f),
-            Self::NoSample => write!(f, "no sample for {} ms", SAMPLE.as_millis()),
+            Self::NoSample => write!(f, "no sample for {} ms", whole_millis(SAMPLE)),
             Self::ImageSensor(error) if GESTURE.is_built => error.fmt(f),
             // A failure of a part that this build leaves out.
             Self::Sensor(_) | Self::ImageSensor(_) => Ok(()),

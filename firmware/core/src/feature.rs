@@ -50,8 +50,18 @@ features! {
     EDGES = "edges";
     /// Programs of the wireframe simulator, and the buttons as its keys.
     WIREFRAME = "wireframe";
+    /// Cameras that show the whole of a mesh.
+    FIT = "fit";
     /// Distance fields and their appearance.
     FIELD = "field";
+    /// Spheres in a field, alone and in unions.
+    SPHERES = "spheres";
+    /// Two eyes of a field.
+    STEREO = "stereo";
+    /// Cones before the rays of a field.
+    PREPASS = "prepass";
+    /// Fog of a field.
+    FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";
     /// Lights other than the one at start.

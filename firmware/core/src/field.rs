@@ -7,6 +7,8 @@
 
 use core::fmt;
 
+use crate::feature::SPHERES;
+
 mod argument;
 mod error;
 mod folded;
@@ -42,7 +44,7 @@ impl Field {
     pub const fn is_round(&self) -> bool {
         match self {
             Self::Primitive(primitive) => primitive.is_round(),
-            Self::Union(_) => true,
+            Self::Union(_) => SPHERES.is_built,
         }
     }
 
@@ -65,10 +67,14 @@ impl Field {
     /// Reads the text form of a field, such as `menger:4`.
     ///
     /// # Errors
-    /// The kind is unknown, or a number is missing, malformed, out of its range, or surplus.
+    /// The kind is unknown, or left out of this build, or a number is missing, malformed, out of its range, or surplus.
     pub fn parse(text: &str) -> Result<Self, FieldError<'_>> {
         let (kind, numbers) = text.split_once(':').unwrap_or((text, ""));
         match kind {
+            "union" | "smooth" if !SPHERES.is_built => Err(FieldError::LeftOut {
+                kind,
+                feature: SPHERES,
+            }),
             "union" => Union::parse_sharp(numbers).map(Self::Union),
             "smooth" => Union::parse_smooth(numbers).map(Self::Union),
             kind => Primitive::parse(text)
@@ -106,7 +112,8 @@ impl fmt::Display for Field {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Primitive(primitive) => primitive.fmt(f),
-            Self::Union(union) => union.fmt(f),
+            Self::Union(union) if SPHERES.is_built => union.fmt(f),
+            Self::Union(_) => Ok(()),
         }
     }
 }

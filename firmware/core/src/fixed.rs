@@ -6,7 +6,7 @@
 //! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
 
 pub use ::fixed;
-use ::fixed::types::extra::{U11, U12, U14, U16, U20, U23, U24, U28, U30, U32};
+use ::fixed::types::extra::{LeEqU32, LeEqU64, U11, U12, U14, U16, U20, U23, U24, U28, U30, U32};
 use ::fixed::{FixedI16, FixedI32, FixedI64, FixedU16, FixedU32, FixedU64};
 
 /// Format of positions and normals: units of 2^−14, in [−2, 2).
@@ -78,6 +78,13 @@ impl core::ops::Neg for Turns {
     fn neg(self) -> Self {
         Self(self.0.wrapping_neg())
     }
+}
+
+/// Reads a decimal as `FromStr` does; `None` for a text of another form, and for a number out of range.
+///
+/// The number is read with 64 bits, as are those of other formats, so that the firmware has one reader of their integer parts.
+pub(crate) fn parse_i32<F: LeEqU32 + LeEqU64>(text: &str) -> Option<FixedI32<F>> {
+    text.parse::<FixedI64<F>>().ok()?.checked_to_num()
 }
 
 /// Returns the exact product of two 32-bit numbers.

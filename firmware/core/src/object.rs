@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::choice::{Choice, choices};
 use crate::colour::Rgb565;
-use crate::fixed::{Q8_24, Q32_32, Turns};
+use crate::fixed::{Q8_24, Q32_32, Turns, parse_i32};
 use crate::light::parse_rgb;
 use crate::matrix::{Axis, Matrix, MatrixError};
 use crate::words::{Word, Words};
@@ -91,7 +91,7 @@ impl Place {
         place.matrix = match operation {
             Operation::Scale => {
                 let factors = read(words, SCALE, |text| {
-                    let factor = || text.parse().ok().map(|factor| [factor; 3]);
+                    let factor = || parse_i32(text).map(|factor| [factor; 3]);
                     numbers(text).or_else(factor)
                 })?;
                 Matrix::scale(factors)
@@ -172,7 +172,7 @@ fn numbers<const N: usize>(text: &str) -> Option<[Q8_24; N]> {
     let mut words = text.split(',');
     let mut numbers = [Q8_24::ZERO; N];
     for number in &mut numbers {
-        *number = words.next()?.parse().ok()?;
+        *number = parse_i32(words.next()?)?;
     }
     words.next().is_none().then_some(numbers)
 }

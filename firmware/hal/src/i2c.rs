@@ -25,7 +25,7 @@ use litex_pac::i2c::{
     self, Command, Control, Error, EvEnable, EvPending, Operation as Action, Rounds, Status,
 };
 
-use crate::timer::{Clock, Deadline, block_on};
+use crate::timer::{Clock, Deadline, block_on, whole_millis};
 
 /// Longest time without progress before a transaction times out. It is longer than the 25.8 ms of clock stretching
 /// after which the master reports `ClockStuck`, and than the 1 ms that the 33 bytes of a full queue take on the bus.
@@ -92,7 +92,7 @@ impl fmt::Display for BusError {
             Self::Timeout => write!(
                 f,
                 "i2c: timed out: no progress for {} ms",
-                WAIT.as_millis()
+                whole_millis(WAIT)
             ),
             Self::Late => f.write_str("i2c: a periodic read was not over when the next read was due"),
             Self::Reads => f.write_str(

@@ -32,6 +32,13 @@ impl core::fmt::Display for Stopped {
 
 impl core::error::Error for Stopped {}
 
+/// The whole milliseconds of a duration below 49 days, for messages: those of [`Duration::as_millis`] have 128 bits, and the code that
+/// prints such a number takes 2.7 KB.
+#[must_use]
+pub const fn whole_millis(duration: Duration) -> u32 {
+    duration.as_millis() as u32
+}
+
 impl Clock {
     /// Returns the clock that reads the uptime counter of `timer0`, which counts with `frequency`.
     ///

@@ -25,6 +25,7 @@ use litex_pac::triangle::{
 pub use litex_pac::triangle::{Counters, Error};
 
 use crate::Absent;
+use crate::timer::whole_millis;
 
 /// Reason why a pass failed or was not started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,7 +67,7 @@ impl fmt::Display for EngineError {
         match self {
             Self::Status(code) => f.write_str(code.text()),
             Self::Unknown => f.write_str("unknown error code"),
-            Self::Timeout => write!(f, "timed out: no progress for {} ms", TIMEOUT.as_millis()),
+            Self::Timeout => write!(f, "timed out: no progress for {} ms", whole_millis(TIMEOUT)),
             Self::Shading => f.write_str("this gateware has no smooth shading"),
             Self::Eye => f.write_str("the eye is too far from the origin"),
         }

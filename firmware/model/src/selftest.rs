@@ -8,7 +8,7 @@ mod checksums;
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::Shading;
-use glint_core::feature::{FIELD, MESH, WIREFRAME};
+use glint_core::feature::{FIELD, MESH, SPHERES, STEREO, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
@@ -73,7 +73,9 @@ impl TestPicture {
         match self {
             Self::Triangle | Self::Smooth => MESH.is_built,
             Self::Line => WIREFRAME.is_built,
-            Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => FIELD.is_built,
+            Self::Sponge | Self::Cubes => FIELD.is_built,
+            Self::Spheres => SPHERES.is_built,
+            Self::Stereo => STEREO.is_built,
         }
     }
 

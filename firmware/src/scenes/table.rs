@@ -10,7 +10,7 @@ pub static SCENES: [BuiltIn; 10] = [
     // Unbounded repeated cubes in fog
     BuiltIn::picture(
         "cubes",
-        &[feature::FIELD],
+        &[feature::FIELD, feature::FOG],
         "\
 size 640 360
 lookat 1 -1 1 -1 1.2 -1.5
@@ -23,7 +23,7 @@ field cubes:2,0.4
     // The scenes of a board that runs alone
     BuiltIn::list(
         "demo",
-        &[feature::CPU, feature::DEMO, feature::FIELD, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::WIREFRAME],
+        &[feature::CPU, feature::DEMO, feature::FIELD, feature::FOG, feature::GESTURE, feature::IMU, feature::LIGHT, feature::MESH, feature::STEREO, feature::WIREFRAME],
         &["holoforge", "wireframe", "simplegpu", "poor-mans-vr", "cubes"],
     ),
     // HoloForge: a mesh that a hand turns
@@ -40,7 +40,7 @@ gesture on
     // A Menger sponge of depth 4
     BuiltIn::picture(
         "menger",
-        &[feature::FIELD],
+        &[feature::FIELD, feature::PREPASS],
         "\
 size 640 360
 camera 4 30 60
@@ -83,7 +83,7 @@ object add torus scale 0.45,-0.45,0.7 rotate y 75 rotate z 40 move 0.5,0.65,-0.1
     // Poor Man's VR: a Menger sponge for two eyes, seen in the direction of the motion sensor
     BuiltIn::picture(
         "poor-mans-vr",
-        &[feature::FIELD, feature::IMU],
+        &[feature::FIELD, feature::IMU, feature::STEREO],
         "\
 size 640 360
 lookat 0.9 -1.6 0.9 -0.47 0.75 -0.47
@@ -112,7 +112,7 @@ scene polygons
     // Eight spheres of different colours
     BuiltIn::picture(
         "spheres",
-        &[feature::FIELD],
+        &[feature::FIELD, feature::SPHERES],
         "\
 size 640 360
 camera 2.6 40 62

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glint_core::block::Block;
 use glint_core::colour::{Shading, Winding};
 use glint_core::console::Command;
-use glint_core::feature::{BASE, CPU, DEMO, Feature, MESH, UPLOAD};
+use glint_core::feature::{BASE, CPU, DEMO, Feature, MESH, SPHERES, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::picture::Backend;
 use glint_core::scene::{blocks, blocks_of};
@@ -108,6 +108,11 @@ impl Scene {
                 }
             }
             match command {
+                Command::Field {
+                    field: Some(Some(field)),
+                } if field.is_round() => {
+                    features.insert(SPHERES);
+                }
                 // The soft core makes the descriptors of such meshes, or the whole picture.
                 Command::Backend {
                     backend: Some(Backend::Cpu),

@@ -326,6 +326,11 @@ fn parts_of_the_firmware_follow_from_the_commands() {
             "field = \"menger:2\"\nmodel = \"torus\"",
             "field mesh mesh-in-field",
         ),
+        ("field = \"menger:2\"\nstereo = \"0.1,4\"", "field stereo"),
+        (
+            "field = \"union:box:1,1,1+sphere:1\"\nfog = 0.1\nprepass = true",
+            "field fog prepass spheres",
+        ),
     ] {
         assert_eq!(features(text), expected, "{text}");
     }

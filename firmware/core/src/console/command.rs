@@ -52,7 +52,7 @@ commands! {
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
         field Field(field: Option<Or<Off, Field>>) in FIELD: "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>) in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
-        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in FIELD: "show or set the two eyes of a field; off is one eye";
+        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in STEREO: "show or set the two eyes of a field; off is one eye";
         demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
 
@@ -67,7 +67,7 @@ commands! {
         light Light(light: Option<Or<Default, Light>>) in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default";
         ambient Ambient(colour: Option<Or<Default, Rgb>>) in LIGHT: "show or set the ambient light";
         background Background(background: Option<Or<Default, Background>>): "show or set the background; default is white for a field and black for meshes, which have one colour";
-        fog Fog(density: Option<Or<Off, U4_28>>) in FIELD: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
+        fog Fog(density: Option<Or<Off, U4_28>>) in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
         occlusion Occlusion(on: Option<bool>) in FIELD: "turn ambient occlusion of a field on or off, or show the setting";
         undecided Undecided(on: Option<bool>) in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";
     }
@@ -81,7 +81,7 @@ commands! {
         fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees";
         orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective";
         zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more";
-        fit Fit(lens: Option<Fit>) in MESH: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
+        fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
 
@@ -108,7 +108,7 @@ commands! {
         winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
         edges Edges(edges: Option<Or<Off, Edges>>) in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
         overlay Overlay(on: Option<bool>) in OVERLAY: "turn the text over the picture on or off, or show the setting";
-        prepass Prepass(on: bool) in FIELD: "turn the cone prepass of a field on or off";
+        prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";

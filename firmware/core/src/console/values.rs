@@ -12,7 +12,7 @@ use crate::calibration::{MOST_SAMPLES, SAMPLES};
 use crate::camera::{self, Projection};
 use crate::choice::choices;
 use crate::field::{self, KINDS};
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
+use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28, parse_i32};
 use crate::follow::{self, Direction, SENSITIVITY};
 use crate::imu::Follow;
 use crate::light::{self, Background, Rgb, parse_rgb};
@@ -64,7 +64,7 @@ impl WordArgument for Q2_23 {
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
-        let number = text.parse().ok();
+        let number = parse_i32(text);
         number.filter(|number| (-2..2).contains(number))
     }
 }
@@ -76,7 +76,7 @@ impl WordArgument for U4_28 {
 
     #[inline(never)]
     fn parse(text: &str) -> Option<Self> {
-        text.parse().ok()
+        U8_28::parse(text)?.checked_to_num()
     }
 }
 

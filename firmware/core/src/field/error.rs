@@ -3,6 +3,7 @@
 use core::fmt;
 
 use super::limits::MAX_SPHERES;
+use crate::feature::Feature;
 use crate::fixed::Q32_32;
 
 /// Reason why a text is not the text form of a distance field.
@@ -14,6 +15,13 @@ pub enum FieldError<'a> {
         kind: &'a str,
         /// Text form and description of every kind.
         kinds: &'static [(&'static str, &'static str)],
+    },
+    /// This build leaves the kind out.
+    LeftOut {
+        /// The kind.
+        kind: &'a str,
+        /// The part of the firmware that has it.
+        feature: Feature,
     },
     /// A number is missing.
     Missing {
@@ -60,6 +68,7 @@ impl fmt::Display for FieldError<'_> {
                     write!(f, "{} {form}", if i == 0 { "" } else { "," })
                 })
             }
+            Self::LeftOut { kind, feature } => write!(f, "{kind}: {feature}"),
             Self::Missing { kind, name } => write!(f, "{kind} needs one more number: {name}"),
             Self::Extra { kind, word } => {
                 write!(f, "{kind} has one number too many: {word}")

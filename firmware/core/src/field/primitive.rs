@@ -13,12 +13,18 @@ use super::argument::{Arguments, Random, Words};
 use super::error::FieldError;
 use super::shape::{FlatConstants, FlatSolid, Placed, Shape};
 use super::surface::Sample;
+use crate::feature::SPHERES;
 
 pub use cuboid::{Cubes, Cuboid, FixedBox, Planes};
 pub use fixed_sphere::{FixedSphere, FixedSpheres, length};
 pub use menger::{FixedSponge, MAX_DEPTH, Menger};
 pub use octahedron::{FixedOctahedron, Octahedron};
 pub use sphere::{CentredSphere, Lattice, MovingSphere, Sphere, Spheres};
+
+/// Whether this build has a kind of field.
+const fn is_built<S: Shape>() -> bool {
+    SPHERES.is_built || !S::ROUND
+}
 
 /// Defines [`Primitive`] from the list of the kinds of fields, which is in the order of the help.
 macro_rules! primitives {
@@ -45,7 +51,8 @@ macro_rules! primitives {
             /// Reads the numbers of a field of the kind with the name `kind`; `None` for an unknown name.
             fn read<'a>(kind: &str, numbers: &mut impl Arguments<'a>) -> Option<Result<Self, FieldError<'a>>> {
                 match kind {
-                    $(<$shape>::NAME => Some(<$shape>::read(numbers).map(Self::$kind)),)*
+                    $(<$shape>::NAME if is_built::<$shape>() => Some(<$shape>::read(numbers).map(Self::$kind)),)*
+                    $(<$shape>::NAME => Some(Err(FieldError::LeftOut { kind: <$shape>::NAME, feature: SPHERES })),)*
                     _ => None,
                 }
             }
@@ -53,7 +60,7 @@ macro_rules! primitives {
             /// Whether the field has spheres.
             pub const fn is_round(&self) -> bool {
                 match self {
-                    $(Self::$kind(_) => <$shape>::ROUND,)*
+                    $(Self::$kind(_) => <$shape>::ROUND && SPHERES.is_built,)*
                 }
             }
 
@@ -74,7 +81,9 @@ macro_rules! primitives {
             /// Converts the field to its solid in field units, in which the raymarcher computes.
             pub fn placed(&self) -> Placed<Solid> {
                 match self {
-                    $(Self::$kind(shape) => shape.placed().map(Into::into),)*
+                    $(Self::$kind(shape) if is_built::<$shape>() => shape.placed().map(Into::into),)*
+                    // No field is of a kind that this build leaves out.
+                    _ => Placed::endless(FixedBox::of(&FlatConstants::default()).into()),
                 }
             }
         }
@@ -82,10 +91,11 @@ macro_rules! primitives {
         impl fmt::Display for Primitive {
             fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 match self {
-                    $(Self::$kind(shape) => {
+                    $(Self::$kind(shape) if is_built::<$shape>() => {
                         write!(f, "{}:", <$shape>::NAME)?;
                         shape.write(f)
                     })*
+                    _ => Ok(()),
                 }
             }
         }
@@ -206,7 +216,8 @@ impl Solid {
     pub const fn spheres(&self) -> Option<&FixedSpheres> {
         match self {
             Self::Flat(_) => None,
-            Self::Spheres(spheres) => Some(spheres),
+            Self::Spheres(spheres) if SPHERES.is_built => Some(spheres),
+            Self::Spheres(_) => None,
         }
     }
 

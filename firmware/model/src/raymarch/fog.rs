@@ -1,5 +1,6 @@
 //! Fog: the share of a surface's colour that fog hides, by depth.
 
+use glint_core::feature::{FOG, STEREO};
 use glint_core::fixed::U4_28;
 
 use super::options::FieldOptions;
@@ -9,14 +10,14 @@ use super::setup::FieldSetup;
 impl FieldOptions {
     /// Returns the palette of a frame: the palette of these options with their fog, and in grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
-        let palette = if self.fog == U4_28::ZERO {
-            self.palette
-        } else {
+        let palette = if FOG.is_built && self.fog != U4_28::ZERO {
             self.palette.with_fog(setup, self.fog)
+        } else {
+            self.palette
         };
         match setup.stereo {
-            Some(_) => palette.grey(),
-            None => palette,
+            Some(_) if STEREO.is_built => palette.grey(),
+            _ => palette,
         }
     }
 }

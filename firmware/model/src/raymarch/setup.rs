@@ -1,6 +1,7 @@
 //! The constants of a frame of a field, computed once from the field, the camera and the picture's size.
 
 use glint_core::camera::{Projection, View};
+use glint_core::feature::{PREPASS, SPHERES, STEREO};
 use glint_core::field::{
     FRACTION, Field, FixedSpheres, Placed, Primitive, Sample, Solid, cropped, units,
 };
@@ -98,7 +99,8 @@ impl FieldSetup {
             extent.map(|half| units(half, scale) as u32)
         });
 
-        let (shift, parallax) = match options.stereo {
+        let stereo = options.stereo.filter(|_| STEREO.is_built);
+        let (shift, parallax) = match stereo {
             Some(Stereo {
                 half_separation,
                 zero_parallax,
@@ -142,9 +144,8 @@ impl FieldSetup {
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
         let steps = [rays.across, rays.down].map(|step| step.map(|x| rays.narrow(x)));
-        let eyes = if options.stereo.is_some() { 2 } else { 1 };
-        let cones = options
-            .prepass
+        let eyes = if stereo.is_some() { 2 } else { 1 };
+        let cones = (PREPASS.is_built && options.prepass)
             .then(|| Cones::new(block_for((width, height), eyes), round, &steps));
         Ok(Self {
             width,
@@ -161,7 +162,7 @@ impl FieldSetup {
             depth: world_depth.times(scale, rays.exponent),
             world_depth,
             tuning: options.tuning,
-            stereo: options.stereo.map(|stereo| stereo.tint),
+            stereo: stereo.map(|stereo| stereo.tint),
         })
     }
 }
@@ -172,6 +173,7 @@ impl FieldSetup {
         self.solid
             .spheres()
             .or(self.beside.as_ref().map(|beside| &beside.spheres))
+            .filter(|_| SPHERES.is_built)
     }
 
     /// The fillet between the spheres and the flat solid.
@@ -211,8 +213,10 @@ impl FieldSetup {
     pub fn sample(&self, point: [i32; 3]) -> Sample {
         let flat = self.solid.sample(point);
         match &self.beside {
-            Some(beside) => beside.blend.union(flat, beside.spheres.sample(point)),
-            None => flat,
+            Some(beside) if SPHERES.is_built => {
+                beside.blend.union(flat, beside.spheres.sample(point))
+            }
+            _ => flat,
         }
     }
 }
@@ -221,6 +225,7 @@ impl FieldSetup {
 fn placed(field: &Field) -> (Placed<Solid>, Option<Beside>) {
     let union = match field {
         Field::Primitive(primitive) => return (primitive.placed(), None),
+        Field::Union(union) if !SPHERES.is_built => return (union.flat().placed(), None),
         Field::Union(union) => union,
     };
     let [flat, round] = [union.flat(), union.round()].map(Primitive::placed);

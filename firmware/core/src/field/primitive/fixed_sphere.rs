@@ -1,6 +1,7 @@
 //! Distances to spheres from a table of square roots. Distances are rounded down, so that a ray that advances by the distance
 //! never passes a surface.
 
+use crate::feature::SPHERES;
 use crate::field::limits::MAX_SPHERES;
 use crate::field::surface::{Sample, Surface, magnitude};
 
@@ -55,7 +56,8 @@ impl FixedSpheres {
             distance: MOST,
             surface: Surface::Round { number: 0 },
         };
-        for (number, sphere) in (0..).zip(self.list.iter().take(self.count)) {
+        let count = if SPHERES.is_built { self.count } else { 0 };
+        for (number, sphere) in (0..).zip(self.list.iter().take(count)) {
             // The distance before saturation to `MOST` is below 2^23.
             let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
