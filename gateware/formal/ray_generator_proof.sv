@@ -59,7 +59,7 @@ module ray_generator_proof (
         in_order:          assert (!out_valid || ray.place == place);
         busy_to_the_end:   assert (busy || !begun || finished);
         idle_afterwards:   assert (!busy || !was_finished);
-        shown_in_time:     assert (unseen < 6'd31);
+        shown_in_time:     assert (unseen < 6'd30);
 
         all_came: cover (finished && !busy);
         // Rays enter while there are credits, with two places for rays behind the pipeline and one at its output.

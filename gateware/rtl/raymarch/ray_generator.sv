@@ -23,8 +23,8 @@
 // The pipeline cannot be stopped: valid bits travel with the rays, and credit_fifo at its end admits rays. A missing credit stops
 // D and the counters of the place, and nothing else.
 //
-// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 28
-// clocks, 31 with ROUND; throughput one ray a clock. `busy` falls two clocks after the last ray has left. The output is a
+// `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 27
+// clocks, 30 with ROUND; throughput one ray a clock. `busy` falls two clocks after the last ray has left. The output is a
 // valid/ready stream; a ray stays until its transfer. `rst` ends the frame.
 
 `default_nettype none
@@ -70,7 +70,7 @@ module ray_generator #(
     // SUM: number of clocks by which the sum of the squares is later than the largest component of D. LAST: number of clocks
     // until a ray leaves the pipeline.
     localparam int unsigned SUM  = ROUND ? 3 : 0;
-    localparam int unsigned LAST = SUM + 24;
+    localparam int unsigned LAST = SUM + 23;
 
     logic          starts, begins, loads, fresh, running, credit, enters, empty, ends_line, ends_eye, ends_band, ends;
     logic [LAST:0] valid;
@@ -181,11 +181,11 @@ module ray_generator #(
 
     assign longest_2 = longer(largest_2, margin);
 
-    delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .enable(1'b1), .in(d_0), .out(d_4));
+    wide_delay #(.WIDTH(75), .CLOCKS(4)) wait_for_inverse (.clk, .in(d_0), .out(d_4));
 
     // `part` is the factor by which the near plane's depth is multiplied: the largest component of D, or with `round` the
     // length of D, computed from the index in the table of inverses and the entry there.
-    logic [10:0] part_10, part_19;
+    logic [10:0] part_10, part_18;
 
     if (ROUND) begin : by_squares
         logic [16:0]        x_now, y_now, z_now, y_late, z_late, round_inverse_4, inverse_7;
@@ -250,21 +250,21 @@ module ray_generator #(
     );
 
     logic             eye_9;
-    logic [22:0]      near_22;
+    logic [22:0]      near_21;
     logic [33:0]      near_product;
-    logic [2:0][22:0] entry_22;
+    logic [2:0][22:0] entry_21;
 
     delay #(.WIDTH(1), .CLOCKS(9)) eye_waits (.clk, .enable(1'b1), .in(STEREO && place_0.eye), .out(eye_9));
-    delay #(.WIDTH(11), .CLOCKS(9)) part_stays (.clk, .enable(1'b1), .in(part_10), .out(part_19));
+    delay #(.WIDTH(11), .CLOCKS(8)) part_stays (.clk, .enable(1'b1), .in(part_10), .out(part_18));
 
     // For each axis: the distance outside of the box, and the first t of the entry into it, by clock (the suffix of a name).
     logic [2:0][23:0] outside_9, outside_16;
-    logic [2:0][22:0] t_13, t_20;
+    logic [2:0][22:0] t_13, t_19;
 
-    block_delay #(.WIDTH(72), .CLOCKS(7)) outside_waits (.clk, .in(outside_9), .out(outside_16));
-    block_delay #(.WIDTH(69), .CLOCKS(7)) t_waits (.clk, .in(t_13), .out(t_20));
+    wide_delay #(.WIDTH(72), .CLOCKS(7)) outside_waits (.clk, .in(outside_9), .out(outside_16));
+    wide_delay #(.WIDTH(69), .CLOCKS(6)) t_waits (.clk, .in(t_13), .out(t_19));
 
-    // Clocks 10 to 22 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
+    // Clocks 10 to 21 compute, for each axis, the ray parameter t at which the ray enters the box about the field.
     for (genvar i = 0; i < 3; i++) begin : axes
         logic signed [42:0] scaled;
         logic               backwards_9, negative_9;
@@ -279,20 +279,19 @@ module ray_generator #(
         assign negative_9 = eye_9 ? origins[1][i][24] : origins[0][i][24];
 
         // By clock (the suffix of a name): 12 outside·inverse; 13 the same, saturated, which is a first t; 16 t·(|d| + 1), the
-        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse; 21 the sum of
-        // both t; 22 the same, saturated, which is the entry into the box.
+        // distance covered at this t; 17 the distance from there to the box; 20 this distance times the inverse, plus the first t;
+        // 21 the same, saturated, which is the entry into the box.
         logic [16:0]        part_7, part_13, inverse_17;
         logic [24:0]        left_17;
-        logic signed [41:0] product_12, gone_16, product_20;
+        logic signed [41:0] product_12, gone_16;
+        logic signed [42:0] sum_20;
         logic [22:0]        t_15;
-        logic [33:0]        sum_21;
-        logic               comes_21, inside_20;
+        logic               comes_20;
 
         assign outside_9[i] = eye_9 ? outside[1][i] : outside[0][i];
         assign part_7    = direction_7[i][16:0] ^ {17{direction_7[i][17]}};
 
-        delay #(.WIDTH(1), .CLOCKS(12)) coming (.clk, .enable(1'b1), .in(negative_9 != backwards_9), .out(comes_21));
-        delay #(.WIDTH(1), .CLOCKS(3)) beyond (.clk, .enable(1'b1), .in(left_17[24]), .out(inside_20));
+        delay #(.WIDTH(1), .CLOCKS(11)) coming (.clk, .enable(1'b1), .in(negative_9 != backwards_9), .out(comes_20));
         delay #(.WIDTH(17), .CLOCKS(6)) part_waits (.clk, .enable(1'b1), .in(part_7), .out(part_13));
         delay #(.WIDTH(17), .CLOCKS(8)) inverse_waits (.clk, .enable(1'b1), .in(inverse_9[i]), .out(inverse_17));
         delay #(.WIDTH(23), .CLOCKS(2)) t_goes (.clk, .enable(1'b1), .in(t_13[i]), .out(t_15));
@@ -303,40 +302,40 @@ module ray_generator #(
         multiply_add #(.BITS(42)) covered (
             .clk, .enable(1'b1), .a({2'b0, t_13[i]}), .b({1'b0, part_13}), .c({19'b0, t_15}), .p(gone_16)
         );
-        multiply_add #(.BITS(42)) rest (
-            .clk, .enable(1'b1), .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17}), .c('0), .p(product_20)
+        // A negative distance is from inside of the box: nothing is added.
+        multiply_add #(.BITS(43)) rest (
+            .clk, .enable(1'b1), .a({1'b0, left_17[23:0]}), .b({1'b0, inverse_17 & {17{!left_17[24]}}}), .c({11'b0, t_19[i], 9'b0}),
+            .p(sum_20)
         );
         always_ff @(posedge clk) begin
             t_13[i] <= product_12[31:9] | {23{product_12[41:32] != '0}};
             left_17 <= {1'b0, outside_16[i]} + {1'b1, ~gone_16[40:17]};
-            // The sum is below 2^32, because the remaining distance is at most the whole distance, and its inverse is below 2^17.
-            sum_21 <= 34'(t_20[i]) + 34'(product_20[41:9] & {33{!inside_20}});
-            entry_22[i] <= !comes_21 || PREPASS && cones ? '0 : sum_21[22:0] | {23{sum_21[33:23] != '0}};
+            entry_21[i] <= !comes_20 || PREPASS && cones ? '0 : sum_20[31:9] | {23{sum_20[41:32] != '0}};
         end
 
-        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], product_20[8:0]};
+        wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], sum_20[42], sum_20[8:0]};
     end
 
-    // In clock 22 the t of the near plane is there, in the same clock as those of the entries into the box.
+    // In clock 21 the t of the near plane is there, in the same clock as those of the entries into the box.
     multiply_add #(.BITS(34)) at_near (
-        .clk, .enable(1'b1), .a({2'b0, near_19}), .b({7'b0, part_19}), .c('0), .p(near_product)
+        .clk, .enable(1'b1), .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );
-    assign near_22 = near_product[32:10];
+    assign near_21 = near_product[32:10];
 
-    // Clocks 23 and 24 select the start of the ray: the largest of the four values of t of clock 22, which are those of the
+    // Clocks 22 and 23 select the start of the ray: the largest of the four values of t of clock 21, which are those of the
     // near plane and of the entry into the box along each axis.
-    logic [22:0] farther_23, later_23, start_24;
+    logic [22:0] farther_22, later_22, start_23;
 
     always_ff @(posedge clk) begin
-        farther_23 <= entry_22[0] > entry_22[1] ? entry_22[0] : entry_22[1];
-        later_23   <= entry_22[2] > near_22 ? entry_22[2] : near_22;
-        start_24   <= farther_23 > later_23 ? farther_23 : later_23;
+        farther_22 <= entry_21[0] > entry_21[1] ? entry_21[0] : entry_21[1];
+        later_22   <= entry_21[2] > near_21 ? entry_21[2] : near_21;
+        start_23   <= farther_22 > later_22 ? farther_22 : later_22;
     end
 
-    // `near_19` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_24` is the
+    // `near_18` is the near plane of a ray, or the depth that its cone has cleared if that is farther. `spread_23` is the
     // spread of a cone.
-    logic [22:0] near_19;
-    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_24;
+    logic [22:0] near_18;
+    logic [raymarch_pkg::SPREAD_BITS-1:0] spread_23;
 
     if (PREPASS) begin : with_prepass
         localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
@@ -359,9 +358,9 @@ module ray_generator #(
                 end
             end
             number_1 <= row_number + (STEREO && place.eye ? 14'(CONES_ACROSS / 2) : 14'd0) + 14'(place.column >> block);
-            near_19  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
+            near_18  <= prepass && !cones && cleared > near_limit ? cleared : near_limit;
         end
-        delay #(.WIDTH(14), .CLOCKS(SUM + 15)) number_waits (.clk, .enable(1'b1), .in(number_1), .out(number));
+        delay #(.WIDTH(14), .CLOCKS(SUM + 14)) number_waits (.clk, .enable(1'b1), .in(number_1), .out(number));
 
         always_comb begin
             place_now = place;
@@ -378,26 +377,26 @@ module ray_generator #(
         multiply_add #(.BITS(43)) widening (
             .clk, .enable(1'b1), .a({11'b0, spread}), .b({1'b0, inverse_4}), .c(43'd2 << 11), .p(spread_7)
         );
-        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(17)) spread_goes (
-            .clk, .enable(1'b1), .in(spread_7[26:11] & {16{cones}}), .out(spread_24)
+        delay #(.WIDTH(raymarch_pkg::SPREAD_BITS), .CLOCKS(16)) spread_goes (
+            .clk, .enable(1'b1), .in(spread_7[26:11] & {16{cones}}), .out(spread_23)
         );
         wire _unused = &{1'b0, spread_7[42:27], spread_7[10:0]};
     end else begin : rays_alone
         assign place_now = place;
         assign margin    = '0;
-        assign near_19   = near_limit;
-        assign spread_24 = '0;
+        assign near_18   = near_limit;
+        assign spread_23 = '0;
         assign number    = '0;
         wire _unused = &{1'b0, prepass, cones, fine, block, offset, spread, cleared};
     end
 
-    raymarch_pkg::place_t place_24;
-    logic [9:0]        length_24;
-    logic [2:0][17:0]  direction_24;
+    raymarch_pkg::place_t place_23;
+    logic [9:0]        length_23;
+    logic [2:0][17:0]  direction_23;
 
-    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(24)) place_goes (.clk, .enable(1'b1), .in(place_0), .out(place_24));
-    delay #(.WIDTH(10), .CLOCKS(14)) length_goes (.clk, .enable(1'b1), .in(length_10), .out(length_24));
-    delay #(.WIDTH(54), .CLOCKS(17)) direction_goes (.clk, .enable(1'b1), .in(direction_7), .out(direction_24));
+    delay #(.WIDTH(raymarch_pkg::PLACE_BITS), .CLOCKS(23)) place_goes (.clk, .enable(1'b1), .in(place_0), .out(place_23));
+    delay #(.WIDTH(10), .CLOCKS(13)) length_goes (.clk, .enable(1'b1), .in(length_10), .out(length_23));
+    wide_delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .in(direction_7), .out(direction_23));
 
     // Without cones there is no spread to keep.
     localparam int unsigned KEPT_BITS = raymarch_pkg::PLACE_BITS + 10 + 23 + 54 + (PREPASS ? raymarch_pkg::SPREAD_BITS : 0);
@@ -406,7 +405,7 @@ module ray_generator #(
 
     credit_fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) leaving (
         .clk, .rst, .idle(empty), .credit, .sent(running),
-        .in_valid(valid[LAST]), .in_data(KEPT_BITS'({spread_24, place_24, length_24, start_24, direction_24})),
+        .in_valid(valid[LAST]), .in_data(KEPT_BITS'({spread_23, place_23, length_23, start_23, direction_23})),
         .out_valid, .out_ready, .out_data(kept)
     );
 

@@ -1,0 +1,32 @@
+// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs: for words so wide that this saves more than
+// the counter of the places takes. The shift registers of the module delay take a LUT for each bit.
+//
+//   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
+//
+// CLOCKS is at least 3.
+
+`default_nettype none
+
+module wide_delay #(
+    parameter int unsigned WIDTH  = 72,
+    parameter int unsigned CLOCKS = 4
+) (
+    input  wire              clk,
+    input  wire  [WIDTH-1:0] in,
+    output logic [WIDTH-1:0] out
+);
+    localparam int unsigned PLACES     = CLOCKS - 1;
+    localparam int unsigned PLACE_BITS = $clog2(PLACES);
+
+    (* ram_style = "distributed" *) logic [WIDTH-1:0] places [0:2**PLACE_BITS-1];
+    // The place with the oldest word, which is read and then replaced by the newest.
+    logic [PLACE_BITS-1:0] place;
+
+    always_ff @(posedge clk) begin
+        places[place] <= in;
+        out           <= places[place];
+        place         <= place == PLACE_BITS'(PLACES - 1) ? '0 : place + 1'b1;
+    end
+endmodule
+
+`default_nettype wire
