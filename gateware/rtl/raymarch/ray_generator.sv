@@ -398,8 +398,7 @@ module ray_generator #(
     delay #(.WIDTH(10), .CLOCKS(13)) length_goes (.clk, .enable(1'b1), .in(length_10), .out(length_23));
     wide_delay #(.WIDTH(54), .CLOCKS(16)) direction_goes (.clk, .in(direction_7), .out(direction_23));
 
-    // Without cones there is no spread to keep.
-    localparam int unsigned KEPT_BITS = raymarch_pkg::PLACE_BITS + 10 + 23 + 54 + (PREPASS ? raymarch_pkg::SPREAD_BITS : 0);
+    localparam int unsigned KEPT_BITS = raymarch_pkg::ray_bits(PREPASS);
 
     logic [KEPT_BITS-1:0] kept;
 

@@ -37,6 +37,11 @@ package raymarch_pkg;
         logic [2:0][DIRECTION_BITS-1:0] direction;
     } ray_t;
 
+    // Returns the number of low bits of a ray_t that matter in a build with the prepass or without it: only cones have a spread.
+    function automatic int unsigned ray_bits(input bit prepass);
+        ray_bits = PLACE_BITS + 10 + T_BITS + 3 * DIRECTION_BITS + (prepass ? SPREAD_BITS : 0);
+    endfunction
+
     typedef enum logic [1:0] {MISS = 2'd0, HIT = 2'd1, UNDECIDED = 2'd2} state_t;
 
     // The result of a ray that has ended at the ray parameter `t` after `steps` evaluations. `surface` is {axis, positive} of a
@@ -123,6 +128,11 @@ package raymarch_pkg;
         field_clocks = fields_pkg::flat_clocks(levels, fields);
         if (round && field_clocks < 19) field_clocks = 19;
         if (round && fields != 0) field_clocks = field_clocks + (blend ? 8 : 1);
+    endfunction
+
+    // Returns whether the rings of a build are short, 30 slots at most. Arguments: as of field_clocks.
+    function automatic bit has_short_rings(input int unsigned levels, input int unsigned fields, input bit round, input bit blend);
+        has_short_rings = field_clocks(levels, fields, round, blend) <= 24;
     endfunction
     /* verilator lint_on UNUSEDPARAM */
 endpackage

@@ -15,6 +15,9 @@
 // ends wait in a FIFO in block RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of
 // very different lengths.
 //
+// Where rays of one evaluation follow rays of many, the lanes need more than the one ray a clock that the generator makes. A long
+// ring holds enough rays to bridge this; a lane with a short ring has a queue of rays.
+//
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Then round_light stands
 // before ray_paint, and a pixel on a sphere or fillet takes a clock for each light there.
 //
@@ -174,29 +177,43 @@ module raymarcher #(
     end
 
     // Sends a ray to the first lane that has room.
-    logic [LANES-1:0]   lane_ready, lane_valid, lane_takes, end_valid, end_taken, evaluates, waits;
+    logic [LANES-1:0]   lane_ready, lane_valid, end_valid, end_taken, idles, evaluates, waits;
     logic [LANES-1:0][raymarch_pkg::END_BITS-1:0] end_of;
 
-    always_comb begin
-        lane_valid = '0;
-        for (int i = LANES - 1; i >= 0; i--)
-            if (lane_ready[i]) lane_valid = LANES'(1) << i;
-        if (!ray_valid || !may_enter) lane_valid = '0;
-    end
-    assign lane_takes = lane_ready & {LANES{may_enter}};
-    assign ray_ready  = lane_takes != '0;
+    always_comb
+        for (int i = 0; i < LANES; i++)
+            lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
+    assign ray_ready = may_enter && lane_ready != '0;
+
+    // Places of the queue before a lane; 0 for none.
+    localparam int unsigned QUEUE    = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
+    localparam int unsigned RAY_BITS = raymarch_pkg::ray_bits(PREPASS);
 
     for (genvar i = 0; i < LANES; i++) begin : lanes
+        logic                entry_valid, entry_ready;
+        logic [RAY_BITS-1:0] entry;
+
+        if (QUEUE != 0) begin : queued
+            fifo #(.WIDTH(RAY_BITS), .DEPTH(QUEUE)) queue (
+                .clk, .rst(reset), .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_data(ray[RAY_BITS-1:0]),
+                .out_valid(entry_valid), .out_ready(entry_ready), .out_data(entry)
+            );
+        end else begin : at_once
+            assign {entry_valid, lane_ready[i], entry} = {lane_valid[i], entry_ready, ray[RAY_BITS-1:0]};
+        end
+
+        assign idles[i] = entry_ready && !entry_valid;
+
         ring_lane #(.LEVELS(LEVELS), .FIELDS(FIELDS), .ROUND(ROUND), .BLEND(BLEND), .STEREO(STEREO), .PREPASS(PREPASS)) lane (
             .clk, .rst(reset), .origins, .bounds, .solid, .tuning, .cones, .sphere_write, .sphere_number, .sphere,
-            .in_valid(lane_valid[i]), .in_ready(lane_ready[i]), .in_ray(ray),
+            .in_valid(entry_valid), .in_ready(entry_ready), .in_ray($bits(ray)'(entry)),
             .out_valid(end_valid[i]), .out_ready(end_taken[i]), .out_end(end_of[i]),
             .evaluates(evaluates[i]), .waits(waits[i])
         );
     end
 
-    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This is enough, since all lanes together
-    // receive at most one ray a clock.
+    // In each clock one lane, chosen in rotation, may hand over the end of a ray. This is enough, since the generator makes at
+    // most one ray a clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;
@@ -287,15 +304,13 @@ module raymarcher #(
         wire _unused = &{1'b0, prepass, number, cones_left};
     end
 
-    logic [LANES-1:0] idles;
-    logic             ended;
+    logic ended;
 
     function automatic logic [2:0] ones(input logic [LANES-1:0] which);
         ones = '0;
         for (int i = 0; i < LANES; i++) ones = ones + 3'(which[i]);
     endfunction
 
-    assign idles = lane_ready & ~(lane_valid & {LANES{ray_valid}});
     assign ended = paint_valid && paint_ready;
 
     always_comb begin
@@ -311,7 +326,7 @@ module raymarcher #(
         events.undecided      = ended && paint_end.state == raymarch_pkg::UNDECIDED;
     end
 
-    wire _unused = generating;
+    wire _unused = &{1'b0, generating, ray};
 endmodule
 
 `default_nettype wire

@@ -31,7 +31,7 @@ module ring_lane #(
     parameter bit          STEREO = 1'b1,
     parameter bit          PREPASS = 1'b0,
     // Places in the FIFO of ends, more than the number of slots: with fewer places some slots would stay empty.
-    parameter int unsigned PLACES = raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND) > 24 ? 64 : 32
+    parameter int unsigned PLACES = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 64
 ) (
     input  wire                      clk,
     input  wire                      rst,

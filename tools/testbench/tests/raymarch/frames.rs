@@ -208,6 +208,8 @@ fn frames_of_all_fields_with_stalls() {
     for text in further_kinds() {
         draw_in_short(&mut bench, &mut random, &[text]);
     }
+    // Pixels that are not taken hold up the ends of rays, and these the rays.
+    assert!(bench.counters.get("cycles_stalled") > 0);
 }
 
 /// Draws a frame of a random field in `fields` with a low limit of steps, since an undecided ray, which takes all steps,
