@@ -45,15 +45,20 @@ module band_pipe #(
     output logic                empty,
     output logic                held
 );
+    // The place of a group, with which later groups are compared on the way, and its pixels.
     typedef struct packed {
         logic [ROW_BITS-1:0] row;
         logic [7:0]          mask;
+    } place_t;
+
+    typedef struct packed {
         logic [1:0]          halves;
         logic [8*18-1:0]     codes;
         logic [8*16-1:0]     colours;
-    } group_t;
+    } pixels_t;
 
-    group_t     issued, reading_0, reading_1, comparing;
+    place_t     issued, reading_0, reading_1, compared;
+    pixels_t    pixels, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
     // As many ones, from bit 0 on, as the clocks for which the issued group still waits. Only a valid group waits.
@@ -82,13 +87,14 @@ module band_pipe #(
         // Without a group this loads a payload that is not valid, so that only one register drives the enable.
         if (!held) begin
             issued_valid <= group_valid && open;
-            issued       <= {group_row, group_mask, group_halves, group_codes, group_colours};
+            issued       <= {group_row, group_mask};
+            pixels       <= {group_halves, group_codes, group_colours};
         end
 
         reading_0 <= issued;
         if (!issue) reading_0.mask <= '0;
         reading_1 <= reading_0;
-        comparing <= reading_1;
+        compared  <= reading_1;
         occupied  <= {occupied[1:0], issue};
 
         if (rst) begin
@@ -97,15 +103,17 @@ module band_pipe #(
             occupied       <= '0;
             reading_0.mask <= '0;
             reading_1.mask <= '0;
-            comparing.mask <= '0;
+            compared.mask  <= '0;
         end
     end
 
+    wide_delay #(.WIDTH($bits(pixels)), .CLOCKS(3)) pixels_wait (.clk, .in(pixels), .out(comparing));
+
     for (genvar lane = 0; lane < 8; lane++) begin : lanes
-        assign write_lanes[lane] = comparing.mask[lane]
+        assign write_lanes[lane] = compared.mask[lane]
             && (comparing.halves != '1 || !stored_written[lane] || comparing.codes[18*lane +: 18] >= stored[18*lane +: 18]);
     end
-    assign write_row     = comparing.row;
+    assign write_row     = compared.row;
     assign write_halves  = comparing.halves;
     assign write_codes   = comparing.codes;
     assign write_colours = comparing.colours;
