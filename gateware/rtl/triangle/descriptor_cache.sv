@@ -142,40 +142,62 @@ module descriptor_cache #(
 
     // Second stage: the words of a descriptor that missed go to its cache line, one a clock.
     logic [WORD_BITS-1:0] words;
+    logic                 takes;
 
     assign mark_done  = mark_end || mark_hit || words == WORD_BITS'(WORDS);
     assign data_ready = marked && !mark_done;
+    assign takes      = data_ready && data_valid;
 
     always_ff @(posedge clk) begin
-        if (data_ready && data_valid) words <= words + 1'b1;
+        if (takes) words <= words + 1'b1;
         if (reads_again) words <= '0;
         if (rst) words <= '0;
     end
 
     // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM has two words of
     // each line, because one word of each fills only half of it: the first ones are read a clock before the second ones. The
-    // block RAM holds the second ones until the item has moved, so the register behind it needs no enable.
-    localparam int unsigned PAIRS = WORDS / 2 + WORDS % 2;
-
-    logic                        read_valid, arrives;
-    logic [PAIRS-1:0][1:0][127:0] descriptor;
+    // block RAM holds the second ones until the item has moved, so the register behind it needs no enable. The last one of an
+    // odd number of words makes two words of 64 bits. The second one is written a clock late, still before it is read.
+    logic                 read_valid, arrives;
+    logic [128*WORDS-1:0] descriptor;
 
     assign reads = marked && mark_done && !read_valid;
 
-    for (genvar i = 0; i < PAIRS; i++) begin : pairs
+    for (genvar i = 0; i < WORDS / 2 + WORDS % 2; i++) begin : pairs
+        localparam int unsigned WIDTH = i < WORDS / 2 ? 128 : 64;
+
         (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
-        logic [127:0] lines [0:2**(LINE_BITS+1)-1];
-        logic [127:0] cached;
+        logic [WIDTH-1:0] lines [0:2**(LINE_BITS+1)-1];
+        logic [WIDTH-1:0] part, cached;
+        logic             stores, second;
         // A copy of `reads_again` for each block RAM, so that it enables no more than 128 flip-flops. `reads` is never high in two
         // successive clocks; each copy depends on itself, because synthesis merges registers with equal inputs.
-        logic first_is_read;
+        logic             first_is_read;
+
+        if (WIDTH == 128) begin : of_two_words
+            assign stores = takes && words[WORD_BITS-1:1] == (WORD_BITS-1)'(i);
+            assign second = words[0];
+            assign part   = data;
+        end else begin : of_the_last_word
+            logic        first;
+            logic [63:0] high;
+
+            assign first  = takes && words == WORD_BITS'(WORDS - 1);
+            assign stores = first || second;
+            assign part   = second ? high : data[63:0];
+
+            always_ff @(posedge clk) begin
+                second <= first;
+                high   <= data[127:64];
+            end
+        end
 
         always_ff @(posedge clk) begin
             first_is_read <= reads && !first_is_read;
-            if (data_ready && data_valid && words[WORD_BITS-1:1] == (WORD_BITS-1)'(i)) lines[{words[0], mark_line}] <= data;
+            if (stores) lines[{second, mark_line}] <= part;
             if (reads || reads_again) cached <= lines[{reads_again, mark_line}];
-            if (first_is_read) descriptor[i][0] <= cached;
-            descriptor[i][1] <= cached;
+            if (first_is_read) descriptor[256*i +: WIDTH] <= cached;
+            descriptor[256*i+WIDTH +: WIDTH] <= cached;
         end
     end
 
@@ -194,20 +216,14 @@ module descriptor_cache #(
         end
     end
 
-    // Word k of a line is `descriptor[k / 2][k % 2]`.
-    logic [256*PAIRS-1:0] words_of_line;
-
-    assign words_of_line  = descriptor;
-    assign out_descriptor = words_of_line[383:0];
+    assign out_descriptor = descriptor[383:0];
 
     if (SMOOTH) begin : light
-        assign out_planes = words_of_line[384 +: PLANES_BITS];
+        assign out_planes = descriptor[384 +: PLANES_BITS];
 
-        wire _unused = &{1'b0, words_of_line[767:673]};
+        wire _unused = &{1'b0, descriptor[767:673]};
     end else begin : flat
         assign out_planes = '0;
-
-        wire _unused = &{1'b0, words_of_line[511:384]};
     end
 endmodule
 
