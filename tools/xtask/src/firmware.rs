@@ -1,6 +1,7 @@
 //! `cargo xtask firmware`: the firmware as the image that the BIOS loads.
 
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 use std::process::Command;
 
@@ -46,6 +47,8 @@ pub struct Image {
     pub constants: u64,
     /// Variables: those with a value at start, which are in the image too, and those that are 0 at start.
     pub variables: u64,
+    /// Addresses of the stack, which grows down from the end.
+    pub stack: Range<u64>,
 }
 
 /// Builds the firmware for `board` with all of its parts, and with `features`. The image is `target/firmware/glint.bin` for the virtual
@@ -128,6 +131,7 @@ fn compile(board: Board, suffixes: &[&str], has_default: bool, features: &[&str]
         code,
         constants,
         variables,
+        ..
     } = image;
     run::print_progress(&format!(
         "  {name}.bin: {length} bytes (code {code}, constants {constants}), variables {variables}"
@@ -156,12 +160,7 @@ fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
         "the entry point is {:#010x}, expected {base:#010x}, where the BIOS jumps to",
         file.entry()
     );
-    let symbol = |name: &str| {
-        let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
-        found
-            .map(|symbol| symbol.address())
-            .with_context(|| format!("no symbol {name}"))
-    };
+    let symbol = |name: &str| symbol(&file, name);
     let windows_end = symbol("_windows_end")?;
     ensure!(
         windows_end <= end,
@@ -205,6 +204,14 @@ fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
     Ok(image)
 }
 
+/// The value of a symbol.
+fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Result<u64> {
+    let found = file.symbols().find(|symbol| symbol.name() == Ok(name));
+    found
+        .map(|symbol| symbol.address())
+        .with_context(|| format!("no symbol {name}"))
+}
+
 /// The sizes of an ELF file, whose image has this length.
 fn sizes(elf: &[u8], length: u64) -> Result<Image> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
@@ -222,6 +229,7 @@ fn sizes(elf: &[u8], length: u64) -> Result<Image> {
         code: size(&[SectionKind::Text]),
         constants: size(&[SectionKind::ReadOnlyData, SectionKind::ReadOnlyString]),
         variables: size(&[SectionKind::Data, SectionKind::UninitializedData]),
+        stack: symbol(&file, "__ebss")?..symbol(&file, "_stack_start")?,
     })
 }
 

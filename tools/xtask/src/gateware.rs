@@ -4,6 +4,7 @@
 //! makes `libglint_soc.so` of the Verilog; for the ULX3S, `gateware/ecp5` makes a bitstream. Each part is skipped if its inputs
 //! have not changed.
 
+use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -241,15 +242,7 @@ fn make_bitstream(folder: &Path) -> Result<()> {
             ("route", "place and route (ulx3s)"),
             ("bitstream", "bitstream (ulx3s)"),
         ] {
-            run::step(
-                name,
-                Command::new(paths::venv_program("python"))
-                    .args(["-m", "ecp5", step])
-                    .arg(folder)
-                    .current_dir(folder)
-                    .env("PYTHONPATH", &gateware)
-                    .env("PYTHONDONTWRITEBYTECODE", "1"),
-            )?;
+            ecp5_step(folder, step, name)?;
         }
         fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))?;
     }
@@ -259,6 +252,50 @@ fn make_bitstream(folder: &Path) -> Result<()> {
         run::print_progress(&format!("  {line}"));
     }
     Ok(())
+}
+
+/// Runs a step of `gateware/ecp5` on the output of [`generate`].
+fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
+    run::step(
+        name,
+        Command::new(paths::venv_program("python"))
+            .args(["-m", "ecp5", step])
+            .arg(folder)
+            .current_dir(folder)
+            .env("PYTHONPATH", paths::root().join("gateware"))
+            .env("PYTHONDONTWRITEBYTECODE", "1"),
+    )
+}
+
+/// The cells of a design and those of its FPGA, by the names of their kinds.
+pub type Cells = BTreeMap<String, [u64; 2]>;
+
+/// Counts the cells of the ULX3S's build with command-line options of `glint_soc`, which is made in `target/gateware/ulx3s-NAME`.
+/// Nothing is placed or routed.
+///
+/// # Errors
+/// As [`build`].
+pub fn ulx3s_cells(name: &str, options: &[&str]) -> Result<Cells> {
+    let folder = generate_beside(Board::Ulx3s, name, options)?;
+    let cells = folder.join("ecp5/cells.json");
+    let stamp = folder.join("cells.stamp");
+    let sources = [
+        paths::root().join("gateware/ecp5"),
+        folder.join("generated.stamp"),
+    ];
+    let inputs = fingerprint(&sources, "")?;
+    if !is_current(&stamp, &inputs) || !cells.exists() {
+        ecp5_step(
+            &folder,
+            "synthesis",
+            &format!("synthesis of {name} (ulx3s)"),
+        )?;
+        ecp5_step(&folder, "pack", &format!("cells of {name} (ulx3s)"))?;
+        fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))?;
+    }
+    let text =
+        fs::read_to_string(&cells).with_context(|| format!("reading {}", cells.display()))?;
+    serde_json::from_str(&text).with_context(|| format!("{}", cells.display()))
 }
 
 /// Returns a hash, as text, of `salt` and of the paths and contents of all files below `roots`.

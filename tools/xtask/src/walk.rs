@@ -2,7 +2,8 @@
 //!
 //! A build is that of a scene, or of a single optional block with the blocks which this one is a part of. Each has to start and to
 //! answer `info` with its blocks. The build of a scene draws the scene's picture with the firmware for the scene; the picture has to
-//! equal that of the complete build, which has all blocks and all parts of the firmware, in no more cycles.
+//! equal that of the complete build, which has all blocks and all parts of the firmware, in no more cycles. That firmware has to refuse
+//! the commands of all other parts.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ use std::slice;
 
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::block::Block;
+use glint_core::feature::{self, Feature};
 use glint_scene::Scene;
 use serde::Deserialize;
 
@@ -22,6 +24,29 @@ const ONLY: &str = "only-";
 
 /// The builds of a test run, one each of the kinds: a scene, a block that draws nothing alone, and one that draws.
 pub const SAMPLE: [&str; 3] = ["wireframe", "only-scanout", "only-gesture"];
+
+/// A command of each part of the firmware that has one. Without the field, `sphere` is not reached.
+const COMMANDS: [(Feature, &str); 19] = [
+    (feature::MESH, "cull on"),
+    (feature::OBJECT, "object"),
+    (feature::EDGES, "edges"),
+    (feature::WIREFRAME, "program"),
+    (feature::FIT, "fit"),
+    (feature::FIELD, "field"),
+    (feature::SPHERES, "field sphere:1"),
+    (feature::STEREO, "stereo"),
+    (feature::PREPASS, "prepass on"),
+    (feature::FOG, "fog"),
+    (feature::MESH_IN_FIELD, "mesh"),
+    (feature::LIGHT, "light"),
+    (feature::IMU, "imu"),
+    (feature::REPLAY, "replay"),
+    (feature::GESTURE, "gesture"),
+    (feature::UPLOAD, "models"),
+    (feature::OVERLAY, "overlay"),
+    (feature::DEMO, "demo"),
+    (feature::BENCH, "bench"),
+];
 
 /// The statistics of a frame from `glint render --stats`, as far as a walk compares them.
 #[derive(Deserialize)]
@@ -109,6 +134,7 @@ fn of_scene(scene: &Scene, complete: &Build) -> Result<String> {
     let own = Build::of_scene(scene)?;
     let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();
     own.answers(&blocks)?;
+    own.refuses_others(scene)?;
     let [own, reference] = [own.draw(scene)?, complete.draw(scene)?];
     ensure!(
         own.png == reference.png,
@@ -192,6 +218,26 @@ impl Build {
         Ok(())
     }
 
+    /// Fails unless the firmware refuses the commands of each part that the scene does not need. The emulated board runs it.
+    fn refuses_others(&self, scene: &Scene) -> Result<()> {
+        let needs = scene.needs().features;
+        for (part, command) in COMMANDS {
+            let is_reached = part != feature::SPHERES || needs.contains(&feature::FIELD);
+            if needs.contains(&part) || !is_reached {
+                continue;
+            }
+            let arguments = ["console", "emulated", "--send", command].map(Path::new);
+            let output = self.glint(&arguments).output()?;
+            let error = String::from_utf8_lossy(&output.stderr);
+            let expected = format!("lacks the feature {},", part.name);
+            ensure!(
+                !output.status.success() && error.contains(&expected),
+                "`{command}`: expected a refusal that {expected} got {error:?}"
+            );
+        }
+        Ok(())
+    }
+
     /// Draws the scene's picture.
     fn draw(&self, scene: &Scene) -> Result<Frame> {
         let folder = paths::target().join("walk");
@@ -243,6 +289,14 @@ mod tests {
         let error = subset("lamp").err().map(|error| error.to_string());
         let expected = format!("no block lamp: expected {}", Block::NAMES.join(", "));
         assert_eq!(error, Some(expected));
+    }
+
+    #[test]
+    fn every_part_but_the_soft_core_has_a_command() {
+        let parts = COMMANDS.map(|(part, _)| part);
+        for part in feature::ALL {
+            assert_eq!(parts.contains(&part), part != feature::CPU, "{}", part.name);
+        }
     }
 
     #[test]

@@ -1,4 +1,8 @@
 //! `cargo xtask resources --scenes`: the sizes of the builds for the built-in scenes, gateware and firmware, and what their frames take.
+//! [`page`] is docs/scene-builds.md.
+
+mod page;
+mod row;
 
 use std::fs;
 use std::process::Command;
@@ -6,23 +10,16 @@ use std::slice;
 
 use anyhow::{Context, Result, bail};
 use glint_scene::{Needs, Scene};
-use serde::Deserialize;
 
 use super::SOC;
-use super::budget::{Budget, Limits};
+use super::budget::Budget;
 use super::measure::{measured_line, two_at_a_time};
 use super::number::number;
-use super::size::{Resource, Size};
-use crate::gateware::{self, Board};
+use super::size::Size;
+use crate::firmware::Image;
+use crate::gateware::{self, Board, Library};
 use crate::{firmware, paths, run, scenes};
-
-/// The resources of a build in the columns of the table, with the names of their limits in a scene file.
-const COLUMNS: [(Resource, &str); 4] = [
-    (Resource::Lut, "lut"),
-    (Resource::Ff, "ff"),
-    (Resource::Dsp48, "dsp"),
-    (Resource::Ramb36, "ramb36"),
-];
+use row::{ALL, COLUMNS, Firmware, Frame, Row, Stats};
 
 /// Bytes of a word of the engines' memory ports.
 const WORD: f64 = 16.0;
@@ -33,41 +30,10 @@ const REFRESH: f64 = 60.0;
 /// Bytes of a pixel of the frame buffer.
 const PIXEL: f64 = 2.0;
 
-/// Name of the build for all scenes.
-const ALL: &str = "all";
+/// The share of the firmware with all parts that the firmware for a single scene takes at most.
+const FIRMWARE_SHARE: f64 = 0.5;
 
-/// The statistics of a frame from `glint render --stats`, as far as the table has them.
-#[derive(Deserialize)]
-struct Stats {
-    cycles: u64,
-    clock: u64,
-    words_read: u64,
-    words_written: u64,
-}
-
-/// What a scene's frame takes.
-struct Frame {
-    cycles: f64,
-    /// Frames a second, when one follows the other.
-    rate: f64,
-    /// Megabytes a second of main memory: the engines' at this rate, and scan-out's.
-    memory: f64,
-}
-
-/// A row of the table.
-struct Row {
-    name: String,
-    options: Vec<String>,
-    size: Size,
-    /// Bytes of the firmware's image.
-    firmware: f64,
-    /// `None` for the build for all scenes, and for smooth shading.
-    frame: Option<Frame>,
-    budget: Vec<(&'static str, f64)>,
-}
-
-/// Measures the builds, prints the table, and writes `docs/scene-builds.md` with `write`. The frames are drawn by the virtual board
-/// with all blocks.
+/// Measures the builds, prints the tables, and writes `docs/scene-builds.md` with `write`. The virtual board draws the frames.
 ///
 /// # Errors
 /// A build or a measurement fails, or is beyond the limits of its scene.
@@ -90,72 +56,98 @@ pub fn resources(write: bool) -> Result<()> {
     let sizes = two_at_a_time(names, |name| {
         Size::parse(&measured_line("size", &["--size"], name)?)
     })?;
+    let options: Vec<_> = builds[0].1.iter().map(String::as_str).collect();
+    let ulx3s = gateware::ulx3s_cells(ALL, &options)?;
     gateware::build(Board::Virtual)?;
-    firmware::build(Board::Virtual, &[])?;
+    let full = firmware::build(Board::Virtual, &[])?;
     run::build_program("glint", "glint")?;
     let rows = builds.into_iter().map(|(name, options)| {
         let soc = format!("{SOC}-{name}");
         let size = sizes.iter().find(|size| size.name == soc).cloned();
         let scene = scenes.iter().find(|scene| scene.name() == name);
-        let firmware = firmware::build_for(
-            Board::Urbana,
-            scene.map_or(&scenes[..], slice::from_ref),
-            &[],
-        )?;
         Ok(Row {
             size: size.with_context(|| format!("no size of {name}"))?,
-            firmware: firmware.length as f64,
-            // The soft core would make the descriptors of smooth frames, in minutes on the virtual board.
-            frame: scene
-                .filter(|scene| !scene.needs().smooth)
-                .map(frame)
-                .transpose()?,
+            firmware: firmware(&scenes, scene)?,
+            is_single: scene.is_some_and(|scene| scene.scenes().is_empty()),
+            frame: scene.map(frame).transpose()?,
             budget: scene.map(Scene::budget).unwrap_or_default().to_vec(),
             name,
             options,
         })
     });
     let rows = rows.collect::<Result<Vec<_>>>()?;
-    let table = table(&rows, &Budget::read()?.device);
-    print!("\n{table}");
+    let full = full.length as f64;
+    let text = page::tables(&rows, &Budget::read()?.device, &ulx3s, full);
+    print!("\n{text}");
     if write {
         let path = paths::root().join("docs/scene-builds.md");
-        fs::write(&path, page(&table)).with_context(|| format!("writing {}", path.display()))?;
+        fs::write(&path, page::page(&text))
+            .with_context(|| format!("writing {}", path.display()))?;
         run::print_progress("wrote docs/scene-builds.md");
     }
-    within(&rows)
+    within(&rows, full)
 }
 
-/// Draws a scene's frame on the virtual board.
+/// Builds the firmware for a scene, or for all `scenes` without one, and measures the stack on the emulated board.
+fn firmware(scenes: &[Scene], scene: Option<&Scene>) -> Result<Firmware> {
+    let built = scene.map_or(scenes, slice::from_ref);
+    let image = firmware::build_for(Board::Urbana, built, &[])?;
+    let stack = scene.map(|scene| stack(scene, &image)).transpose()?;
+    Ok(Firmware { image, stack })
+}
+
+/// Measures the stack that the firmware uses for the self-test and the scene's picture.
+fn stack(scene: &Scene, image: &Image) -> Result<u64> {
+    let name = scene.name();
+    let binary = paths::target().join(format!("firmware/glint-{name}.bin"));
+    let mut last = String::new();
+    run::watched_step(
+        &format!("stack of {name}"),
+        Command::new("cargo")
+            .args(["run", "--quiet", "--package", "emulated-board"])
+            .args(["--example", "stack", "--"])
+            .arg(binary)
+            .args([image.stack.start, image.stack.end].map(|address| address.to_string()))
+            .args(["selftest", &format!("scene {name}"), "render"])
+            .current_dir(paths::root()),
+        |line| line.clone_into(&mut last),
+    )?;
+    let bytes = last.trim().parse();
+    bytes.with_context(|| format!("the stack of {name}: expected a number of bytes, got {last:?}"))
+}
+
+/// Draws a scene's frame on the virtual board with all blocks, which has no smooth shading: a scene with it is drawn by its own build.
 fn frame(scene: &Scene) -> Result<Frame> {
+    let name = scene.name();
+    let needs = scene.needs();
+    let board = if needs.smooth {
+        let options = needs.options();
+        let options: Vec<_> = options.iter().map(String::as_str).collect();
+        gateware::build_beside(name, &options, Library::Quick)?
+    } else {
+        Board::Virtual.folder()
+    };
     let folder = paths::target().join("scenes");
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
-    let stats = folder.join(scene.name()).with_extension("json");
+    let stats = folder.join(name).with_extension("json");
     run::step(
-        &format!("frame of {}", scene.name()),
+        &format!("frame of {name}"),
         Command::new(paths::target().join("debug/glint"))
-            .args([
-                "render",
-                "--board",
-                "virtual",
-                "--scene",
-                scene.name(),
-                "--stats",
-            ])
+            .args(["render", "--board", "virtual", "--scene", name, "--stats"])
             .arg(&stats)
             .arg("--out")
             .arg(stats.with_extension("png"))
+            .env("GLINT_VIRTUAL_BOARD", board)
             .current_dir(paths::root()),
     )?;
     let text =
         fs::read_to_string(&stats).with_context(|| format!("reading {}", stats.display()))?;
     let stats: Stats = serde_json::from_str(&text)?;
-    let cycles = stats.cycles as f64;
-    let rate = stats.clock as f64 / cycles;
+    let rate = stats.clock as f64 / stats.cycles as f64;
     let engines = (stats.words_read + stats.words_written) as f64 * WORD * rate;
     let scan_out = scene.size().pixel_count() as f64 * PIXEL * REFRESH;
     Ok(Frame {
-        cycles,
+        stats,
         rate,
         memory: (engines + scan_out) / 1e6,
     })
@@ -164,9 +156,9 @@ fn frame(scene: &Scene) -> Result<Frame> {
 /// The value of a row that a limit of a scene bounds; `None` for one that is not measured here.
 fn value(row: &Row, name: &str) -> Option<f64> {
     match name {
-        "cycles" => row.frame.as_ref().map(|frame| frame.cycles),
+        "cycles" => row.frame.as_ref().map(|frame| frame.stats.cycles as f64),
         "fps" => row.frame.as_ref().map(|frame| frame.rate),
-        "firmware" => Some(row.firmware),
+        "firmware" => Some(row.firmware.image.length as f64),
         _ => {
             let column = COLUMNS.iter().find(|(_, limit)| *limit == name);
             column.map(|(resource, _)| row.size.of(*resource))
@@ -174,77 +166,21 @@ fn value(row: &Row, name: &str) -> Option<f64> {
     }
 }
 
-/// The rows as a table in Markdown; `device` has the limits of the XC7S50.
-fn table(rows: &[Row], device: &Limits) -> String {
-    let full = rows
-        .iter()
-        .find(|row| row.name == ALL)
-        .map(|row| row.size.of(Resource::Lut));
-    let mut out = "| scene | LUT | of all | FF | DSP48 | RAMB36 | slices | fits the XC7S50 | firmware | cycles | frames a second | \
-                   memory | build |\n|---|---:|---:|---:|---:|---:|---:|---|---:|---:|---:|---:|---|\n"
-        .to_owned();
-    for row in rows {
-        let lut = row.size.of(Resource::Lut);
-        let share = full.map_or(0.0, |full| 100.0 * lut / full);
-        let cells = [
-            Resource::Ff,
-            Resource::Dsp48,
-            Resource::Ramb36,
-            Resource::Slices,
-        ];
-        let cells = cells.map(|resource| number(row.size.of(resource)));
-        let frame = row.frame.as_ref().map_or_else(Default::default, |frame| {
-            [frame.cycles, frame.rate, frame.memory].map(|value| number(value.floor()))
-        });
-        out += &format!(
-            "| `{}` | {} | {share:.0} % | {} | {} | {} | {} | `{}` |\n",
-            row.name,
-            number(lut),
-            cells.join(" | "),
-            fits(&row.size, device),
-            number(row.firmware),
-            frame.join(" | "),
-            row.options.join(" ")
-        );
-    }
-    out
-}
-
-/// Whether a build fits a device: "yes", or what it has too much of.
-fn fits(size: &Size, device: &Limits) -> String {
-    let beyond = device.iter().filter_map(|(resource, limit)| {
-        let share = size.of(*resource) / f64::from(*limit) * 100.0;
-        (share > 100.0).then(|| format!("{} {share:.0} %", resource.name()))
-    });
-    let beyond: Vec<_> = beyond.collect();
-    if beyond.is_empty() {
-        "yes".to_owned()
-    } else {
-        format!("no: {}", beyond.join(", "))
-    }
-}
-
-fn page(table: &str) -> String {
-    format!(
-        "<!-- Generated by `cargo xtask resources --scenes --write`. Do not edit. -->
-
-# Builds for scenes
-
-The cells of the Urbana's SoC in the build for each [scene](scenes.md), and in the build for `{ALL}` scenes, by Yosys as in
-[resources.md](resources.md): slices are the lower bound. The column `firmware` has the bytes of the image for the scene. Cycles are
-those of the scene's frame, in its size, on the virtual board with all blocks and two lanes, which has no smooth shading. Frames a second
-are as many as can be drawn one after the other. The column `memory` has the megabytes a second that the engines then move, plus those
-of scan-out at 60 Hz, without the soft core's; [boards.md](boards.md) has what the memory of a board moves at most. The last column
-has the options of `cargo xtask gateware`.
-
-{table}"
-    )
-}
-
-/// Fails if a row is beyond a limit of its scene: `fps` is a least value, all others are greatest ones.
-fn within(rows: &[Row]) -> Result<()> {
+/// Fails if a row is beyond a limit of its scene: `fps` is a least value, all others are greatest ones. A single scene's firmware is
+/// limited to [`FIRMWARE_SHARE`] of the `full` bytes with all parts.
+fn within(rows: &[Row], full: f64) -> Result<()> {
     let mut lines = Vec::new();
     for row in rows {
+        let length = row.firmware.image.length as f64;
+        if row.is_single && length > FIRMWARE_SHARE * full {
+            lines.push(format!(
+                "{}: firmware: expected at most {:.0} % of the {} bytes with all parts, measured {}",
+                row.name,
+                100.0 * FIRMWARE_SHARE,
+                number(full),
+                number(length)
+            ));
+        }
         for (name, limit) in &row.budget {
             let Some(value) = value(row, name) else {
                 continue;
@@ -266,32 +202,35 @@ fn within(rows: &[Row]) -> Result<()> {
     if lines.is_empty() {
         return Ok(());
     }
-    bail!("beyond the budgets of scenes/*.toml:\n{}", lines.join("\n"))
+    bail!("beyond the budgets of the scenes:\n{}", lines.join("\n"))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::table::tests::measured;
+    use super::row::tests::row;
     use super::*;
 
     #[test]
-    fn a_row_has_what_is_beyond_the_device() {
-        let row = Row {
-            name: "lamp".into(),
-            options: vec!["--blocks".into(), "scanout".into()],
-            size: measured(None).sizes.remove(0),
-            firmware: 54_321.0,
-            frame: Some(Frame {
-                cycles: 1_354_166.7,
-                rate: 60.0,
-                memory: 55.3,
-            }),
-            budget: vec![],
+    fn fails_beyond_a_limit_and_above_half_of_the_firmware() {
+        let full = 108_642.0;
+        let lamp = |budget: &[(&'static str, f64)]| Row {
+            budget: budget.to_vec(),
+            ..row("lamp")
         };
-        let device = Limits::from([(Resource::Lut, 1_234), (Resource::Ramb36, 2)]);
-        let table = table(&[row], &device);
-        let expected = "| `lamp` | 1,234 | 0 % | 2,000 | 7 | 2.5 | 400 | no: RAMB36 125 % | 54,321 | 1,354,166 | 60 | 55 \
-                        | `--blocks scanout` |\n";
-        assert!(table.ends_with(expected), "{table}");
+        let kept = [("cycles", 1_354_166.0), ("fps", 60.0), ("lut", 1_234.0)];
+        within(&[lamp(&kept)], full).unwrap();
+        let beyond = lamp(&[("fps", 60.5), ("firmware", 54_320.0)]);
+        assert_eq!(
+            within(&[beyond], full - 1.0).unwrap_err().to_string(),
+            "beyond the budgets of the scenes:\n\
+             lamp: firmware: expected at most 50 % of the 108,641 bytes with all parts, measured 54,321\n\
+             lamp: fps: budget 60.5, measured 60\n\
+             lamp: firmware: budget 54320, measured 54,321"
+        );
+        let list = Row {
+            is_single: false,
+            ..lamp(&[])
+        };
+        within(&[list], full - 1.0).unwrap();
     }
 }

@@ -1,0 +1,34 @@
+//! Prints how many bytes of its stack a firmware uses for commands: `cargo run -p emulated-board --example stack FIRMWARE LOW HIGH COMMAND…`.
+//!
+//! The stack begins at the address HIGH and grows down, to LOW at most. Memory is 0 at the start of the board, so the lowest byte that is
+//! not 0 shows how far the stack has grown.
+
+use emulated_board::EmulatedBoard;
+
+/// Time-out of a command in cycles.
+const LIMIT: u64 = 1_000_000_000;
+
+const PROMPT: &str = "glint> ";
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [firmware, low, high, commands @ ..] = &arguments[..] else {
+        return Err("expected FIRMWARE LOW HIGH COMMAND…".into());
+    };
+    let [low, high]: [u32; 2] = [low.parse()?, high.parse()?];
+    let length = high.checked_sub(low).ok_or("LOW is above HIGH")?;
+    let mut board = EmulatedBoard::fast(&std::fs::read(firmware)?)?;
+    board.read_until(PROMPT, LIMIT)?;
+    for command in commands {
+        board.uart_write(format!("{command}\r").as_bytes());
+        let reply = board.read_until(PROMPT, LIMIT)?;
+        if reply.contains("error: ") {
+            return Err(format!("{command}: {reply}").into());
+        }
+    }
+    let mut stack = vec![0; length as usize];
+    board.read_memory(low, &mut stack)?;
+    let untouched = stack.iter().take_while(|&&byte| byte == 0).count();
+    println!("{}", stack.len() - untouched);
+    Ok(())
+}
