@@ -122,7 +122,7 @@ pub enum SampleError {
     TooLarge {
         /// The axis, 0 for x.
         axis: usize,
-        /// The mean rate in LSB.
+        /// The mean rate in LSB, rounded away from zero, so that it is beyond `most`.
         mean: i32,
         /// The accepted maximum in LSB.
         most: u32,
@@ -170,7 +170,7 @@ impl fmt::Display for SampleError {
             ),
             Self::TooLarge { axis, mean, most } => write!(
                 f,
-                "gyroscope {}: the mean is {mean} LSB: expected within ±{most}, the sensor turns or is broken",
+                "gyroscope {}: the mean is {mean} LSB, rounded away from 0: expected within ±{most}, the sensor turns or is broken",
                 axis_name(axis)
             ),
             Self::Frozen => f.write_str(
@@ -302,7 +302,7 @@ impl Calibration {
             if bias.unsigned_abs() > largest * 256 {
                 return Err(SampleError::TooLarge {
                     axis,
-                    mean: bias >> 8,
+                    mean: bias.signum() * bias.unsigned_abs().div_ceil(256) as i32,
                     most: largest,
                 });
             }

@@ -142,6 +142,22 @@ fn whatever_moves_is_refused_with_its_reason() {
     }
 }
 
+/// A mean between two numbers is stated as the farther one from 0, on both sides.
+#[test]
+fn a_mean_that_is_too_large_is_rounded_away_from_zero() {
+    for (sign, stated) in [(1, 657), (-1, -657)] {
+        let outcome = calibrate(1_000, |i, sample| {
+            sample.gyro[1] = sign * (656 + (i % 2) as i16);
+        });
+        let mean = SampleError::TooLarge {
+            axis: 1,
+            mean: stated,
+            most: 656,
+        };
+        assert_eq!(outcome, Err(mean));
+    }
+}
+
 #[test]
 fn stale_samples_do_not_count_and_extremes_fit() {
     let mut calibration = Calibration::new(Units::MPU_6050, 0);

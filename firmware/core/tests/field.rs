@@ -63,6 +63,14 @@ fn mistakes_say_what_was_expected() {
         "{error}"
     );
     assert!(KINDS.iter().all(|(form, _)| error.contains(form)));
+    let (_, kinds) = error.split_once("expected ").unwrap();
+    for nameless in ["", ":1,2"] {
+        let error = Field::parse(nameless).expect_err("no name").to_string();
+        assert_eq!(
+            error,
+            format!("the name of the field is empty: expected {kinds}")
+        );
+    }
     for (text, expected) in [
         ("menger", "menger needs one more number: depth"),
         ("box:1,2", "box needs one more number: z"),
@@ -75,7 +83,7 @@ fn mistakes_say_what_was_expected() {
         ("sphere:0", "radius: expected 0.01 to 12"),
         ("spheres:0,0,0", "spheres needs one more number: radius"),
         ("spheres:0,0,0,1;0,x,0,1", "y x: expected a number"),
-        ("lattice:2,1", "radius: expected 0.01 to 0.9999999998"),
+        ("lattice:2,1", "radius: expected 0.01 to 0.9999923704"),
         ("moving:11,1.5", "orbit: expected 0 to 1"),
         (
             "union:cubes:1,0.1+sphere:1",

@@ -63,7 +63,10 @@ impl fmt::Display for FieldError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Kind { kind, kinds } => {
-                write!(f, "no field is named {kind}: expected")?;
+                match kind.is_empty() {
+                    true => f.write_str("the name of the field is empty: expected")?,
+                    false => write!(f, "no field is named {kind}: expected")?,
+                }
                 kinds.iter().enumerate().try_for_each(|(i, (form, _))| {
                     write!(f, "{} {form}", if i == 0 { "" } else { "," })
                 })

@@ -5,7 +5,7 @@ use core::fmt;
 use crate::field::argument::Arguments;
 use crate::field::error::FieldError;
 use crate::field::folded::{Folded, largest};
-use crate::field::limits::{MAX_EXTENT, PERIOD, SMALLEST};
+use crate::field::limits::{MAX_EXTENT, PERIOD, SMALLEST, largest_half};
 use crate::field::shape::{FlatConstants, FlatSolid, Placed, SCALE, Shape, scale_of};
 use crate::field::surface::{FRACTION, Sample, cropped, units};
 use crate::fixed::Q32_32;
@@ -22,7 +22,7 @@ pub struct Cuboid {
 pub struct Cubes {
     /// Distance between the centres of neighbouring cubes, in world units.
     pub period: Q32_32,
-    /// Half the side of a cube in world units, less than half the period.
+    /// Half the side of a cube in world units, less than half the period by a unit of coordinates or more.
     pub half: Q32_32,
 }
 
@@ -73,7 +73,7 @@ impl Shape for Cubes {
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let period = numbers.number("period", PERIOD)?;
-        let half = numbers.number("half", [SMALLEST, period / 2 - Q32_32::DELTA])?;
+        let half = numbers.number("half", [SMALLEST, largest_half(period)])?;
         Ok(Self { period, half })
     }
 

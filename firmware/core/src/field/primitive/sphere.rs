@@ -6,7 +6,7 @@ use core::fmt;
 use super::fixed_sphere::{FixedSphere, FixedSpheres};
 use crate::field::argument::{Arguments, check};
 use crate::field::error::FieldError;
-use crate::field::limits::{MAX_EXTENT, MAX_SPHERES, PERIOD, SMALLEST};
+use crate::field::limits::{MAX_EXTENT, MAX_SPHERES, PERIOD, SMALLEST, largest_half};
 use crate::field::shape::{Placed, SCALE, Shape, scale_of};
 use crate::field::surface::units;
 use crate::fixed::{Q2_30, Q32_32, Turns};
@@ -76,7 +76,7 @@ impl Spheres {
 pub struct Lattice {
     /// Distance between the centres of neighbouring spheres, in world units.
     pub period: Q32_32,
-    /// Radius of each sphere in world units, less than half the period.
+    /// Radius of each sphere in world units, less than half the period by a unit of coordinates or more.
     pub radius: Q32_32,
 }
 
@@ -169,7 +169,7 @@ impl Shape for Lattice {
 
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>> {
         let period = numbers.number("period", PERIOD)?;
-        let radius = numbers.number("radius", [SMALLEST, period / 2 - Q32_32::DELTA])?;
+        let radius = numbers.number("radius", [SMALLEST, largest_half(period)])?;
         Ok(Self { period, radius })
     }
 

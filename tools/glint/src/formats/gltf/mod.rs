@@ -6,7 +6,7 @@
 mod buffers;
 
 use super::text::{BYTE_ORDER_MARK, checked};
-use crate::error::{FormatError, MAX_COORDINATE, Place};
+use crate::error::{FormatError, MAX_COORDINATE, Place, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers};
 use gltf::accessor::Dimensions;
@@ -14,6 +14,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, Root};
 use gltf::mesh::Mode;
 use gltf::{Document, Error, Glb, Material, Node, Primitive, Semantic};
+use serde::Deserialize;
 use std::borrow::Cow;
 
 /// Maximum number of bytes of JSON outside of strings. They bound the memory: three of them can stand for an object of some hundred
@@ -42,6 +43,7 @@ pub fn parse(file: &[u8], beside: Beside) -> Result<Polygons, FormatError> {
             structure.to_string(),
         ));
     }
+    check_version(&json)?;
     let root = gltf::json::deserialize::from_slice(&json)
         .map_err(|error| invalid(Error::Deserialize(error)))?;
     check_positions(&root)?;
@@ -99,6 +101,42 @@ fn structure(json: &[u8]) -> usize {
         }
     }
     count
+}
+
+/// What every version of the format has.
+#[derive(Deserialize)]
+struct Head {
+    asset: Asset,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asset {
+    version: String,
+    min_version: Option<String>,
+}
+
+/// Checks that the file is of version 2, and that a reader of version 2.0 reads it: later minor versions are compatible. A file that does
+/// not state its version is for the crate to refuse.
+fn check_version(json: &[u8]) -> Result<(), FormatError> {
+    let Ok(Head { asset }) = serde_json::from_slice(json) else {
+        return Ok(());
+    };
+    let minor = asset.version.strip_prefix("2.").unwrap_or_default();
+    if minor.is_empty() || !minor.bytes().all(|byte| byte.is_ascii_digit()) {
+        let found = quote(asset.version.as_bytes());
+        return Err(FormatError::whole("an asset.version 2.0 or 2.x", found));
+    }
+    match asset.min_version {
+        Some(least) if least != "2.0" => {
+            let found = quote(least.as_bytes());
+            Err(FormatError::whole(
+                "an asset.minVersion of 2.0 or none",
+                found,
+            ))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Checks what the crate's validation uses before it is checked.

@@ -113,6 +113,21 @@ fn errors() {
             .next(),
         Some("expected data of a buffer in base64")
     );
+    assert_eq!(
+        error("\"version\": \"2.0\"", "\"version\": \"1.0\""),
+        "expected an asset.version 2.0 or 2.x, found '1.0'"
+    );
+    assert_eq!(
+        error("\"version\": \"2.0\"", "\"version\": \"2\""),
+        "expected an asset.version 2.0 or 2.x, found '2'"
+    );
+    assert_eq!(
+        error(
+            "\"version\": \"2.0\"",
+            "\"version\": \"2.1\", \"minVersion\": \"2.1\""
+        ),
+        "expected an asset.minVersion of 2.0 or none, found '2.1'"
+    );
     let draco = "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"scene\": 0";
     assert_eq!(
         error("\"scene\": 0", draco),
@@ -137,6 +152,15 @@ fn memory_is_bounded() {
     );
     // Strings, such as data in base64, do not count.
     assert_eq!(structure(br#"{"a\"{{{": "}}}\\"}"#), 8);
+}
+
+/// Minor versions are compatible.
+#[test]
+fn a_later_minor_version_is_read() {
+    for version in ["2.1", "2.10\", \"minVersion\": \"2.0"] {
+        let text = format!("\"version\": \"{version}\"");
+        read(&TWO_MESHES.replacen("\"version\": \"2.0\"", &text, 1)).unwrap();
+    }
 }
 
 #[test]
