@@ -82,57 +82,97 @@ impl Image {
     }
 }
 
-/// Writes images of one size as an animated PNG that repeats forever.
+/// An animation of images of one size that repeats forever, written image by image.
+pub enum Animation<W: Write> {
+    /// An animated PNG.
+    Png(png::Writer<W>),
+    /// A GIF. Each image has up to 256 colours of its own.
+    Gif {
+        /// The encoder.
+        encoder: gif::Encoder<W>,
+        /// Time of an image in 1/100 s.
+        delay: u16,
+    },
+}
+
+impl<W: Write> Animation<W> {
+    /// Begins an animated PNG of `count` images, of this width and height.
+    ///
+    /// # Errors
+    /// It cannot be written, or `count` is 0.
+    pub fn png(
+        out: W,
+        [width, height]: [u32; 2],
+        count: u32,
+        images_per_second: u16,
+    ) -> io::Result<Self> {
+        let mut encoder = png::Encoder::new(out, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_animated(count, 0)?;
+        encoder.set_frame_delay(1, images_per_second)?;
+        Ok(Self::Png(encoder.write_header()?))
+    }
+
+    /// Begins a GIF of this width and height. The time of an image is rounded up to a multiple of 1/100 s.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn gif(out: W, size: [u32; 2], images_per_second: u16) -> io::Result<Self> {
+        let [width, height] = size.map(|side| side as u16);
+        let encoder = gif::Encoder::new(out, width, height, &[]);
+        let mut encoder = encoder.map_err(io::Error::other)?;
+        let forever = encoder.set_repeat(gif::Repeat::Infinite);
+        forever.map_err(io::Error::other)?;
+        let delay = 100_u16.div_ceil(images_per_second.max(1));
+        Ok(Self::Gif { encoder, delay })
+    }
+
+    /// Writes the next image.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn add(&mut self, image: &Image) -> io::Result<()> {
+        let picture = image.picture();
+        let (rgb, [width, height]) = (picture.rgb(), [image.width, image.height]);
+        match self {
+            Self::Png(writer) => Ok(writer.write_image_data(rgb)?),
+            Self::Gif { encoder, delay } => {
+                let (width, height) = (width as u16, height as u16);
+                let mut frame = gif::Frame::from_rgb_speed(width, height, rgb, QUANTISER_SPEED);
+                frame.delay = *delay;
+                encoder.write_frame(&frame).map_err(io::Error::other)
+            }
+        }
+    }
+
+    /// Ends the animation.
+    ///
+    /// # Errors
+    /// It cannot be written, or it has fewer images than it began with.
+    pub fn finish(self) -> io::Result<()> {
+        match self {
+            Self::Png(writer) => Ok(writer.finish()?),
+            Self::Gif { encoder, .. } => encoder.into_inner().map_err(io::Error::other)?.flush(),
+        }
+    }
+}
+
+/// Writes images of one size as an animated PNG.
 ///
 /// # Errors
 /// It cannot be written, or there is no image.
 pub fn write_animation(
     out: impl Write,
     images: &[Image],
-    frames_per_second: u16,
+    images_per_second: u16,
 ) -> io::Result<()> {
-    let first = first(images)?;
-    let mut encoder = png::Encoder::new(out, first.width, first.height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_animated(images.len() as u32, 0)?;
-    encoder.set_frame_delay(1, frames_per_second)?;
-    let mut writer = encoder.write_header()?;
-    for image in images {
-        writer.write_image_data(image.picture().rgb())?;
-    }
-    writer.finish()?;
-    Ok(())
-}
-
-/// Writes images of one size as a GIF that repeats forever. Each has up to 256 colours of its own. The time of a frame is a
-/// multiple of 1/100 s.
-///
-/// # Errors
-/// It cannot be written, or there is no image.
-pub fn write_gif(out: impl Write, images: &[Image], frames_per_second: u16) -> io::Result<()> {
-    let first = first(images)?;
-    let [width, height] = [first.width, first.height].map(|side| side as u16);
-    let mut encoder = gif::Encoder::new(out, width, height, &[]).map_err(io::Error::other)?;
-    encoder
-        .set_repeat(gif::Repeat::Infinite)
-        .map_err(io::Error::other)?;
-    for image in images {
-        let mut frame =
-            gif::Frame::from_rgb_speed(width, height, image.picture().rgb(), QUANTISER_SPEED);
-        frame.delay = 100_u16.div_ceil(frames_per_second.max(1));
-        encoder.write_frame(&frame).map_err(io::Error::other)?;
-    }
-    Ok(())
-}
-
-fn first(images: &[Image]) -> io::Result<&Image> {
-    images.first().ok_or_else(|| {
-        io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "expected at least one frame, found none",
-        )
-    })
+    let size = images
+        .first()
+        .map_or([0; 2], |first| [first.width, first.height]);
+    let mut animation = Animation::png(out, size, images.len() as u32, images_per_second)?;
+    images.iter().try_for_each(|image| animation.add(image))?;
+    animation.finish()
 }
 
 #[cfg(test)]

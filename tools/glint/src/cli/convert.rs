@@ -4,7 +4,6 @@ use super::common::bad_value;
 use super::messages::{print_json, say, warn};
 use super::output::{MESH, Output, STDOUT};
 use super::progress::spinner;
-use anyhow::Context;
 use clap::{Args, ValueEnum};
 use glint::convert::{self, Options, Report};
 use glint::error::FormatError;
@@ -12,6 +11,7 @@ use glint::formats::{self, Format, write};
 use glint::polygons::Polygons;
 use glint::{generate, model};
 use serde::Serialize;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Generate a model: cube, icosphere:N, torus-knot, gear, teapot, scan:N or sponge:N.
@@ -140,6 +140,24 @@ struct Copied {
     remarks: Vec<String>,
 }
 
+/// An output that counts its bytes.
+struct Counted<'o> {
+    out: &'o mut dyn Write,
+    bytes: &'o mut usize,
+}
+
+impl Write for Counted<'_> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        *self.bytes += written;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
 fn convert_to(
     mut polygons: Polygons,
     name: &Path,
@@ -167,19 +185,23 @@ fn convert_to(
         };
     }
     convert::place(&mut polygons, options).map_err(in_input)?;
-    let mut bytes = Vec::new();
-    match format {
-        Format::Obj => write::obj(&polygons, &mut bytes),
-        Format::Stl => write::stl(&polygons, &mut bytes),
-        Format::Ply | Format::Gltf | Format::Glm => write::ply(&polygons, &mut bytes),
-    }
-    .context("mesh: cannot be written")?;
-    out.write(|out| out.write_all(&bytes))?;
+    let mut bytes = 0;
+    out.write(|out| {
+        let mut out = Counted {
+            out,
+            bytes: &mut bytes,
+        };
+        match format {
+            Format::Obj => write::obj(&polygons, &mut out),
+            Format::Stl => write::stl(&polygons, &mut out),
+            Format::Ply | Format::Gltf | Format::Glm => write::ply(&polygons, &mut out),
+        }
+    })?;
     let copied = Copied {
         points: polygons.points.len(),
         faces: polygons.faces.len(),
         triangles: polygons.triangle_count(),
-        bytes: bytes.len(),
+        bytes,
         remarks: polygons.remarks,
     };
     if json {

@@ -12,7 +12,7 @@ use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
-use glint::picture::{Image, write_animation, write_gif};
+use glint::picture::{Animation, Image};
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
 };
@@ -25,6 +25,7 @@ use glint_core::picture::Backend;
 use glint_model::{Object, Placement};
 use glint_scene::Scene;
 use serde::Serialize;
+use std::io::{self, BufWriter, Seek, Write};
 use std::path::PathBuf;
 
 /// Render an animation in which the camera goes once around a model, a distance field, a model in a field, or a scene.
@@ -179,24 +180,26 @@ impl OrbitArguments {
         views: &[View],
         scene: Option<&Scene>,
     ) -> anyhow::Result<()> {
-        let drawn = self.draw(frame, views, scene)?;
+        let mut spool = out.spool()?;
+        let mut drawn = Vec::new();
+        let animation = self.animation(BufWriter::new(&spool), frame.size.pixels());
+        let mut animation = animation.with_context(|| out.unwritable())?;
+        self.draw(frame, views, scene, &mut |Rendered { image, stats }| {
+            animation.add(&image).with_context(|| out.unwritable())?;
+            drawn.push(stats);
+            Ok(())
+        })?;
+        animation.finish().with_context(|| out.unwritable())?;
+        spool.rewind()?;
+        out.write(|out| io::copy(&mut spool, out).map(|_| ()))?;
         if let Some(first) = drawn.first() {
-            remarks(frame, &first.stats)?.iter().for_each(warn);
+            remarks(frame, first)?.iter().for_each(warn);
         }
-        let cycles: Option<Vec<u64>> = drawn.iter().map(|drawn| drawn.stats.cycles).collect();
+        let cycles: Option<Vec<u64>> = drawn.iter().map(|stats| stats.cycles).collect();
         let cycles = cycles.map(|cycles| {
             let sum: u128 = cycles.into_iter().map(u128::from).sum();
             (sum / u128::from(self.frames)) as u64
         });
-        let images: Vec<Image> = drawn.into_iter().map(|drawn| drawn.image).collect();
-        let is_gif = self
-            .out
-            .extension()
-            .is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
-        out.write(|out| match is_gif {
-            true => write_gif(out, &images, self.rate),
-            false => write_animation(out, &images, self.rate),
-        })?;
         let outcome = Outcome {
             model: self.model.as_deref(),
             field: self.field.name(),
@@ -220,27 +223,43 @@ impl OrbitArguments {
         ))
     }
 
+    /// Begins the animation in the format of the output's name.
+    fn animation<W: Write>(&self, out: W, size: [u32; 2]) -> io::Result<Animation<W>> {
+        let is_gif = self
+            .out
+            .extension()
+            .is_some_and(|extension| extension.eq_ignore_ascii_case("gif"));
+        if is_gif {
+            Animation::gif(out, size, self.rate)
+        } else {
+            Animation::png(out, size, self.frames.into(), self.rate)
+        }
+    }
+
+    /// Renders a frame from all cameras, and calls `take` with each picture.
     fn draw(
         &self,
         frame: &Frame,
         views: &[View],
         scene: Option<&Scene>,
-    ) -> anyhow::Result<Vec<Rendered>> {
+        take: &mut dyn FnMut(Rendered) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
         let bar = count_bar("drawing", "frames");
         bar.set_length(views.len() as u64);
-        let drawn = match &self.board {
-            ModelOrBoard::Model => views
-                .iter()
-                .map(|&view| {
-                    let drawn = on_model(&Frame { view, ..*frame })?;
-                    bar.inc();
-                    Ok(drawn)
-                })
-                .collect(),
-            ModelOrBoard::Board(name) => self.draw_on(name, frame, views, scene, &mut || bar.inc()),
+        let mut take = |drawn| {
+            bar.inc();
+            take(drawn)
         };
+        match &self.board {
+            ModelOrBoard::Model => {
+                for &view in views {
+                    take(on_model(&Frame { view, ..*frame })?)?;
+                }
+            }
+            ModelOrBoard::Board(name) => self.draw_on(name, frame, views, scene, &mut take)?,
+        }
         bar.finish();
-        drawn
+        Ok(())
     }
 
     /// Draws a frame from all cameras on a board, which gets its meshes once.
@@ -250,26 +269,24 @@ impl OrbitArguments {
         frame: &Frame,
         views: &[View],
         scene: Option<&Scene>,
-        advance: &mut dyn FnMut(),
-    ) -> anyhow::Result<Vec<Rendered>> {
+        take: &mut dyn FnMut(Rendered) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
         let mut board = self.transfer.line.board(name)?;
         let route = self.transfer.transfer.unwrap_or(Route::of(name));
         let mut renderer = BoardRenderer::new(Console::new(&mut *board))
             .with_backend(self.backend)
             .with_scene(scene.cloned());
-        let mut drawn = Vec::new();
-        for &view in views {
-            let stats = match drawn.is_empty() {
-                true => renderer.show(&Frame { view, ..*frame }, route, &mut |_, _| {})?,
-                false => renderer.look(&view)?,
+        for (number, &view) in views.iter().enumerate() {
+            let stats = match number {
+                0 => renderer.show(&Frame { view, ..*frame }, route, &mut |_, _| {})?,
+                _ => renderer.look(&view)?,
             };
             let image = Image {
                 colour: renderer.colour(frame.size, route, &mut |_, _| {})?,
                 ..Image::empty(frame.size)
             };
-            drawn.push(Rendered { image, stats });
-            advance();
+            take(Rendered { image, stats })?;
         }
-        Ok(drawn)
+        Ok(())
     }
 }

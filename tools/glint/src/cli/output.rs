@@ -131,6 +131,24 @@ impl Output {
         }
     }
 
+    /// A nameless file for contents that are made over a long time, which [`write`](Self::write) copies in the end. It vanishes when it is
+    /// closed, or when the program is killed.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn spool(&self) -> anyhow::Result<File> {
+        let file = match self.device {
+            Some(_) => tempfile::tempfile(),
+            None => tempfile::tempfile_in(folder(&target(&self.path))),
+        };
+        file.with_context(|| self.unwritable())
+    }
+
+    /// What an error of this output begins with.
+    pub fn unwritable(&self) -> String {
+        unwritable(&self.path)
+    }
+
     /// Writes the file whole or not at all: `write` fills a new file beside it, which then takes its place.
     ///
     /// # Errors

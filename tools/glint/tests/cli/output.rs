@@ -64,6 +64,8 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
             ],
             "/dev/full",
         ),
+        (&["orbit", "cube", "--out", "a.gif"], "a.gif"),
+        (&["orbit", "cube", "--out", "/dev/full"], "/dev/full"),
         (&["model", "teapot", "a.glm"], "a.glm"),
         (&["model", "teapot", "a.obj"], "a.obj"),
         (
