@@ -88,10 +88,8 @@ pub enum CommandError<'l> {
     Object(ObjectError),
     /// The SoC has no triangle engine.
     NoEngine,
-    /// `stereo` was requested while a mesh in a field is shown, which is drawn for one eye only.
-    StereoOfMesh,
-    /// A mesh in a field was requested while stereo is on.
-    MeshInStereo,
+    /// `stereo` was requested while the wireframe is shown, which has an eye of its own.
+    StereoOfWireframe,
     /// Edges were requested while no mesh is shown alone.
     EdgesOfOthers,
     /// `fit` was requested while neither a mesh alone nor objects are shown.
@@ -248,12 +246,9 @@ impl Display for CommandError<'_> {
             }
             Self::Object(error) if OBJECT.is_built => error.fmt(f),
             Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
-            Self::StereoOfMesh => f.write_str(
-                "stereo: not available for a mesh in a field, expected `mesh off` first",
+            Self::StereoOfWireframe => f.write_str(
+                "stereo: not available for the wireframe, expected `scene NAME` or `field FIELD` first",
             ),
-            Self::MeshInStereo => {
-                f.write_str("mesh: not available in stereo, expected `stereo off` first")
-            }
             Self::EdgesOfOthers => f.write_str(
                 "edges: not available for objects, fields and wireframes, expected `scene NAME` of a mesh first",
             ),

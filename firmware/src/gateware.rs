@@ -6,19 +6,25 @@
 //!    ├── lines (wireframes, edges of meshes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
+//!    ├── rendered (what the drawing took)
 //!    └── fallback (reasons to draw, or to make descriptors, by the CPU)
+//! eyes ── renderer (stereo pictures with meshes)
 //! ```
 
 mod buffers;
+mod eyes;
 mod fallback;
 #[allow(unsafe_code)] // Memory that the geometry passes read and write.
 mod geometry;
 mod lines;
+mod rendered;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod renderer;
 mod repeat;
 mod watchdog;
 
+pub use eyes::RightEye;
 pub use fallback::{Fallback, Lack};
 pub use geometry::Cpu;
-pub use renderer::{GatewareRenderer, Output, Rendered};
+pub use rendered::Rendered;
+pub use renderer::{GatewareRenderer, Output};

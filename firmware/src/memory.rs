@@ -15,6 +15,8 @@ use crate::arena::Arena;
 pub struct Memory {
     /// Two frame buffers: colours in RGB565, one per pixel.
     pub frames: [&'static mut [u16]; 2],
+    /// The picture of the right eye: colours in RGB565, one per pixel.
+    pub eye: &'static mut [u16],
     /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
     /// Memory for projected vertices, used by the CPU backend.
@@ -35,6 +37,8 @@ unsafe extern "C" {
     static mut _frame_a: u8;
     static mut _frame_b: u8;
     static _frame_size: u8;
+    static mut _eye: u8;
+    static _eye_size: u8;
     static mut _depth: u8;
     static _depth_size: u8;
     static mut _scratch: u8;
@@ -91,6 +95,7 @@ impl Memory {
                 window!(_frame_a, _frame_size, u16),
                 window!(_frame_b, _frame_size, u16),
             ],
+            eye: window!(_eye, _eye_size, u16),
             depth: window!(_depth, _depth_size, u32),
             scratch: Scratch {
                 memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),

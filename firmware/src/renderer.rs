@@ -6,10 +6,10 @@ use glint_core::wire::crc32;
 use glint_hal::frequency::Frequency;
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
-use glint_model::{Frame, FrameBuffer, FrameStats, RenderError, Subject};
+use glint_model::{Eyes, Frame, FrameBuffer, FrameStats, RenderError, Subject};
 use litex_pac::cpu;
 
-use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output};
+use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output, RightEye};
 use crate::memory::Scratch;
 use crate::models::Models;
 use crate::overlay::Overlay;
@@ -22,6 +22,8 @@ pub struct Renderer {
     pub display: Display,
     /// Depth codes of the last frame that was drawn with depth codes in memory, one per pixel.
     pub depth: &'static mut [u32],
+    /// The right eye's picture of a stereo picture that is being drawn.
+    pub right: RightEye,
     /// Memory for projected vertices.
     pub scratch: Scratch,
     /// The edges of the mesh whose edges were shown last.
@@ -43,7 +45,12 @@ impl Renderer {
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, DrawError>> {
         let frame = scene.frame(models);
-        let drawn = match self.draw_by_gateware(&frame, scene, &mut progress)? {
+        let eyes = match frame.eyes() {
+            Ok(eyes) => eyes,
+            Err(error) => return Some(Err(DrawError::Render(error))),
+        };
+        let eyes = eyes.as_ref();
+        let drawn = match self.draw_by_gateware(&frame, eyes, scene, &mut progress)? {
             Ok(gateware::Rendered {
                 cycles,
                 stats,
@@ -57,7 +64,7 @@ impl Renderer {
                 has_depth: scene.wants_depth(),
             }),
             Err(fallback) if CPU.is_built => self
-                .draw_by_cpu(&frame, fallback, progress)?
+                .draw_by_cpu(&frame, eyes, fallback, progress)?
                 .map_err(DrawError::Render),
             Err(fallback) => Err(DrawError::NoCpu(fallback)),
         };
@@ -131,6 +138,7 @@ impl Renderer {
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,
+        eyes: Option<&Eyes>,
         scene: &Scene,
         progress: &mut dyn FnMut(),
     ) -> Option<Result<gateware::Rendered, Option<Fallback>>> {
@@ -148,30 +156,49 @@ impl Renderer {
             edges: &mut self.edges,
             progress,
         };
-        let advanced = gateware.advance(frame, &mut output, &mut cpu)?;
+        let advanced = match eyes {
+            Some(eyes) => self.right.advance(gateware, eyes, &mut output, &mut cpu)?,
+            None => gateware.advance(frame, &mut output, &mut cpu)?,
+        };
         Some(advanced.map_err(Some))
     }
 
     fn draw_by_cpu(
         &mut self,
         frame: &Frame,
+        eyes: Option<&Eyes>,
         fallback: Option<Fallback>,
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, RenderError>> {
+        let progress: &mut dyn FnMut() = &mut progress;
         let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
         let back = self.display.back()?;
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
         }
-        let mut buffer = FrameBuffer {
-            width,
-            height,
-            colour: back.get_mut(..pixels).unwrap_or_default(),
-            depth: self.depth.get_mut(..pixels).unwrap_or_default(),
-        };
+        let back = back.get_mut(..pixels).unwrap_or_default();
+        let right = self.right.colour.get_mut(..pixels).unwrap_or_default();
+        let depth = self.depth.get_mut(..pixels).unwrap_or_default();
         let scratch = self.scratch.vertices(frame.scratch_vertices());
+        let mut draw = |frame: &Frame, colour: &mut [u16], progress: &mut dyn FnMut()| {
+            let mut buffer = FrameBuffer {
+                width,
+                height,
+                colour,
+                depth: &mut *depth,
+            };
+            draw(frame, &mut buffer, scratch, &mut self.edges, progress)
+        };
         let start = cpu::cycles();
-        let stats = draw(frame, &mut buffer, scratch, &mut self.edges, &mut progress);
+        let stats = match eyes {
+            // The left eye comes last, so that the depth codes are those that it sees.
+            Some(eyes) => draw(&eyes.right, right, progress).and_then(|of_right| {
+                let of_left = draw(&eyes.left, back, progress)?;
+                self.right.join(eyes, back, progress);
+                Ok(of_left + of_right)
+            }),
+            None => draw(frame, back, progress),
+        };
         let cycles = cpu::cycles() - start;
         Some(stats.map(|stats| Drawn {
             cycles,
@@ -190,13 +217,16 @@ impl Renderer {
         count: u32,
     ) -> Option<Result<gateware::Rendered, Fallback>> {
         let frame = scene.frame(models);
-        self.unseen(|gateware, output, cpu| gateware.repeat(&frame, output, cpu, count))
+        self.unseen(|gateware, right, output, cpu| match frame.eyes()? {
+            Some(eyes) => right.repeat(gateware, &eyes, output, cpu, count),
+            None => gateware.repeat(&frame, output, cpu, count),
+        })
     }
 
     /// Draws `frame` by the gateware without showing it, waits for its end, and returns the CRC-32 of its colours. Returns `None` if the
     /// gateware has no triangle engine, or while no frame buffer is free.
     pub fn checksum(&mut self, frame: &Frame) -> Option<Result<u32, Fallback>> {
-        self.unseen(|gateware, output, cpu| {
+        self.unseen(|gateware, _, output, cpu| {
             let drawn = loop {
                 if let Some(drawn) = gateware.advance(frame, output, cpu) {
                     break drawn;
@@ -209,11 +239,11 @@ impl Renderer {
         })
     }
 
-    /// Calls `draw` with the gateware, a free frame buffer without depth codes, and what the CPU needs for its part. Returns `None` if the
+    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and what the CPU needs for its part. Returns `None` if the
     /// gateware has no triangle engine, or while no frame buffer is free.
     fn unseen<T>(
         &mut self,
-        draw: impl FnOnce(&mut GatewareRenderer, &mut Output, &mut Cpu) -> T,
+        draw: impl FnOnce(&mut GatewareRenderer, &mut RightEye, &mut Output, &mut Cpu) -> T,
     ) -> Option<T> {
         let mut output = Output {
             colour: self.display.back()?,
@@ -224,7 +254,8 @@ impl Renderer {
             edges: &mut self.edges,
             progress: &mut || {},
         };
-        Some(draw(self.gateware.as_mut()?, &mut output, &mut cpu))
+        let gateware = self.gateware.as_mut()?;
+        Some(draw(gateware, &mut self.right, &mut output, &mut cpu))
     }
 
     /// Colours of the last frame: RGB565, row by row.

@@ -5,7 +5,7 @@ use core::fmt;
 use glint_core::appearance::Appearance;
 use glint_core::camera::{View, ViewError};
 use glint_core::colour::{Shading, Winding};
-use glint_core::feature::{CPU, FIELD, OBJECT, OVERLAY, WIREFRAME};
+use glint_core::feature::{CPU, FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::{Backend, Edges, Size};
@@ -168,7 +168,6 @@ impl Scene {
                 let field = FieldSubject {
                     field,
                     appearance: &self.appearance,
-                    stereo: self.stereo,
                     prepass: self.prepass,
                 };
                 if self.with_mesh {
@@ -178,7 +177,10 @@ impl Scene {
                 }
             }
         };
-        Frame::in_appearance(subject, self.view, self.size, &self.appearance)
+        Frame {
+            stereo: self.stereo(),
+            ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
+        }
     }
 
     /// Whether the wireframe is shown.
@@ -186,11 +188,12 @@ impl Scene {
         WIREFRAME.is_built && self.wireframe.is_some()
     }
 
-    /// Shows the wireframe as its program has it. Edges of a mesh are off from now on.
+    /// Shows the wireframe as its program has it. Edges of a mesh and two eyes are off from now on.
     pub fn show_wireframe(&mut self) {
         self.wireframe = Some(Motion::default());
         self.objects = false;
         self.edges = None;
+        self.stereo = None;
         self.changed = true;
     }
 
@@ -269,16 +272,19 @@ impl Scene {
         self.appearance = appearance;
     }
 
-    /// The two eyes for a field; `None` for one eye.
+    /// The two eyes; `None` for one eye, which wireframes always have.
     pub const fn stereo(&self) -> Option<Stereo> {
-        self.stereo
+        if STEREO.is_built { self.stereo } else { None }
     }
 
-    /// Sets two eyes for a field, or one eye for `None`.
-    pub fn set_stereo(&mut self, stereo: Option<Stereo>) {
-        // A mesh is drawn for one eye only, so the setting changes pictures of fields only.
-        self.changed |= self.field.is_some() && self.stereo != stereo;
-        self.stereo = stereo;
+    /// Sets two eyes, or one eye for `None`. Returns whether that was possible.
+    pub fn set_stereo(&mut self, stereo: Option<Stereo>) -> bool {
+        let is_possible = stereo.is_none() || self.wireframe.is_none();
+        if is_possible {
+            self.changed |= self.stereo != stereo;
+            self.stereo = stereo;
+        }
+        is_possible
     }
 
     /// Sets whether a prepass marches cones before the rays of a field.

@@ -22,7 +22,7 @@ use glint_hal::uart::Direct;
 use glint_model::edges::EdgeList;
 use litex_pac::{BUILD_ID, Peripherals};
 
-use crate::gateware::GatewareRenderer;
+use crate::gateware::{GatewareRenderer, RightEye};
 use crate::gesture::Gesture;
 use crate::interrupts::{self, Present, UART};
 use crate::machine::{Devices, Identity, Machine};
@@ -186,6 +186,7 @@ pub fn machine() -> Result<Machine, StartError> {
         Renderer {
             display: Display::new(scanout, memory.frames),
             depth: memory.depth,
+            right: RightEye::new(memory.eye),
             scratch: memory.scratch,
             edges: EdgeList::new(memory.edges),
             frequency,

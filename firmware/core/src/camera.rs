@@ -10,7 +10,7 @@ mod limits;
 use core::fmt;
 
 use crate::choice::choices;
-use crate::fixed::{Q2_23, Q32_32, Turns, U4_28, U8_28};
+use crate::fixed::{Q2_23, Q4_28, Q32_32, Turns, U4_28, U8_28};
 use crate::trig::sin_cos_q30;
 use crate::vector::{self, unit};
 
@@ -56,6 +56,7 @@ pub struct View {
     half_width: U8_28,
     near: U4_28,
     projection: Projection,
+    shift: Q4_28,
 }
 
 impl View {
@@ -90,6 +91,7 @@ impl View {
             half_width,
             near,
             projection: Projection::Perspective,
+            shift: Q4_28::ZERO,
         })
     }
 
@@ -120,6 +122,7 @@ impl View {
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
             projection: Projection::Perspective,
+            shift: Q4_28::ZERO,
         })
     }
 
@@ -157,6 +160,7 @@ impl View {
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
             projection: Projection::Perspective,
+            shift: Q4_28::ZERO,
         })
     }
 
@@ -196,6 +200,7 @@ impl View {
             half_width: DEFAULT_HALF_WIDTH,
             near: DEFAULT_NEAR,
             projection: Projection::Perspective,
+            shift: Q4_28::ZERO,
         })
     }
 
@@ -262,7 +267,22 @@ impl View {
         }
     }
 
-    /// The position of the eye in world units, at most 32 from the origin.
+    /// Returns this camera with its eye `aside` world units to the right, at most 1, and the middle of the picture shifted by `shift`, which
+    /// is at most 1 in magnitude, for one of two eyes.
+    pub(crate) fn beside(&self, aside: Q32_32, shift: Q4_28) -> Self {
+        let eye = [0, 1, 2].map(|i: usize| {
+            // The product of the distance and u has 24 + 23 fraction bits, of which 32 remain, rounded down.
+            let along = (aside.to_bits().abs() >> 8) * i64::from(self.u[i].to_bits());
+            Q32_32::from_bits(self.eye[i].to_bits() + aside.to_bits().signum() * (along >> 15))
+        });
+        Self {
+            eye,
+            shift,
+            ..*self
+        }
+    }
+
+    /// The position of the eye in world units, at most 32 from the origin; one of two eyes is at most 1 beside such a position.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye
     }
@@ -301,6 +321,12 @@ impl View {
     /// The distance of the near plane from the eye along `n`, in world units, from 0.01 to 2.
     pub const fn near(&self) -> U4_28 {
         self.near
+    }
+
+    /// The place that the middle of the picture shows, in world units along `u` from the camera's axis `n`, at distance 1; at most 1 in
+    /// magnitude. It is 0 except for one of two eyes.
+    pub const fn shift(&self) -> Q4_28 {
+        self.shift
     }
 }
 

@@ -34,6 +34,19 @@ impl Rgb565 {
     }
 }
 
+/// The luminance of a colour (Rec. 601), for one of two eyes, rounded to nearest.
+pub const fn luminance(rgb: [u8; 3]) -> u8 {
+    ((fine_luminance(rgb) + HALF_LUMINANCE) >> 8) as u8
+}
+
+/// The luminance of a colour in units of 2^−8, exactly: a sum with weights that add up to 256.
+pub const fn fine_luminance([r, g, b]: [u8; 3]) -> u16 {
+    77 * r as u16 + 150 * g as u16 + 29 * b as u16
+}
+
+/// Half a unit of a luminance, in units of 2^−8, which rounds to nearest.
+pub const HALF_LUMINANCE: u16 = 1 << 7;
+
 /// The source of a triangle's colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Shading {

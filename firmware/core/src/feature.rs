@@ -56,14 +56,14 @@ features! {
     FIELD = "field";
     /// Spheres in a field, alone and in unions.
     SPHERES = "spheres";
-    /// Two eyes of a field.
-    STEREO = "stereo";
     /// Cones before the rays of a field.
     PREPASS = "prepass";
     /// Fog of a field.
     FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";
+    /// Two eyes.
+    STEREO = "stereo";
     /// Lights other than the one at start.
     LIGHT = "light";
     /// The motion sensor.

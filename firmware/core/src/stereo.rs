@@ -5,8 +5,9 @@
 
 use core::fmt;
 
+use crate::camera::View;
 use crate::choice::{Choice as _, choices};
-use crate::fixed::Q32_32;
+use crate::fixed::{Q4_28, Q32_32};
 
 /// Smallest and largest accepted half separation of the eyes, in world units.
 pub const HALF_SEPARATION: [Q32_32; 2] = [Q32_32::ZERO, Q32_32::ONE];
@@ -30,6 +31,19 @@ choices!(Tint {
     RedBlue: "red-blue",
     RedCyan: "red-cyan"
 });
+
+impl Tint {
+    /// The pixel of both eyes in RGB565, from the luminance that each sees. Channels are truncated instead of rounded, because the gateware
+    /// composes all eight pixels of a word at once.
+    pub fn compose(self, left: u8, right: u8) -> u16 {
+        let [red, green, blue] = match self {
+            Self::RedBlue => [left, left.min(right), right],
+            Self::RedCyan => [left, right, right],
+        }
+        .map(u16::from);
+        red >> 3 << 11 | green >> 2 << 5 | blue >> 3
+    }
+}
 
 /// Two eyes, on both sides of the camera along its direction u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +79,16 @@ impl Stereo {
             });
         }
         Ok(self)
+    }
+
+    /// The cameras of the left and the right eye: beside the eye of `view` along its direction u, with shifted pictures, so that both show a
+    /// point at the distance of zero parallax at the same place.
+    pub fn eyes(&self, view: &View) -> [View; 2] {
+        let aside = self.half_separation;
+        // The quotient of half separation and distance of zero parallax is at most 1, rounded down.
+        let shift = (aside.to_bits() << 24) / (self.zero_parallax.to_bits() >> 4).max(1);
+        let shift = Q4_28::from_bits(shift as i32);
+        [view.beside(-aside, shift), view.beside(aside, -shift)]
     }
 
     /// Reads the text form, such as `0.05,3`. The default glasses are red and blue.

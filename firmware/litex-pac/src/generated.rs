@@ -3154,6 +3154,19 @@ pub mod scanout {
             }
         }
 
+        /// The counts of both readings together, modulo 2^32.
+        #[must_use]
+        pub const fn plus(&self, other: &Self) -> Self {
+            Self {
+                frame_count: self.frame_count.wrapping_add(other.frame_count),
+                underflow_count: self.underflow_count.wrapping_add(other.underflow_count),
+                cycles_busy: self.cycles_busy.wrapping_add(other.cycles_busy),
+                cycles_stalled: self.cycles_stalled.wrapping_add(other.cycles_stalled),
+                items_in: self.items_in.wrapping_add(other.items_in),
+                items_out: self.items_out.wrapping_add(other.items_out),
+            }
+        }
+
         /// Name and value of each counter.
         pub fn iter(&self) -> impl Iterator<Item = (&'static str, u32)> {
             [
@@ -4784,6 +4797,31 @@ pub mod triangle {
             }
         }
 
+        /// The counts of both readings together, modulo 2^32.
+        #[must_use]
+        pub const fn plus(&self, other: &Self) -> Self {
+            Self {
+                cycles_busy: self.cycles_busy.wrapping_add(other.cycles_busy),
+                cycles_stalled: self.cycles_stalled.wrapping_add(other.cycles_stalled),
+                stalled_reads: self.stalled_reads.wrapping_add(other.stalled_reads),
+                stalled_lists: self.stalled_lists.wrapping_add(other.stalled_lists),
+                stalled_frame: self.stalled_frame.wrapping_add(other.stalled_frame),
+                items_in: self.items_in.wrapping_add(other.items_in),
+                items_out: self.items_out.wrapping_add(other.items_out),
+                cycles_geometry: self.cycles_geometry.wrapping_add(other.cycles_geometry),
+                vertices: self.vertices.wrapping_add(other.vertices),
+                cycles_raster: self.cycles_raster.wrapping_add(other.cycles_raster),
+                cycles_walking: self.cycles_walking.wrapping_add(other.cycles_walking),
+                cycles_empty: self.cycles_empty.wrapping_add(other.cycles_empty),
+                groups: self.groups.wrapping_add(other.groups),
+                pixels_covered: self.pixels_covered.wrapping_add(other.pixels_covered),
+                pixels_drawn: self.pixels_drawn.wrapping_add(other.pixels_drawn),
+                cycles_held: self.cycles_held.wrapping_add(other.cycles_held),
+                cycles_memory: self.cycles_memory.wrapping_add(other.cycles_memory),
+                cycles_flush: self.cycles_flush.wrapping_add(other.cycles_flush),
+            }
+        }
+
         /// Name and value of each counter.
         pub fn iter(&self) -> impl Iterator<Item = (&'static str, u32)> {
             [
@@ -6380,6 +6418,22 @@ pub mod raymarch {
             }
         }
 
+        /// The counts of both readings together, modulo 2^32.
+        #[must_use]
+        pub const fn plus(&self, other: &Self) -> Self {
+            Self {
+                cycles_busy: self.cycles_busy.wrapping_add(other.cycles_busy),
+                cycles_stalled: self.cycles_stalled.wrapping_add(other.cycles_stalled),
+                items_in: self.items_in.wrapping_add(other.items_in),
+                items_out: self.items_out.wrapping_add(other.items_out),
+                cycles_idle: self.cycles_idle.wrapping_add(other.cycles_idle),
+                evaluations: self.evaluations.wrapping_add(other.evaluations),
+                hits: self.hits.wrapping_add(other.hits),
+                misses: self.misses.wrapping_add(other.misses),
+                undecided: self.undecided.wrapping_add(other.undecided),
+            }
+        }
+
         /// Name and value of each counter.
         pub fn iter(&self) -> impl Iterator<Item = (&'static str, u32)> {
             [
@@ -7847,6 +7901,16 @@ pub mod gesture {
                 frames: self.frames.wrapping_sub(earlier.frames),
                 frames_dropped: self.frames_dropped.wrapping_sub(earlier.frames_dropped),
                 lines_malformed: self.lines_malformed.wrapping_sub(earlier.lines_malformed),
+            }
+        }
+
+        /// The counts of both readings together, modulo 2^32.
+        #[must_use]
+        pub const fn plus(&self, other: &Self) -> Self {
+            Self {
+                frames: self.frames.wrapping_add(other.frames),
+                frames_dropped: self.frames_dropped.wrapping_add(other.frames_dropped),
+                lines_malformed: self.lines_malformed.wrapping_add(other.lines_malformed),
             }
         }
 

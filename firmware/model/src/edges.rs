@@ -31,6 +31,14 @@ pub struct EdgeStats {
     pub drawn: u32,
 }
 
+impl EdgeStats {
+    /// Adds the counts of another frame.
+    pub const fn add(&mut self, other: &Self) {
+        self.edges += other.edges;
+        self.drawn += other.drawn;
+    }
+}
+
 /// A corner of a face, or an end of an edge: its position in the mesh, and the vertex after the vertex stage.
 type Corner<'a> = ([i16; 3], &'a Projected);
 

@@ -81,13 +81,13 @@ pub enum RenderError {
         /// Its smallest value.
         least: U8_28,
     },
-    /// The camera in a frame with a field is orthographic.
+    /// The camera in a frame with a field, or with two eyes, is orthographic.
     Orthographic,
     /// The half width of the camera in a frame with a field is outside the range that a field allows.
     HalfWidth(U8_28),
     /// A frame has more objects than [`MAX_OBJECTS`].
     Objects(usize),
-    /// Two eyes were requested for a mesh in a field, which is drawn for one eye only.
+    /// Two eyes were requested for a wireframe, which has an eye of its own, or for a frame of which each eye's is drawn instead.
     Stereo,
 }
 
@@ -143,7 +143,7 @@ impl fmt::Display for RenderError {
                 "width {width}: expected at least {least} for an object of this size in a picture of this width"
             ),
             Self::Orthographic => {
-                f.write_str("orthographic projection: expected perspective with a field, set by a field of view")
+                f.write_str("orthographic projection: expected perspective with a field or two eyes, set by a field of view")
             }
             Self::HalfWidth(half_width) => write!(
                 f,
@@ -154,7 +154,7 @@ impl fmt::Display for RenderError {
                 write!(f, "{found} objects: expected at most {MAX_OBJECTS}")
             }
             Self::Stereo => {
-                f.write_str("two eyes: expected a field alone, or one eye for a mesh in a field")
+                f.write_str("two eyes: expected meshes or a field, or one eye for a wireframe")
             }
         }
     }

@@ -23,6 +23,7 @@ pub mod mesh_in_field;
 mod options;
 pub mod raymarch;
 pub mod selftest;
+mod stereo;
 pub mod triangle;
 pub mod wireframe;
 
@@ -34,6 +35,7 @@ pub use frame::{
 pub use frame_buffer::FrameBuffer;
 pub use glint_core::colour::Shading;
 pub use options::MeshOptions;
+pub use stereo::Eyes;
 pub use triangle::{
     Clip, DrawnTriangle, MeshLight, MeshSetup, Options, Placement, Projected, ScreenVertex, Stats,
     clip_exceptions, render, trace, trace_frame,

@@ -14,12 +14,12 @@ use crate::triangle::MeshSetup;
 const EVEN_BITS: u32 = 7;
 
 /// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth
-/// codes for both.
+/// codes for both, where `options` have one eye.
 ///
 /// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
 ///
 /// # Errors
-/// [`RenderError::Size`], [`RenderError::Eye`], and [`RenderError::Stereo`] for two eyes.
+/// [`RenderError::Size`] or [`RenderError::Eye`].
 pub fn constants(
     view: &View,
     size: (u32, u32),
@@ -27,9 +27,6 @@ pub fn constants(
     field: &Field,
     options: &FieldOptions,
 ) -> Result<(MeshSetup, FieldSetup), RenderError> {
-    if options.stereo.is_some() {
-        return Err(RenderError::Stereo);
-    }
     let mut frame = MeshSetup::new(view, size.0, size.1, radius)?;
     let mut setup = FieldSetup::new(field, view, size, options)?;
     let shared = shared(frame.depth, setup.world_depth);

@@ -33,5 +33,5 @@ pub use paint::paint;
 pub use palette::Palette;
 pub use prepass::{Cones, block_for};
 pub use ray::{ROUND_INVERSE, Ray, RayResult, State};
-pub use render::{FieldStats, compose, render_field, render_rows, rgb565};
+pub use render::{FieldStats, render_field, render_rows, rgb565};
 pub use setup::{Eye, FieldSetup};

@@ -96,7 +96,13 @@ impl TestPicture {
     ) -> Result<(), ViewError> {
         let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
         let view = View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65))?;
-        let mut draw = |subject| draw(&Frame::new(subject, view, Size::W320));
+        let stereo = (self == Self::Stereo).then_some(EYES);
+        let mut draw = |subject| {
+            draw(&Frame {
+                stereo,
+                ..Frame::new(subject, view, Size::W320)
+            });
+        };
         if MESH.is_built
             && let (Some(shading), Some(mesh)) = (self.shading(), mesh)
         {
@@ -118,7 +124,6 @@ impl TestPicture {
             draw(Subject::Field(FieldSubject {
                 field: &field,
                 appearance: &Appearance::default(),
-                stereo: (self == Self::Stereo).then_some(EYES),
                 prepass: false,
             }));
         }

@@ -39,7 +39,6 @@ fn a_frame_is_drawn_from_constants_that_served_another_one() {
     let field = FieldSubject {
         field: &Field::parse("box:0.25,2,0.25").unwrap(),
         appearance: &Appearance::default(),
-        stereo: None,
         prepass: true,
     };
     let mut constants = FrameConstants::default();

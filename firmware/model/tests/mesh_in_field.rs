@@ -3,7 +3,6 @@
 use glint_core::camera::View;
 use glint_core::field::{Field, Menger};
 use glint_core::mesh::Mesh;
-use glint_core::stereo::Stereo;
 use glint_model::raymarch::{FieldOptions, render_field};
 use glint_model::{Options, Projected, RenderError, mesh_in_field, trace_frame};
 use glint_vectors::{Camera, Model, Picture, Random};
@@ -140,15 +139,9 @@ fn shared_constants_keep_their_ranges() {
 }
 
 #[test]
-fn two_eyes_far_ones_and_wide_cameras_are_refused() {
+fn far_eyes_and_wide_cameras_are_refused() {
     let field = Field::from(Menger { depth: 4 });
     let view = outside(&mut Random(4));
-    let stereo = FieldOptions {
-        stereo: Some(Stereo::parse("0.05,3").unwrap()),
-        ..FieldOptions::default()
-    };
-    let refused = mesh_in_field::constants(&view, SIZE, 1 << 14, &field, &stereo);
-    assert_eq!(refused, Err(RenderError::Stereo));
     let wide = Camera {
         half_width: 4.01,
         ..Camera::of(&view)

@@ -323,7 +323,6 @@ fn refused_frames() {
     let field = FieldSubject {
         field: &field,
         appearance: &appearance,
-        stereo: None,
         prepass: false,
     };
     let view = along_y(4.0, 3.2);

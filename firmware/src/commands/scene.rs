@@ -133,7 +133,6 @@ impl<'l> SceneCommands<'l> for Machine {
 
     fn mesh(&mut self, on: Option<bool>) -> Outcome<'l> {
         match on {
-            Some(true) if self.scene.stereo().is_some() => return Err(CommandError::MeshInStereo),
             Some(on) => self.scene.set_with_mesh(on),
             None => {
                 let on = switch_name(self.scene.with_mesh());
@@ -149,8 +148,11 @@ impl<'l> SceneCommands<'l> for Machine {
 
     fn stereo(&mut self, eyes: Option<Option<Stereo>>) -> Outcome<'l> {
         match eyes {
-            Some(Some(_)) if self.scene.with_mesh() => return Err(CommandError::StereoOfMesh),
-            Some(eyes) => self.scene.set_stereo(eyes),
+            Some(eyes) => {
+                if !self.scene.set_stereo(eyes) {
+                    return Err(CommandError::StereoOfWireframe);
+                }
+            }
             None => {
                 let eyes = OrOff(self.scene.stereo());
                 self.terminal.print_entry("stereo", &eyes);

@@ -9,7 +9,8 @@ use glint_model::{Frame, Stats, Subject, WireframeSubject};
 use super::buffers::Projected;
 use super::fallback::Fallback;
 use super::geometry::Cpu;
-use super::renderer::{GatewareRenderer, Output, Rendered};
+use super::rendered::Rendered;
+use super::renderer::{GatewareRenderer, Output};
 
 /// Words of a program that are projected between two samples of the buttons.
 const WORDS_A_CALL: usize = 16;

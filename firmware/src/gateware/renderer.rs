@@ -12,8 +12,9 @@ use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeSt
 use litex_pac::cpu;
 
 use super::buffers::{Buffers, Projected, Room, address};
-use super::fallback::{Fallback, Lack};
+use super::fallback::Fallback;
 use super::geometry::{Cpu, GeometryPasses, Job};
+use super::rendered::Rendered;
 use super::watchdog::Watchdog;
 
 /// The memory that a frame is written to.
@@ -22,20 +23,6 @@ pub struct Output<'a> {
     pub colour: &'a mut [u16],
     /// Memory for depth codes, if they are requested.
     pub depth: Option<&'a mut [u32]>,
-}
-
-/// A frame drawn by the gateware.
-pub struct Rendered {
-    /// Clock cycles from the first register write of the frame to the detection of its end.
-    pub cycles: u64,
-    /// Clock cycles of these in which the soft core only waited for the gateware, of a benchmark.
-    pub waited: u64,
-    /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
-    pub stats: FrameStats,
-    /// Growth of the triangle engine's counters during the frame.
-    pub counters: Counters,
-    /// The reason why the CPU made the descriptors of the frame, if it did.
-    pub lack: Option<Lack>,
 }
 
 /// The step of a frame in progress: a pass of the triangle engine, or one of the CPU; or `Idle`.

@@ -6,7 +6,8 @@ use litex_pac::cpu;
 
 use super::fallback::Fallback;
 use super::geometry::Cpu;
-use super::renderer::{GatewareRenderer, Output, Rendered};
+use super::rendered::Rendered;
+use super::renderer::{GatewareRenderer, Output};
 
 /// Number of times that the end of a pass is queried between two checks of progress.
 const POLLS: u32 = 1000;

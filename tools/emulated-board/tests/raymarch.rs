@@ -147,12 +147,12 @@ fn view() -> View {
 }
 
 /// Draws a field by the engine and by the model, and compares pictures and counts.
-fn check(bench: &mut Bench, subject: FieldSubject, size: Size) {
-    let name = format!(
-        "{} {size} {:?} {}",
-        subject.field, subject.stereo, subject.prepass
-    );
-    let frame = Frame::new(Subject::Field(subject), view(), size);
+fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
+    let name = format!("{} {size} {stereo:?} {}", subject.field, subject.prepass);
+    let frame = Frame {
+        stereo,
+        ..Frame::new(Subject::Field(subject), view(), size)
+    };
     let constants = frame.constants().unwrap();
     let mut expected = Picture::blank(size.pixels().into());
     let stats = frame
@@ -193,10 +193,9 @@ fn every_kind_of_field() {
             let subject = FieldSubject {
                 field: &field,
                 appearance: &appearance,
-                stereo: None,
                 prepass,
             };
-            check(&mut bench, subject, Size::W320);
+            check(&mut bench, subject, None, Size::W320);
         }
     }
 }
@@ -214,10 +213,10 @@ fn two_eyes_and_large_pictures() {
         let subject = FieldSubject {
             field: &field,
             appearance: &appearance,
-            stereo: stereo.map(|text| Stereo::parse(text).unwrap()),
             prepass: stereo.is_some(),
         };
-        check(&mut bench, subject, size);
+        let stereo = stereo.map(|text| Stereo::parse(text).unwrap());
+        check(&mut bench, subject, stereo, size);
     }
 }
 
@@ -235,10 +234,9 @@ fn random_fields() {
         let subject = FieldSubject {
             field: &field,
             appearance: &Appearance::default(),
-            stereo: None,
             prepass: state & 1 == 1,
         };
-        check(&mut bench, subject, Size::W320);
+        check(&mut bench, subject, None, Size::W320);
     }
 }
 
@@ -252,7 +250,6 @@ fn a_mesh_in_a_field() {
     let subject = FieldSubject {
         field: &field,
         appearance: &Appearance::default(),
-        stereo: None,
         prepass: false,
     };
     let frame = Frame {

@@ -198,7 +198,6 @@ pub fn draw<T>(
     let field = state.field.as_ref().map(|field| FieldSubject {
         field,
         appearance: &state.appearance,
-        stereo: state.stereo,
         prepass: state.prepass,
     });
     let model = state.model.map(mesh).transpose()?;
@@ -214,12 +213,11 @@ pub fn draw<T>(
         (Some(mesh), None, Some(edges)) => Subject::edges(mesh, edges),
         (Some(mesh), None, None) => Subject::Mesh(mesh),
     };
-    Ok(draw(&Frame::in_appearance(
-        subject,
-        state.view,
-        changes.size.unwrap_or(state.size),
-        &state.appearance,
-    )))
+    let size = changes.size.unwrap_or(state.size);
+    Ok(draw(&Frame {
+        stereo: state.stereo,
+        ..Frame::in_appearance(subject, state.view, size, &state.appearance)
+    }))
 }
 
 #[cfg(test)]

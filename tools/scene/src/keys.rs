@@ -71,7 +71,7 @@ pub const COMMANDS: [Key; 24] = [
     key("fog").with(FIELD),
     key("occlusion").with(FIELD),
     key("prepass").with(FIELD),
-    key("stereo").with(FIELD).without(&["model"]),
+    key("stereo").with(LIT).without(&["orthographic"]),
     key("model")
         .command("scene")
         .without(&["object", "program"]),

@@ -77,7 +77,8 @@ impl Scene {
         let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
         let fields = shown.filter(|_| has_fields).map(|field| Fields {
             lanes: self.lanes.unwrap_or(LANES),
-            stereo,
+            // A mesh and its field are drawn for one eye after the other.
+            stereo: stereo && !has_triangles,
             prepass,
             ..Fields::of(&field)
         });

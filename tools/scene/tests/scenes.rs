@@ -216,6 +216,16 @@ fn refused_files() {
             "edges: expected only beside model",
         ),
         (
+            MODEL,
+            "orthographic = 2\nstereo = \"0.1,4\"",
+            "stereo: expected only without orthographic, found it in line 4",
+        ),
+        (
+            PROGRAM,
+            "stereo = \"0.1,4\"",
+            "stereo: expected only beside model or object or field",
+        ),
+        (
             PROGRAM,
             "camera = \"3 30 60\"",
             "camera: expected only beside model or object or field",
@@ -288,6 +298,14 @@ fn needs_follow_from_the_keys() {
         (
             "field = \"octahedron:1\"\nstereo = \"0.1,4\"",
             "--blocks scanout raymarch --fields octahedron,stereo --lanes 2",
+        ),
+        (
+            "model = \"cube\"\nstereo = \"0.1,4\"",
+            "--blocks scanout triangle",
+        ),
+        (
+            "model = \"cube\"\nfield = \"octahedron:1\"\nstereo = \"0.1,4\"",
+            "--blocks scanout triangle raymarch --fields octahedron --lanes 2",
         ),
         (
             "field = \"union:menger:3+sphere:1\"",

@@ -52,7 +52,7 @@ commands! {
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
         field Field(field: Option<Or<Off, Field>>) in FIELD: "show or set the distance field; off shows the mesh";
         mesh Mesh(on: Option<bool>) in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
-        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in STEREO: "show or set the two eyes of a field; off is one eye";
+        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye";
         demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
 

@@ -127,7 +127,8 @@ impl FrameConstants {
     /// Replaces the constants by those of `frame`. Its objects are checked when their constants are computed.
     ///
     /// # Errors
-    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants.
+    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants. It is [`RenderError::Stereo`] for a frame of which
+    /// each of [`Frame::eyes`] is drawn instead.
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         let result = self.compute(frame);
         if result.is_err() {
@@ -140,6 +141,11 @@ impl FrameConstants {
         (self.light, self.field) = (None, None);
         let (view, size) = (&frame.view, frame.size.pixels().into());
         match &frame.subject {
+            Subject::Field(_) => {}
+            _ if frame.stereo.is_some() => return Err(RenderError::Stereo),
+            _ => {}
+        }
+        match &frame.subject {
             Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
                 let mesh = self.mesh.get_or_insert_default();
                 mesh.update(view, size, subject.mesh.radius(), &mut self.scale)?;
@@ -147,13 +153,13 @@ impl FrameConstants {
             }
             Subject::Field(subject) if FIELD.is_built => {
                 self.mesh = None;
-                let options = subject.options(view);
+                let options = subject.options(view, frame.stereo);
                 let setup = FieldSetup::new(subject.field, view, size, &options)?;
                 self.set_field(setup, &options);
             }
             Subject::MeshInField(mesh, subject) if MESH_IN_FIELD.is_built => {
                 let (radius, clip) = (mesh.mesh.radius(), mesh.clip);
-                let options = subject.options(view);
+                let options = subject.options(view, None);
                 let (mesh, field) =
                     mesh_in_field::constants(view, size, radius, subject.field, &options)?;
                 self.mesh = Some(mesh.with_clip(clip)?);

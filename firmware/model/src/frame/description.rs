@@ -29,6 +29,8 @@ pub struct Frame<'a> {
     pub clear: Rgb565,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
+    /// Two eyes for a stereo picture, or `None` for one eye.
+    pub stereo: Option<Stereo>,
 }
 
 /// The subject of a frame.
@@ -84,8 +86,6 @@ pub struct FieldSubject<'a> {
     pub field: &'a Field,
     /// Material, lights, background, fog and occlusion.
     pub appearance: &'a Appearance,
-    /// Two eyes for a stereo picture, or `None` for one eye. A mesh in a field has one eye.
-    pub stereo: Option<Stereo>,
     /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats.md, "Cones").
     pub prepass: bool,
 }
@@ -218,16 +218,16 @@ impl<'a> Subject<'a> {
 }
 
 impl FieldSubject<'_> {
-    pub(super) fn options(&self, view: &View) -> FieldOptions {
+    pub(super) fn options(&self, view: &View, stereo: Option<Stereo>) -> FieldOptions {
         FieldOptions {
             prepass: self.prepass,
-            ..FieldOptions::new(self.field, self.appearance, self.stereo, view)
+            ..FieldOptions::new(self.field, self.appearance, stereo, view)
         }
     }
 }
 
 impl<'a> Frame<'a> {
-    /// A frame with a black background, and white light at the camera for its meshes.
+    /// A frame with one eye, a black background, and white light at the camera for its meshes.
     pub const fn new(subject: Subject<'a>, view: View, size: Size) -> Self {
         Self {
             subject,
@@ -235,10 +235,11 @@ impl<'a> Frame<'a> {
             size,
             clear: Rgb565(0),
             lighting: MeshLighting::CAMERA,
+            stereo: None,
         }
     }
 
-    /// A frame with the lights of meshes and the background of `appearance`. Behind lines alone the background is black.
+    /// A frame with one eye, and the lights of meshes and the background of `appearance`. Behind lines alone the background is black.
     pub fn in_appearance(
         subject: Subject<'a>,
         view: View,

@@ -18,21 +18,20 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Computes the directions for a view. For two eyes, `parallax`·u is added to the directions of the left eye and
-    /// subtracted from those of the right eye, where u is the camera's right axis; `parallax` is at most 1 and has 28
-    /// fraction bits. With `round` the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum
-    /// norm.
-    pub fn new(view: &View, width: u32, height: u32, parallax: i64, round: bool) -> Self {
+    /// Computes the directions for the cameras of two eyes, or twice that of one eye, which differ by place and shift alone. With `round`
+    /// the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
+    pub fn new(eyes: &[View; 2], width: u32, height: u32, round: bool) -> Self {
+        let [view, _] = eyes;
         let half_width = view.half_width().to_bits() as i64;
         // The width of the picture at distance 1 divided by the number of pixels; the dividend is below 2^54.
         let step = |row: [Q2_23; 3]| {
             row.map(|x| (2 * half_width * i64::from(x.to_bits())) / i64::from(width))
         };
         let (across, down) = (step(view.u()), step(view.v()));
-        let first = [1, -1].map(|sign| {
+        let first = eyes.map(|eye| {
             [0, 1, 2].map(|i: usize| {
                 (i64::from(view.n()[i].to_bits()) << 28)
-                    + sign * parallax * i64::from(view.u()[i].to_bits())
+                    + i64::from(eye.shift().to_bits()) * i64::from(view.u()[i].to_bits())
                     - (i64::from(width - 1) * across[i] + i64::from(height - 1) * down[i]) / 2
             })
         });

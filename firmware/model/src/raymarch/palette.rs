@@ -1,5 +1,6 @@
 //! The palette: the colours of a frame with a distance field.
 
+use glint_core::colour::luminance;
 use glint_core::field::Field;
 use glint_core::light::{Background, Lighting, Material};
 
@@ -88,10 +89,7 @@ impl Palette {
     /// Replaces each colour by its luminance in all channels, for two eyes.
     #[must_use]
     pub fn grey(self) -> Self {
-        let grey = |[r, g, b]: [u8; 3]| {
-            // The luminance of Rec. 601, with weights that add up to 256.
-            [((77 * u32::from(r) + 150 * u32::from(g) + 29 * u32::from(b) + 128) >> 8) as u8; 3]
-        };
+        let grey = |colour| [luminance(colour); 3];
         let lights = Lights {
             ambient: grey(self.lights.ambient),
             list: self.lights.list.map(|light| Light {

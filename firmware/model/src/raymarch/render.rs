@@ -1,7 +1,5 @@
 //! Drawing of all pixels of a frame with a distance field.
 
-use glint_core::stereo::Tint;
-
 use super::cone::Rays;
 use super::paint::paint;
 use super::palette::Palette;
@@ -107,7 +105,7 @@ pub fn render_rows(
             }
             Some(tint) => {
                 let (right, _) = look(1, x, y);
-                (*colour, *depth) = (compose(tint, left[1], right[1]), code);
+                (*colour, *depth) = (tint.compose(left[1], right[1]), code);
             }
         }
     }
@@ -139,15 +137,4 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
         ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16
     };
     narrow(r, 5) << 11 | narrow(g, 6) << 5 | narrow(b, 5)
-}
-
-/// Composes an anaglyph pixel from the luminances of both eyes. Channels are truncated instead of rounded, because all
-/// eight pixels of a word are composed at once in the gateware.
-pub fn compose(tint: Tint, left: u8, right: u8) -> u16 {
-    let [red, green, blue] = match tint {
-        Tint::RedBlue => [left, left.min(right), right],
-        Tint::RedCyan => [left, right, right],
-    }
-    .map(u16::from);
-    red >> 3 << 11 | green >> 2 << 5 | blue >> 3
 }

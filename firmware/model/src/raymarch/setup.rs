@@ -6,7 +6,7 @@ use glint_core::field::{
     FRACTION, Field, FixedSpheres, Placed, Primitive, Sample, Solid, cropped, units,
 };
 use glint_core::fixed::Q32_32;
-use glint_core::stereo::{Stereo, Tint};
+use glint_core::stereo::Tint;
 
 use super::blend::{Beside, Blend};
 use super::directions::Directions;
@@ -100,27 +100,17 @@ impl FieldSetup {
         });
 
         let stereo = options.stereo.filter(|_| STEREO.is_built);
-        let (shift, parallax) = match stereo {
-            Some(Stereo {
-                half_separation,
-                zero_parallax,
-                ..
-            }) => (
-                half_separation,
-                // The quotient of half separation and depth of zero parallax is at most 1.
-                (half_separation.to_bits() << 24) / (zero_parallax.to_bits() >> 4).max(1),
-            ),
-            None => (Q32_32::ZERO, 0),
+        let views = match stereo {
+            Some(stereo) => stereo.eyes(view),
+            None => [*view; 2],
         };
         let repeated = solid.is_repeated();
-        let rays = Directions::new(view, width, height, parallax, round);
-        let eye = |sign: i64, first: [i64; 3]| {
+        let rays = Directions::new(&views, width, height, round);
+        let eye = |view: &View, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
                 // The eye of the camera is within 32 world units of the origin, and each of two eyes is at most 1 world
                 // unit to the side of it.
-                let aside = (shift.to_bits() >> 8) * i64::from(view.u()[i].to_bits());
-                let place = Q32_32::from_bits(view.eye()[i].to_bits() + sign * (aside >> 15));
-                let place = units(place, scale) as i32;
+                let place = units(view.eye()[i], scale) as i32;
                 if repeated {
                     // The same position relative to the field, in the cell about the origin.
                     cropped(place, 6 + FRACTION)
@@ -154,7 +144,7 @@ impl FieldSetup {
             beside,
             scale,
             bounds,
-            eyes: [eye(-1, rays.first[0]), eye(1, rays.first[1])],
+            eyes: [0, 1].map(|i: usize| eye(&views[i], rays.first[i])),
             steps,
             exponent: rays.exponent,
             near: near_units.clamp(0, FARTHEST.into()) as u32,

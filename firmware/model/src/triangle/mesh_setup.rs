@@ -20,7 +20,8 @@ pub struct MeshSetup {
     pub scale_shift: u32,
     /// The projection.
     pub projection: Projection,
-    /// The camera's right axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
+    /// The camera's right axis u, or u − shift·n for one of two eyes, scaled to pixels at distance 1: f fraction bits (f is
+    /// `scale_shift`), 25 bits.
     pub u: [i32; 3],
     /// The camera's down axis, scaled to pixels at distance 1: f fraction bits (f is `scale_shift`), 25 bits.
     pub v: [i32; 3],
@@ -91,7 +92,7 @@ impl MeshSetup {
         self.height = height;
         self.scale_shift = scale.shift;
         self.projection = projection;
-        self.u = view.u().map(|r| scale.scaled(r));
+        self.u = across(view).map(|r| scale.scaled(r));
         self.v = view.v().map(|r| scale.scaled(r));
         self.n = view.n().map(Q2_23::to_bits);
         // The eye C is within 8 world units of the origin, which is 2^35 with its 32 fraction bits, and a row is shorter
@@ -202,6 +203,7 @@ const LEAST_OF_OBJECTS: i32 = 0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scale {
     width: u32,
+    is_shifted: bool,
     shift: u32,
     numerator: i64,
     half_width: i64,
@@ -215,28 +217,37 @@ impl Scale {
     /// Makes this the scale of a picture of this width and a view, unless it is.
     fn update(&mut self, width: u32, view: &View) {
         let half_width = view.half_width().to_bits() as i64;
-        if (self.width, self.half_width) != (width, half_width) {
-            *self = Self::new(width, half_width);
+        let is_shifted = view.shift() != 0;
+        if (self.width, self.half_width, self.is_shifted) != (width, half_width, is_shifted) {
+            *self = Self::new(width, half_width, is_shifted);
         }
     }
 
-    /// Finds the largest f up to 18 with ceil(s·2^f)·(1 + 2^−12) < 2^24.
+    /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24, where c is 1 + 2^−12, or √2·(1 + 2^−12) for a shifted picture.
     ///
-    /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12.
+    /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
+    /// most 1, a component of u − shift·n is at most √2 times that.
     // Not inlined, as most frames have the scale of the frame before.
     #[inline(never)]
-    fn new(width: u32, half_width: i64) -> Self {
+    fn new(width: u32, half_width: i64, is_shifted: bool) -> Self {
         /// The largest integer whose product with 1 + 2^−12 is below 2^24.
         const LARGEST: i64 = ((1 << 36) - 1) / 4097;
+        // 29/41 is slightly less than 1/√2.
+        let largest = if is_shifted {
+            LARGEST * 29 / 41
+        } else {
+            LARGEST
+        };
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
         // ceil(s·2^24), of at least 25 bits. Without its last bits, rounded up, it is ceil(s·2^f) for a smaller f. Its leading
-        // 24 bits are then at most `LARGEST`, or else its leading 23 bits are.
+        // 24 bits are then at most `largest`, or else its leading 23 bits are.
         let whole: i64 = (numerator(24) + half_width - 1) / half_width;
         let cut = (whole.ilog2() - 23).max(6);
-        let cut = cut + u32::from(whole > LARGEST << cut);
+        let cut = cut + u32::from(whole > largest << cut);
         let spare = cut - 6;
         Self {
             width,
+            is_shifted,
             shift: 24 - cut,
             numerator: numerator(24 - cut),
             half_width,
@@ -265,7 +276,7 @@ impl Scale {
     /// down.
     ///
     /// The soft core divides 64-bit numbers in software, in 1,200 clocks, so the only division is that of `ceil`. The
-    /// product r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.01: 2^−5 of the quotient's last place.
+    /// product r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.51: 2^−5 of the quotient's last place.
     /// Rounded down, it is therefore the quotient or 1 less, and the remainder tells which.
     // Not inlined: the soft core fetches code that runs once a frame from main memory, so small code is fast code.
     #[inline(never)]
@@ -278,6 +289,16 @@ impl Scale {
         let is_less = dividend - quotient * divisor >= divisor;
         (quotient + i64::from(is_less)) as i32
     }
+}
+
+/// The row u − shift·n, with which x is 0 in the middle of a shifted picture: the camera's right axis u without a shift.
+fn across(view: &View) -> [Q2_23; 3] {
+    let (u, n, shift) = (view.u(), view.n(), i64::from(view.shift().to_bits()));
+    [0, 1, 2].map(|i: usize| {
+        // The product has 28 + 23 fraction bits and is rounded to nearest.
+        let aside = (shift * i64::from(n[i].to_bits()) + (1 << 27)) >> 28;
+        Q2_23::from_bits(u[i].to_bits() - aside as i32)
+    })
 }
 
 /// The scalar product. Not inlined, as [`Scale::scaled`].

@@ -38,6 +38,22 @@ pub struct Stats {
     pub pixels_drawn: u64,
 }
 
+impl Stats {
+    /// Adds the counts of another frame.
+    pub fn add(&mut self, other: &Self) {
+        self.triangles_in += other.triangles_in;
+        self.culled += other.culled;
+        self.clipped += other.clipped;
+        self.drawn += other.drawn;
+        self.pixels_tested = self
+            .pixels_tested
+            .zip(other.pixels_tested)
+            .map(|(a, b)| a + b);
+        self.pixels_covered += other.pixels_covered;
+        self.pixels_drawn += other.pixels_drawn;
+    }
+}
+
 /// A triangle that reached the walker (the stage that finds pixels), or a part of a clipped triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawnTriangle {

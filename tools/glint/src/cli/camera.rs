@@ -60,7 +60,7 @@ struct LensArguments {
     #[arg(long, value_name = "DEGREES")]
     fov: Option<String>,
     /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
-    #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "zoom"])]
+    #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "zoom", "stereo"])]
     orthographic: Option<String>,
 }
 

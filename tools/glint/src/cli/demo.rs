@@ -249,7 +249,6 @@ impl DemoArguments {
         let subject = FieldSubject {
             field: &SPONGE,
             appearance: &Appearance::default(),
-            stereo: Some(EYES),
             prepass: false,
         };
         let console = renderer.console();
@@ -266,7 +265,10 @@ impl DemoArguments {
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
             let stats = renderer.render_after(&[&format!("camera {}", place.join(" "))])?;
             let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
-            let frame = Frame::new(Subject::Field(subject), view, SIZE);
+            let frame = Frame {
+                stereo: Some(EYES),
+                ..Frame::new(Subject::Field(subject), view, SIZE)
+            };
             let image = Image {
                 colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
                 ..Image::empty(SIZE)

@@ -17,9 +17,8 @@ use std::fmt::Display;
 pub struct FieldArguments {
     #[arg(long, value_name = "FIELD", help = field_help())]
     field: Option<String>,
-    /// Stereo for a field without a mesh: one eye E to the left of the camera and one E to the right (0 to 1), with zero
-    /// parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default
-    /// tint: red-blue].
+    /// Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in
+    /// world units. The left eye is red, the right one blue or cyan [default tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
     /// Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes in place of
@@ -75,21 +74,12 @@ impl FieldArguments {
         self.name().map(parse).transpose()
     }
 
-    /// The parsed stereo settings, if `--stereo` is given. With a mesh (`with_mesh`) the option is an error.
-    pub fn stereo(&self, with_mesh: bool) -> Result<Option<Stereo>, InputError> {
-        let Some(text) = &self.stereo else {
-            return Ok(None);
+    /// The parsed stereo settings, if `--stereo` is given.
+    pub fn stereo(&self) -> Result<Option<Stereo>, InputError> {
+        let parse = |text| {
+            Stereo::parse(text).map_err(|error| bad_value("--stereo", "two eyes", escaped(error)))
         };
-        if with_mesh {
-            return Err(bad_value(
-                "--stereo",
-                "a --field without a mesh",
-                "a mesh".to_owned(),
-            ));
-        }
-        Stereo::parse(text)
-            .map(Some)
-            .map_err(|error| bad_value("--stereo", "two eyes", escaped(error)))
+        self.stereo.as_deref().map(parse).transpose()
     }
 
     /// Whether cones are marched before the rays (`--prepass`).

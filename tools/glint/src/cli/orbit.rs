@@ -119,15 +119,11 @@ impl OrbitArguments {
         let size = self.size.as_deref().map(size).transpose()?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
-        let field = match &field {
-            Some(field) => Some(FieldSubject {
-                field,
-                appearance: &appearance,
-                stereo: self.field.stereo(self.model.is_some())?,
-                prepass: self.field.prepass(),
-            }),
-            None => None,
-        };
+        let field = field.as_ref().map(|field| FieldSubject {
+            field,
+            appearance: &appearance,
+            prepass: self.field.prepass(),
+        });
         let model = self.model.as_deref().map(|name| load(name, false));
         let model = model.transpose()?;
         let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
@@ -154,7 +150,11 @@ impl OrbitArguments {
             self.frames,
         )?;
         let first = views.first().context("expected a frame")?;
-        let frame = Frame::in_appearance(subject, *first, size.unwrap_or_default(), &appearance);
+        let size = size.unwrap_or_default();
+        let frame = Frame {
+            stereo: self.field.stereo()?,
+            ..Frame::in_appearance(subject, *first, size, &appearance)
+        };
         self.write(out, &frame, &views, None)
     }
 

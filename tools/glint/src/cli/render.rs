@@ -146,7 +146,7 @@ impl RenderArguments {
         let size = size.unwrap_or_default();
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
-        let stereo = self.field.stereo(self.model.is_some())?;
+        let stereo = self.field.stereo()?;
         let clip = self.clip()?;
         let model = self.model.as_deref();
         let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
@@ -160,7 +160,6 @@ impl RenderArguments {
         let field = field.as_ref().map(|field| FieldSubject {
             field,
             appearance: &appearance,
-            stereo,
             prepass: self.field.prepass(),
         });
         let mesh = mesh.transpose()?;
@@ -196,7 +195,10 @@ impl RenderArguments {
             has_field: field.is_some(),
         };
         let view = self.camera.view(&shown)?;
-        let frame = Frame::in_appearance(subject, view, size, &appearance);
+        let frame = Frame {
+            stereo,
+            ..Frame::in_appearance(subject, view, size, &appearance)
+        };
         self.write(&frame, None)
     }
 
@@ -220,7 +222,9 @@ impl RenderArguments {
         remarks(frame, &stats)?.iter().for_each(warn);
         out.write(|out| image.reduced(factor).write_png(out))?;
         if let Some(out) = depth {
-            let scale = frame.constants()?.depth_scale();
+            let first = frame.drawn()?.next();
+            let scale = first.map(|frame| frame.constants()).transpose()?;
+            let scale = scale.and_then(|constants| constants.depth_scale());
             let scale = scale.context("expected a frame with a subject")?;
             out.write(|out| image.write_depth(out, &scale))?;
         }

@@ -45,10 +45,12 @@ impl SceneCommand {
 }
 
 fn check(name: &str) -> anyhow::Result<()> {
-    let constants = scene::draw(&read(name)?, &Changes::default(), |frame| {
-        frame.constants().map(|_| ())
+    let drawable = scene::draw(&read(name)?, &Changes::default(), |frame| {
+        frame
+            .drawn()?
+            .try_for_each(|frame| frame.constants().map(|_| ()))
     })?;
-    constants.with_context(|| name.to_owned())?;
+    drawable.with_context(|| name.to_owned())?;
     say(format_args!("{name}: valid"))
 }
 

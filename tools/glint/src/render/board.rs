@@ -2,7 +2,7 @@
 
 use super::commands::{
     background_command, edges_command, field_commands, lighting_commands, mesh_commands,
-    object_command, size_command, view_command,
+    object_command, size_command, stereo_command, view_command,
 };
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
@@ -99,6 +99,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
         self.console.command(&size_command(frame.size))?;
         self.console.command(&view_command(&frame.view))?;
+        self.console.command(&stereo_command(frame.stereo))?;
         let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
         if has_meshes && frame.subject.field_part().is_none() {
             for command in lighting_commands(&frame.lighting) {

@@ -6,6 +6,7 @@ use glint_core::choice::switch_name;
 use glint_core::light::{Background, Hexadecimal, MeshLighting};
 use glint_core::object::Place;
 use glint_core::picture::{Edges, Size};
+use glint_core::stereo::Stereo;
 use glint_model::{Clip, FieldSubject, MeshSubject, Object};
 
 /// The console command that sets the picture's size.
@@ -61,6 +62,14 @@ pub fn background_command(background: Option<Background>) -> String {
     }
 }
 
+/// The console command that sets two eyes, or one.
+pub fn stereo_command(stereo: Option<Stereo>) -> String {
+    match stereo {
+        Some(stereo) => format!("stereo {stereo}"),
+        None => "stereo off".to_owned(),
+    }
+}
+
 /// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
 pub fn view_command(view: &View) -> String {
     format!("view {view}")
@@ -92,12 +101,9 @@ pub fn field_commands(subject: &FieldSubject, with_mesh: bool) -> Vec<String> {
         format!("fog {fog}"),
         format!("occlusion {}", switch_name(*occlusion)),
         format!("undecided {}", switch_name(*undecided)),
-        // A mesh in a field cannot be drawn for two eyes, so stereo is off when `mesh` is sent.
-        "stereo off".to_owned(),
         format!("mesh {}", switch_name(with_mesh)),
         format!("prepass {}", switch_name(subject.prepass)),
     ]);
-    commands.extend(subject.stereo.map(|stereo| format!("stereo {stereo}")));
     commands.push(format!("field {}", subject.field));
     commands
 }

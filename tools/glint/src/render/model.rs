@@ -19,8 +19,37 @@ impl Renderer for ModelRenderer {
 /// Draws a frame with the bit-exact model.
 ///
 /// # Errors
-/// The eye is too far from the origin for a mesh, or a mesh in a field is requested for two eyes.
+/// A [`RenderError`] for a frame beyond the limits of the model.
 pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
+    let (image, stats) = picture(frame).map_err(Error::Render)?;
+    let stats = stats.into();
+    Ok(Rendered { image, stats })
+}
+
+/// The picture of one eye or of two.
+fn picture(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
+    let Some(eyes) = frame.eyes()? else {
+        return picture_of_one(frame);
+    };
+    let (mut image, left) = picture_of_one(&eyes.left)?;
+    let (other, right) = picture_of_one(&eyes.right)?;
+    let words = |image: &Image| -> Vec<u32> {
+        let pairs = image.colour.as_chunks().0.iter();
+        pairs
+            .map(|&[a, b]| u32::from(a) | u32::from(b) << 16)
+            .collect()
+    };
+    let mut composed = words(&image);
+    eyes.compose(&mut composed, &words(&other), &mut || {});
+    let pixels = composed
+        .into_iter()
+        .flat_map(|word| [word as u16, (word >> 16) as u16]);
+    image.colour = pixels.collect();
+    Ok((image, left + right))
+}
+
+/// The picture of a frame that is drawn as it is.
+fn picture_of_one(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
     let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
     let mut image = Image {
         width,
@@ -35,11 +64,8 @@ pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
         depth: &mut image.depth,
     };
     let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-    let stats = draw(frame, &mut buffer, &mut scratch).map_err(Error::Render)?;
-    Ok(Rendered {
-        image,
-        stats: stats.into(),
-    })
+    let stats = draw(frame, &mut buffer, &mut scratch)?;
+    Ok((image, stats))
 }
 
 fn draw(

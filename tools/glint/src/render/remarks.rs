@@ -9,12 +9,15 @@ use glint_model::RenderError;
 /// The frame cannot be drawn.
 pub fn remarks(frame: &Frame, stats: &Stats) -> Result<Vec<String>, RenderError> {
     let mut remarks = Vec::new();
-    let constants = frame.constants()?;
-    if constants
-        .field()
-        .is_some_and(|field| field.setup.has_eye_inside())
-    {
-        let [x, y, z] = frame.view.eye();
+    let mut inside = None;
+    for eye in frame.drawn()? {
+        let constants = eye.constants()?;
+        let field = constants.field();
+        if field.is_some_and(|field| field.setup.has_eye_inside()) {
+            inside = inside.or(Some(eye.view.eye()));
+        }
+    }
+    if let Some([x, y, z]) = inside {
         remarks.push(format!(
             "the eye ({x}, {y}, {z}) is inside the field, and sees one surface in all directions: move it with --camera or --look-at, \
              or choose another --field"

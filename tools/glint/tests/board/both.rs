@@ -6,10 +6,13 @@ use glint::board::{SimulatedBoard, Simulation};
 use glint::console::value;
 use glint::gesture::image_sensor;
 use glint::object::Description;
-use glint::render::{Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject};
+use glint::render::{FieldSubject, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject};
 use glint::view;
+use glint_core::appearance::Appearance;
+use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::stereo::Stereo;
 use glint_model::{Object, Placement};
 use virtual_board::virtual_image_sensor::{Place, Scene};
 
@@ -46,12 +49,30 @@ fn both_boards_draw_the_same() {
             colour: place.colour,
         }
     });
+    let field = FieldSubject {
+        field: &Field::parse("box:0.3,1,0.3").unwrap(),
+        appearance: &Appearance::default(),
+        prepass: false,
+    };
+    let both = Subject::MeshInField(plain(&sphere), field);
     let frames = [
-        ("a mesh", Subject::Mesh(plain(&sphere)), outside),
-        ("clipped triangles", Subject::Mesh(plain(&sponge)), inside),
-        ("objects", Subject::Objects(&objects), outside),
+        ("a mesh", Subject::Mesh(plain(&sphere)), outside, None),
+        (
+            "clipped triangles",
+            Subject::Mesh(plain(&sponge)),
+            inside,
+            None,
+        ),
+        ("objects", Subject::Objects(&objects), outside, None),
+        ("two eyes", both, outside, Some("0.1,2.5")),
     ]
-    .map(|(name, subject, view)| (name, Frame::new(subject, view, Size::W320)));
+    .map(|(name, subject, view, stereo)| {
+        let frame = Frame {
+            stereo: stereo.map(|stereo| Stereo::parse(stereo).unwrap()),
+            ..Frame::new(subject, view, Size::W320)
+        };
+        (name, frame)
+    });
     let by_gateware = drawn(running_board(), &frames);
     let by_emulation = drawn(emulator(), &frames);
     for ((name, frame), (expected, found)) in

@@ -37,7 +37,6 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             material: Material::Jade,
             ..Appearance::default()
         },
-        stereo: None,
         prepass: false,
     };
     let triangles = MeshSubject::new(Mesh::new_checked(&mesh).unwrap());
@@ -117,7 +116,6 @@ fn a_field_by(backend: Backend, name: &str) {
     let subject = FieldSubject {
         field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
         appearance: &Appearance::default(),
-        stereo: None,
         prepass: false,
     };
     let view = view::parse(eye.as_bytes()).unwrap();

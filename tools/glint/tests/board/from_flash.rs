@@ -268,8 +268,8 @@ fn a_scene_that_cannot_be_shown_is_left_out() {
         "scene bad: this gateware lacks line, expected that of `cargo xtask gateware --scene bad`",
         false,
     );
-    let failing = scene("field box:1,1,1\nstereo 0.03,1.6,red-cyan\nmesh on\n");
-    keeps_the_scene(&[failing], all, 8, "mesh: not available in stereo", true);
+    let failing = scene("field box:1,1,1\nedges over\n");
+    keeps_the_scene(&[failing], all, 8, "edges: not available for objects", true);
 }
 
 #[test]

@@ -21,6 +21,7 @@ mod scripts;
 mod sensor;
 mod serial_boot;
 mod stays;
+mod stereo;
 mod terminal;
 mod uploads;
 mod wireframes;

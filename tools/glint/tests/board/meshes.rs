@@ -313,6 +313,7 @@ fn an_orbit_on_a_board_is_the_models() {
         (&["gear"][..], &[][..]),
         (&["gear"], &["--backend", "cpu"]),
         (&["gear"], &["--transfer", "serial"]),
+        (&["gear", "--stereo", "0.1,3"], &[]),
         (&["gear", "--field", "box:1,1,0.1"], &[]),
         (&["--field", "menger:2", "--fog", "0.1"], &[]),
         (&["--scene", "mesh-in-field", "--size", "320x180"], &[]),

@@ -248,14 +248,17 @@ fn bad_names_and_numbers() {
             "error: --stereo: expected two eyes, found 1: expected E,ZERO[,red-blue|red-cyan]",
         ),
         (
-            &["render", "cube", "--stereo", "0.05,3", "--out", "out.png"],
-            "error: --stereo: expected a --field without a mesh, found a mesh",
-        ),
-        (
             &[
-                "render", "cube", "--field", "menger:2", "--stereo", "0.05,3", "--out", "out.png",
+                "render",
+                "cube",
+                "--stereo",
+                "1,1",
+                "--look-at",
+                "7.99,0,0,-1,0,0",
+                "--out",
+                "out.png",
             ],
-            "error: --stereo: expected a --field without a mesh, found a mesh",
+            "error: eye (7.99, -1, 0): expected within 8 of the origin for a mesh",
         ),
         (
             &["render", "cube", "--out", "out.png", "--fog", "1"],

@@ -87,6 +87,10 @@ fn fields_and_scenes() {
         (&["torus-knot", "--field", "box:1,1,0.1"], None),
         (&["teapot", "--camera", "3,0,40"], Some("3,90,40")),
         (
+            &["cube", "--stereo", "0.1,2.5", "--camera", "3,0,40"],
+            Some("3,90,40"),
+        ),
+        (
             &["torus-knot", "--material", "jade", "--background", "sky"],
             None,
         ),

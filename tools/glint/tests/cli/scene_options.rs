@@ -87,3 +87,43 @@ fn options_that_a_scene_states() {
     );
     assert!(!folder.join("a.png").exists());
 }
+
+/// Two eyes as a key of a scene are those of the option, with meshes, objects, and a mesh in a field; the depths are the left eye's.
+#[test]
+fn two_eyes() {
+    let folder = folder("scene-two-eyes");
+    let camera = "title = \"Two\"\ncamera = \"3 30 60\"\n";
+    for (number, (keys, options)) in [
+        ("model = \"cube\"\n", &["cube"][..]),
+        (
+            "model = \"cube\"\nfield = \"box:0.2,1,0.2\"\n",
+            &["cube", "--field", "box:0.2,1,0.2"],
+        ),
+        (
+            "object = \"cube scale 0.5\"\n",
+            &["--object", "cube scale 0.5"],
+        ),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("{number}.toml");
+        let of_one = format!("{camera}{keys}");
+        let text = format!("{of_one}stereo = \"0.2,2.5,red-cyan\"\n");
+        std::fs::write(folder.join(&name), text).unwrap();
+        std::fs::write(folder.join("one.toml"), of_one).unwrap();
+        let valid = succeed(&folder, &["scene", "check", &name]);
+        assert_eq!(valid, format!("{name}: valid\n"));
+        let render = |arguments: &[&str]| {
+            let out = ["render", "--out", "a.png", "--depth", "a.f32"];
+            succeed(&folder, &[&out, arguments].concat());
+            let depth = std::fs::read(folder.join("a.f32")).unwrap();
+            (picture(&folder.join("a.png")), depth)
+        };
+        let scene = render(&["--scene", &name]);
+        let eyes = ["--camera", "3,30,60", "--stereo", "0.2,2.5,red-cyan"];
+        assert!(scene == render(&[options, &eyes].concat()), "{keys}");
+        let one = render(&["--scene", "one.toml"]);
+        assert!(scene.0 != one.0 && scene.1 != one.1, "{keys}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Model of the band buffer: groups of pixels, bands, and the words that the flush of a band must write.
 
-use glint_model::raymarch::{Tint, compose};
+use glint_core::stereo::Tint;
 use std::ops::Range;
 
 pub const LANES: usize = 8;
@@ -106,8 +106,8 @@ impl Pixels {
             let [left, right] = colour.to_le_bytes();
             match band.compose {
                 0 => colour,
-                1 => compose(Tint::RedBlue, left, right),
-                _ => compose(Tint::RedCyan, left, right),
+                1 => Tint::RedBlue.compose(left, right),
+                _ => Tint::RedCyan.compose(left, right),
             }
         };
         let colour = self.0[row].map(|pixel| u32::from(pixel.map_or(band.clear, seen)));

@@ -80,24 +80,21 @@ pub fn board() -> SimulatedBoard {
 }
 
 /// Draws a field on the board, with or without depths, and compares the frame and its statistics with the model's.
-fn compare(
-    console: &mut Console<SimulatedBoard>,
-    subject: FieldSubject,
-    view: &View,
-    size: Size,
-    with_depth: bool,
-) {
-    let FieldSubject {
-        field,
+fn compare(console: &mut Console<SimulatedBoard>, frame: &Frame, with_depth: bool) {
+    let Frame {
+        subject: Subject::Field(FieldSubject { field, prepass, .. }),
+        view,
+        size,
         stereo,
-        prepass,
         ..
-    } = subject;
-    let cones = if prepass { ", after cones" } else { "" };
+    } = frame
+    else {
+        panic!("expected a field");
+    };
+    let cones = if *prepass { ", after cones" } else { "" };
     let name = format!("{field}, {stereo:?}, {view} at {size}{cones}");
-    let frame = Frame::new(Subject::Field(subject), *view, size);
-    let Rendered { image, stats } = on_model(&frame).unwrap();
-    let replies = send(console, &lines(&frame, with_depth));
+    let Rendered { image, stats } = on_model(frame).unwrap();
+    let replies = send(console, &lines(frame, with_depth));
     compare_rays(&replies, &name, &stats);
     compare_picture(console, &replies, &name, &image, with_depth);
 }
@@ -108,6 +105,7 @@ fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = vec![
         render::size_command(frame.size),
         render::view_command(&frame.view),
+        render::stereo_command(frame.stereo),
     ];
     if let Some(field) = frame.subject.field_part() {
         let with_mesh = frame.subject.mesh_part().is_some();
@@ -189,10 +187,13 @@ fn the_soc_draws_every_field() {
                         let subject = FieldSubject {
                             field: &field,
                             appearance: &Appearance::default(),
-                            stereo,
                             prepass,
                         };
-                        compare(&mut console, subject, view, Size::W320, once);
+                        let frame = Frame {
+                            stereo,
+                            ..Frame::new(Subject::Field(subject), *view, Size::W320)
+                        };
+                        compare(&mut console, &frame, once);
                     }
                 }
             }
@@ -213,13 +214,13 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     let sponge = FieldSubject {
         field: &Field::from(Menger { depth: 4 }),
         appearance: &Appearance::default(),
-        stereo: None,
         prepass: true,
     };
     let [view, ..] = views();
     let sizes = [Size::W640, Size::W1280];
     for &size in if all() { &sizes[..] } else { &sizes[..1] } {
-        compare(&mut console, sponge, &view, size, size == Size::W640);
+        let frame = Frame::new(Subject::Field(sponge), view, size);
+        compare(&mut console, &frame, size == Size::W640);
         let mesh = Mesh::new_checked(&cube).unwrap();
         let frame = Frame::new(Subject::mesh(mesh), view, size);
         let Rendered { image, .. } = on_model(&frame).unwrap();
@@ -270,7 +271,6 @@ fn the_soc_draws_a_mesh_in_a_field() {
     let field = FieldSubject {
         field: &Field::parse("box:0.75,0.75,0.75").unwrap(),
         appearance: &appearance,
-        stereo: None,
         prepass: true,
     };
     let both = |view, size, cull| {

@@ -31,15 +31,17 @@ impl Picture {
         let subject = FieldSubject {
             field: &Field::parse(text).unwrap(),
             appearance: &Appearance::default(),
+            prepass: false,
+        };
+        let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
+        let frame = Frame {
             stereo: tint.map(|tint| Stereo {
                 half_separation: Q32_32::lit("0.03"),
                 zero_parallax: Q32_32::lit("1.5"),
                 tint,
             }),
-            prepass: false,
+            ..Frame::new(Subject::Field(subject), view, size)
         };
-        let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();
-        let frame = Frame::new(Subject::Field(subject), view, size);
         let image = on_model(&frame).unwrap().image;
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();

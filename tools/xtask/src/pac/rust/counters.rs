@@ -40,6 +40,13 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> fmt::Result {
 {differences}            }}
         }}
 
+        /// The counts of both readings together, modulo 2^32.
+        #[must_use]
+        pub const fn plus(&self, other: &Self) -> Self {{
+            Self {{
+{sums}            }}
+        }}
+
         /// Name and value of each counter.
         pub fn iter(&self) -> impl Iterator<Item = (&'static str, u32)> {{
             [
@@ -57,6 +64,9 @@ pub fn write(out: &mut String, peripheral: &Peripheral) -> fmt::Result {
         reads = lines(&|_, name| format!("                {name}: registers.{name}().read(),\n")),
         differences = lines(&|_, name| format!(
             "                {name}: self.{name}.wrapping_sub(earlier.{name}),\n"
+        )),
+        sums = lines(&|_, name| format!(
+            "                {name}: self.{name}.wrapping_add(other.{name}),\n"
         )),
         pairs = lines(&|register, name| format!(
             "                ({:?}, self.{name}),\n",

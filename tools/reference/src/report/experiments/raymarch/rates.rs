@@ -248,11 +248,13 @@ fn draw(
         let subject = FieldSubject {
             field: &field,
             appearance: &Appearance::default(),
-            stereo,
             prepass: case.prepass,
         };
         let pose = camera.turned(angles).view().map_err(anyhow::Error::msg)?;
-        let frame = Frame::new(Subject::Field(subject), pose, size);
+        let frame = Frame {
+            stereo,
+            ..Frame::new(Subject::Field(subject), pose, size)
+        };
         let expected = render::on_model(&frame)?;
         let stats = if rows.is_empty() {
             renderer.show(&frame, Route::Memory, &mut |_, _| {})?

@@ -1,0 +1,33 @@
+//! What the drawing of a frame took.
+
+use glint_hal::triangle::Counters;
+use glint_model::FrameStats;
+
+use super::fallback::Lack;
+
+/// A frame drawn by the gateware.
+pub struct Rendered {
+    /// Clock cycles from the first register write of the frame to the detection of its end.
+    pub cycles: u64,
+    /// Clock cycles of these in which the soft core only waited for the gateware, of a benchmark.
+    pub waited: u64,
+    /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
+    pub stats: FrameStats,
+    /// Growth of the triangle engine's counters during the frame.
+    pub counters: Counters,
+    /// The reason why the CPU made the descriptors of the frame, if it did.
+    pub lack: Option<Lack>,
+}
+
+impl Rendered {
+    /// Both of two frames, and further work of `cycles` clock cycles.
+    pub fn plus(self, other: Self, cycles: u64) -> Self {
+        Self {
+            cycles: self.cycles + other.cycles + cycles,
+            waited: self.waited + other.waited,
+            stats: self.stats + other.stats,
+            counters: self.counters.plus(&other.counters),
+            lack: self.lack.or(other.lack),
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board are the model's, and those are composed of two
+//! pictures of one eye.
+
+use crate::common::{console, emulator, mesh, renderer};
+use glint::board::Board;
+use glint::object::Description;
+use glint::render::{
+    self, FieldSubject, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject,
+};
+use glint::view;
+use glint_core::appearance::Appearance;
+use glint_core::colour::{Rgb565, Shading, luminance};
+use glint_core::field::Field;
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Edges, Size};
+use glint_core::stereo::{Stereo, Tint};
+use glint_model::{Object, Placement};
+
+/// The picture of two eyes that two pictures of one eye make.
+fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
+    let [left, right] = eyes.map(|frame| render::on_model(&frame).unwrap().image.colour);
+    let grey = |pixel| u16::from(luminance(Rgb565(pixel).to_rgb888()));
+    let pixels = left.into_iter().zip(right);
+    let pixels = pixels.map(|(left, right)| (grey(left), grey(right)));
+    pixels
+        .map(|(left, right)| {
+            let green = match tint {
+                Tint::RedBlue => left.min(right),
+                Tint::RedCyan => right,
+            };
+            left >> 3 << 11 | green >> 2 << 5 | right >> 3
+        })
+        .collect()
+}
+
+/// The counts that the model and boards have in common.
+fn counts(rendered: &Rendered) -> impl PartialEq + std::fmt::Debug {
+    let stats = &rendered.stats;
+    let triangles = stats.triangles();
+    (
+        [
+            triangles.triangles_in,
+            triangles.triangles_culled,
+            triangles.triangles_clipped,
+            triangles.triangles_drawn,
+        ],
+        (triangles.pixels_covered, triangles.pixels_drawn),
+        (stats.rays.clone(), stats.edges.clone()),
+    )
+}
+
+#[test]
+fn two_eyes_are_the_models() {
+    let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
+    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
+    let objects = [
+        "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
+        "- scale 0.5,0.5,-1 move 0.5,0.3,0.2 colour 30c0ff",
+    ]
+    .map(|text| {
+        let place = Description::parse(text).unwrap().place;
+        Object {
+            subject: plain(&sphere),
+            placement: Placement::new(place.matrix),
+            colour: place.colour,
+        }
+    });
+    let appearance = Appearance::default();
+    let field = Field::parse("box:0.3,1,0.3").unwrap();
+    let field = FieldSubject {
+        field: &field,
+        appearance: &appearance,
+        prepass: true,
+    };
+    let smooth = MeshSubject {
+        shading: Shading::Smooth,
+        ..plain(&sphere)
+    };
+    let both_sides = MeshSubject {
+        cull: false,
+        ..plain(&sponge)
+    };
+    let outside = view::spherical("2.5,30,60").unwrap();
+    // In a hole of the sponge. With eyes 1 aside, each eye is in a solid part or beyond the sponge.
+    let inside = view::look("0,-0.3,0.1,20,10").unwrap();
+    let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
+    let cases = [
+        (Subject::Mesh(plain(&sphere)), outside, "0.1,2.5", gateware),
+        (Subject::Mesh(plain(&sphere)), outside, "0,0.1", gateware),
+        (Subject::Mesh(plain(&sphere)), outside, "1,1", gateware),
+        (
+            Subject::Mesh(plain(&sphere)),
+            outside,
+            "0.1,2,red-cyan",
+            cpu,
+        ),
+        (Subject::Mesh(smooth), outside, "0.1,2.5", gateware),
+        (Subject::Mesh(plain(&sponge)), inside, "0.05,0.5", gateware),
+        (Subject::Mesh(both_sides), inside, "1,1,red-cyan", gateware),
+        (
+            Subject::edges(plain(&sponge), Edges::Over),
+            inside,
+            "0.05,0.5",
+            gateware,
+        ),
+        (
+            Subject::edges(plain(&sphere), Edges::Hidden),
+            outside,
+            "0.1,2,red-cyan",
+            cpu,
+        ),
+        (Subject::Objects(&objects), outside, "0.1,2", gateware),
+        (
+            Subject::MeshInField(plain(&sphere), field),
+            outside,
+            "0.1,2,red-cyan",
+            gateware,
+        ),
+        (
+            Subject::MeshInField(plain(&sphere), field),
+            outside,
+            "0.3,1",
+            cpu,
+        ),
+        // Afterwards one eye, and a field alone.
+        (Subject::Mesh(plain(&sphere)), outside, "", gateware),
+        (Subject::Field(field), outside, "0.1,2", gateware),
+    ];
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let parts = Parts {
+        colour: true,
+        depth: true,
+    };
+    for (number, (subject, view, stereo, backend)) in cases.into_iter().enumerate() {
+        let frame = Frame {
+            stereo: (!stereo.is_empty()).then(|| Stereo::parse(stereo).unwrap()),
+            ..Frame::new(subject, view, Size::W320)
+        };
+        let expected = render::on_model(&frame).unwrap();
+        if let Some(eyes) = frame.eyes().unwrap() {
+            let expected = &expected.image;
+            assert!(expected.colour == composed(&[eyes.left, eyes.right], eyes.tint));
+            let left = render::on_model(&eyes.left).unwrap().image;
+            assert!(expected.depth == left.depth, "case {number}");
+        }
+        renderer.set_backend(backend);
+        let found = renderer.render(&frame, parts, &mut |_, _| {}).unwrap();
+        assert!(found.image.colour == expected.image.colour, "case {number}");
+        assert!(found.image.depth == expected.image.depth, "case {number}");
+        assert_eq!(counts(&found), counts(&expected), "case {number}");
+        let by = found.stats.backend.as_deref();
+        let is_smooth = subject.meshes().any(|mesh| mesh.shading == Shading::Smooth);
+        let by_cpu = backend == cpu || is_smooth;
+        assert_eq!(
+            by,
+            Some(if by_cpu { "cpu" } else { "gateware" }),
+            "case {number}"
+        );
+    }
+}
+
+/// The picture on the screen is a whole one of before or a whole one of after while two eyes are drawn, also while the mode changes.
+#[test]
+fn no_picture_is_half_composed() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    console.command("scene sphere").unwrap();
+    let mut wholes = Vec::new();
+    let settings = ["stereo off", "stereo 0.2,2", "stereo 0.2,2,red-cyan"];
+    for setting in settings {
+        for command in [setting, "render"] {
+            console.command(command).unwrap();
+        }
+        wholes.push(console.board().inner().capture());
+    }
+    assert!(wholes[0] != wholes[1] && wholes[1] != wholes[2]);
+    let (mut seen, mut frames) = ([0; 3], 0);
+    for setting in settings.iter().cycle().take(9) {
+        let text = format!("{setting}\r");
+        console.board().write(text.as_bytes()).unwrap();
+        // A picture takes a million cycles.
+        for _ in 0..60 {
+            let board = console.board().inner();
+            board.run(50_000);
+            let shown = board.shown();
+            let which = wholes.iter().position(|whole| *whole == shown);
+            seen[which.expect("a whole picture")] += 1;
+            frames += 1;
+        }
+        console.reply(setting).unwrap();
+    }
+    println!("{frames} pictures: {seen:?}");
+    assert!(seen.iter().all(|&count| count > 60));
+}
+
+/// What has one eye alone, and what the console says of it.
+#[test]
+fn a_wireframe_has_one_eye() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    for command in ["stereo 0.1,2", "scene wireframe"] {
+        console.command(command).unwrap();
+    }
+    assert_eq!(console.command("stereo").unwrap(), ["stereo off"]);
+    let refused = console.command("stereo 0.1,2").unwrap_err().to_string();
+    assert!(
+        refused.contains("expected `scene NAME` or `field FIELD` first"),
+        "{refused}"
+    );
+    console.command("stereo off").unwrap();
+    for command in ["scene cube", "stereo 0.1,2", "orthographic 2"] {
+        console.command(command).unwrap();
+    }
+    let refused = console.command("render").unwrap_err().to_string();
+    assert!(
+        refused.contains("expected perspective with a field or two eyes"),
+        "{refused}"
+    );
+    console.command("fov 60").unwrap();
+    console.command("render").unwrap();
+}
