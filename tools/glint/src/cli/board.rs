@@ -38,7 +38,7 @@ pub struct BoardArguments {
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
     /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
-    #[arg(long)]
+    #[arg(long, conflicts_with = "firmware")]
     bios: bool,
     /// Start with the BIOS and this image in the flash memory (`glint image make`), as a board at power-up.
     #[arg(long, value_name = "IMAGE", conflicts_with = "firmware")]
@@ -56,6 +56,7 @@ pub struct BoardArguments {
 
 impl BoardArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        self.line.check(&self.board)?;
         if let Some(address) = self.web {
             return self.serve(address);
         }

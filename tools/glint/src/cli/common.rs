@@ -4,12 +4,13 @@ use super::config;
 use super::progress::{show_simulation, spinner};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{
-    Board, BoardName, EmulatedBoard, SerialBoard, SimulatedBoard, Simulation, built_firmware,
+    Board, BoardName, EmulatedBoard, ModelOrBoard, SerialBoard, SimulatedBoard, Simulation,
+    built_firmware,
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
 use glint::transfer::Route;
-use glint_core::picture::Size;
+use glint_core::picture::{Backend, Size};
 use std::path::PathBuf;
 
 /// Arguments that state what a scene states, so that they are refused beside one.
@@ -43,6 +44,18 @@ impl Baud {
     pub fn rate(&self) -> anyhow::Result<u32> {
         config::baud(self.baud)
     }
+
+    /// Refuses the option with a board that is not on a serial port.
+    pub fn check(&self, name: &BoardName) -> Result<(), InputError> {
+        if self.baud.is_some() && name.is_simulated() {
+            return Err(bad_value(
+                "--baud",
+                "a serial port",
+                format!("--board {name}"),
+            ));
+        }
+        Ok(())
+    }
 }
 
 /// Options for the connection to a board.
@@ -56,31 +69,48 @@ pub struct LineArguments {
 }
 
 impl LineArguments {
+    /// Refuses options that the board `name` does not have.
+    pub fn check(&self, name: &BoardName) -> Result<(), InputError> {
+        if self.firmware.is_some() && !name.is_simulated() {
+            let expected = "the emulated or the virtual board";
+            return Err(bad_value("--firmware", expected, format!("--board {name}")));
+        }
+        self.baud.check(name)
+    }
+
     /// Starts a virtual board and runs it to the firmware's first prompt.
     pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
+        self.check(&BoardName::Virtual)?;
         let firmware = built_firmware(self.firmware.as_deref())?;
         started(SimulatedBoard::fast(&firmware)?)
     }
 
     /// Starts an emulated board and runs it to the firmware's first prompt.
     pub fn emulated_board(&self) -> anyhow::Result<SimulatedBoard<EmulatedBoard>> {
+        self.check(&BoardName::Emulated)?;
         let firmware = built_firmware(self.firmware.as_deref())?;
         started(SimulatedBoard::emulated(&firmware)?)
     }
 
     /// Opens a board on a serial port, and ends what an earlier program has left there.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
-        let mut board = SerialBoard::open(port, self.baud.rate()?)?;
+        let mut board = self.open(port)?;
         let spinner = spinner("waiting for the board");
         Console::new(&mut board).synchronise()?;
         spinner.finish();
         Ok(board)
     }
 
+    /// Opens a serial port.
+    fn open(&self, port: &str) -> anyhow::Result<SerialBoard> {
+        self.check(&BoardName::Serial(port.to_owned()))?;
+        Ok(SerialBoard::open(port, self.baud.rate()?)?)
+    }
+
     /// Opens the board that `name` selects, which may not run its firmware yet.
     pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         match name {
-            BoardName::Serial(port) => Ok(Box::new(SerialBoard::open(port, self.baud.rate()?)?)),
+            BoardName::Serial(port) => Ok(Box::new(self.open(port)?)),
             simulated => self.board(simulated),
         }
     }
@@ -115,6 +145,24 @@ pub struct TransferArguments {
     /// Print the result as JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+impl TransferArguments {
+    /// Refuses options of boards where the model draws or computes, which has no use for them; `backend` is the option `--backend`.
+    pub fn check(&self, board: &ModelOrBoard, backend: Option<Backend>) -> Result<(), InputError> {
+        let given = [
+            ("--backend", backend.is_some()),
+            ("--transfer", self.transfer.is_some()),
+            ("--baud", self.line.baud.baud.is_some()),
+            ("--firmware", self.line.firmware.is_some()),
+        ];
+        match (board, given.iter().find(|(_, is_given)| *is_given)) {
+            (ModelOrBoard::Model, Some((option, _))) => {
+                Err(bad_value(option, "a board", "--board model"))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Returns a clap parser that accepts the names of the values in `all` and converts a name to its value.

@@ -99,8 +99,10 @@ impl FlashArguments {
         if self.spi {
             return write_flash(&self.program);
         }
+        let name = self.board.name()?;
+        self.baud.check(&name)?;
         let program = read_file(&self.program)?;
-        let mut board: Box<dyn Board> = match &self.board.name()? {
+        let mut board: Box<dyn Board> = match &name {
             BoardName::Emulated => metered(SimulatedBoard::emulated_bios()?),
             BoardName::Virtual => metered(SimulatedBoard::full()?),
             BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud.rate()?)?),

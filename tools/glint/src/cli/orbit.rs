@@ -92,6 +92,7 @@ struct Outcome<'a> {
 
 impl OrbitArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        self.transfer.check(&self.board, self.backend)?;
         match &self.scene {
             Some(name) => self.run_scene(&glint_scene::read(name)?),
             None => self.run_subject(),

@@ -131,6 +131,7 @@ struct Totals<'a> {
 
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        self.transfer.check(&self.board, self.backend)?;
         let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;

@@ -260,6 +260,7 @@ impl MakeArguments {
 
 impl RenderArguments {
     fn run(self) -> anyhow::Result<()> {
+        self.transfer.check(&self.board, self.backend)?;
         let size = size(&self.size)?;
         let press = self.press.as_deref();
         let script = press.map(wireframe::script).transpose();

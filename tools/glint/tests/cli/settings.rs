@@ -1,6 +1,6 @@
 //! Defaults from the environment and from the configuration file, ports, and how much the program prints.
 
-use crate::common::{folder, glint, glint_in, succeed};
+use crate::common::{folder, glint, glint_in, refused, succeed};
 use std::path::Path;
 
 /// The error of an upload to a serial port that does not exist, which names the port.
@@ -54,6 +54,62 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     assert!(damaged.starts_with(&start), "{damaged}");
     // Commands that need no board do not read the file.
     succeed(&folder, &["model", "cube", "cube.obj"]);
+}
+
+/// Options that do nothing with the chosen board are refused.
+#[test]
+fn options_of_another_board() {
+    let folder = folder("useless-options");
+    std::fs::write(
+        folder.join("log.csv"),
+        "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,0\n",
+    )
+    .unwrap();
+    std::fs::write(folder.join("a.wft"), "end\n").unwrap();
+    let drawing: [&[&str]; 4] = [
+        &["render", "cube", "--out", "a.png"],
+        &["render", "--scene", "cubes", "--out", "a.png"],
+        &["orbit", "cube", "--out", "a.gif"],
+        &["wireframe", "render", "a.wft", "--out", "a.png"],
+    ];
+    let replay: &[&str] = &["imu", "replay", "log.csv", "--out", "b.csv"];
+    let of_the_line = ["--transfer serial", "--baud 9600", "--firmware x.bin"];
+    let of_a_board = ["--backend cpu"].into_iter().chain(of_the_line);
+    let by_the_model = drawing
+        .into_iter()
+        .flat_map(|command| of_a_board.clone().map(move |option| (command, option)))
+        .chain(of_the_line.map(|option| (replay, option)));
+    let by_a_board = [
+        (
+            &["console", "emulated", "--send", "info"][..],
+            "--baud 9600",
+            "a serial port",
+        ),
+        (&["info"], "--baud 9600", "a serial port"),
+        (
+            &["board", "--board", "virtual"],
+            "--baud 9600",
+            "a serial port",
+        ),
+        (
+            &["flash", "log.csv", "--board", "virtual"],
+            "--baud 9600",
+            "a serial port",
+        ),
+        (
+            &["upload", "cube", "--board", "/dev/x"],
+            "--firmware log.csv",
+            "the emulated or the virtual board",
+        ),
+    ];
+    let by_the_model = by_the_model.map(|(command, option)| (command, option, "a board"));
+    for (command, option, expected) in by_the_model.chain(by_a_board) {
+        let words: Vec<&str> = option.split(' ').collect();
+        let error = refused(&folder, &[command, &words].concat());
+        let start = format!("error: {}: expected {expected}, found --board ", words[0]);
+        assert!(error.starts_with(&start), "{command:?} {option}: {error}");
+    }
+    assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
 }
 
 #[test]

@@ -132,6 +132,7 @@ impl From<Quaternion> for Attitude {
 
 impl ReplayArguments {
     pub fn run(self) -> anyhow::Result<()> {
+        self.transfer.check(&self.board, None)?;
         let options = self.options()?;
         let out = Output::open(&self.out, TABLE, [&self.log])?;
         let entries = read_log(&self.log)?;
