@@ -204,7 +204,8 @@ impl MainLoop {
             return;
         };
         if self.job.is_some() {
-            self.finish(Ok(()));
+            // The prompt follows the reply to the line, which is already on the screen.
+            self.end_job(Ok(()));
         }
         match input {
             Input::Line(line) => match commands::execute(&mut self.machine, &line) {
@@ -353,8 +354,14 @@ impl MainLoop {
         }
     }
 
-    /// Ends the reply of a command, and its job if it has one.
+    /// Ends the reply of a command, and its job if it has one, and prints the prompt.
     fn finish(&mut self, result: Result<(), CommandError>) {
+        self.end_job(result);
+        self.machine.terminal.prompt();
+    }
+
+    /// Ends the reply of a command, and its job if it has one.
+    fn end_job(&mut self, result: Result<(), CommandError>) {
         self.job = None;
         let Machine {
             terminal,
@@ -368,7 +375,6 @@ impl MainLoop {
             Ok(()) => terminal.print(format_args!("ok\n")),
             Err(error) => terminal.print(format_args!("error: {error}\n")),
         }
-        terminal.prompt();
     }
 
     /// Acts on buttons and switches that have changed since the last poll.

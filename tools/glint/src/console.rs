@@ -159,7 +159,9 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
             let line = self.next_line(&command)?;
-            if line == word {
+            // The prompt may stand before the word, but the command that the board repeats is not the reply.
+            let before = line.strip_suffix(word);
+            if before.is_some_and(|before| before.is_empty() || before.ends_with(PROMPT)) {
                 return self.lines(&command, &mut |_| {}).map(|_| true);
             }
             if line.starts_with("error: ") {

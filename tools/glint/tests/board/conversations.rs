@@ -22,8 +22,11 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     // The reply to a command of an earlier program comes late: its `ok` is not that of the upload.
     board.write(b"\0orbit 3600\r").unwrap();
     board.read(&mut Vec::new(), 1).unwrap();
+    let start = board.now_ms();
     transfer::upload(&mut again(&mut board), &small, None, 1, quiet).unwrap();
     assert_eq!(info::<u32>(&mut again(&mut board), "triangles"), 20);
+    let took = board.now_ms() - start;
+    assert!(took < 500, "{took} ms");
 
     // A killed upload: the old model stays, and the next upload works.
     begin_upload(&mut again(&mut board), &large);
