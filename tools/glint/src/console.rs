@@ -63,8 +63,10 @@ const MAX_LINE: usize = 64 << 10;
 /// Maximum length in bytes of a reply, with what the board still has to say before it.
 const MAX_REPLY: usize = 1 << 20;
 
-/// Number of times that [`Console::synchronise`] asks for an answer.
-const ATTEMPTS: u32 = 3;
+/// Number of times that [`Console::synchronise`] asks a silent board for an answer.
+const ATTEMPTS: u32 = 7;
+/// Time-out of its first attempt in milliseconds, which doubles up to that of a reply: a board that starts loses what comes before.
+const FIRST_PATIENCE_MS: u64 = 1_000;
 
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
@@ -137,15 +139,19 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
         let number =
             since_epoch.map_or(0, |time| time.as_nanos() as u64) ^ u64::from(std::process::id());
-        let mut attempt = 1;
+        self.allowance = MAX_REPLY;
+        let patience_ms = self.patience_ms;
+        let (mut attempt, mut silences) = (1, 0);
         loop {
             let word = format!("sync-{number:016x}-{attempt}");
+            self.patience_ms = patience_ms.min(FIRST_PATIENCE_MS << silences);
             let found = self.echo(&word);
+            self.patience_ms = patience_ms;
             match found {
                 Ok(true) => return Ok(()),
-                // The board has ended a transfer, and dropped what came with its end.
+                // The board has ended a transfer, and dropped what came with its end, or has refused an earlier line.
                 Ok(false) => {}
-                Err(ConsoleError::Silence { .. }) if attempt < ATTEMPTS => {}
+                Err(ConsoleError::Silence { .. }) if silences + 1 < ATTEMPTS => silences += 1,
                 Err(error) => return Err(error),
             }
             attempt += 1;
@@ -154,7 +160,6 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
 
     /// Asks the board to print a word. Returns whether it has, and false if it has ended a transfer or a command in error first.
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
-        self.allowance = MAX_REPLY;
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {

@@ -32,6 +32,14 @@ pub enum BoardError {
         /// Error of the operating system.
         source: serialport::Error,
     },
+    /// Another program has the serial port open.
+    #[error(
+        "{port}: expected a serial port that no other program uses, found one in use: end that program"
+    )]
+    Busy {
+        /// Name of the port.
+        port: String,
+    },
     /// The serial ports of this host cannot be listed.
     #[error("the serial ports cannot be listed: {0}")]
     Ports(serialport::Error),

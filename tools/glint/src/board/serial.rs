@@ -5,6 +5,7 @@ use super::line::Board;
 use super::ports;
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Name that stands for the port that is probably a board's.
@@ -22,7 +23,7 @@ impl SerialBoard {
     /// Opens a port; `serial` stands for the one that is probably a board's.
     ///
     /// # Errors
-    /// [`BoardError::Open`] for a port that does not exist or is in use, [`BoardError::Guess`] if no port can be guessed.
+    /// [`BoardError::Open`] for a port that does not exist, [`BoardError::Busy`] for one in use, [`BoardError::Guess`] if no port can be guessed.
     pub fn open(name: &str, baud: u32) -> Result<Self, BoardError> {
         if name == GUESS {
             return Self::open(&ports::guess()?, baud);
@@ -30,16 +31,27 @@ impl SerialBoard {
         let port = serialport::new(name, baud)
             .timeout(SHORTEST)
             .open()
-            .map_err(|source| BoardError::Open {
-                port: name.to_owned(),
-                ports: ports::ports()
-                    .map_or_else(|error| error.to_string(), |ports| ports::summary(&ports)),
-                source,
-            })?;
+            .map_err(|source| open_error(name, source))?;
         Ok(Self {
             port,
             opened: Instant::now(),
         })
+    }
+}
+
+/// The error for a port that cannot be opened.
+fn open_error(name: &str, source: serialport::Error) -> BoardError {
+    let port = name.to_owned();
+    // The crate has one kind for a port that does not exist and for one that another program has locked.
+    if source.kind() == serialport::ErrorKind::NoDevice && Path::new(name).exists() {
+        return BoardError::Busy { port };
+    }
+    let ports = ports::ports();
+    let ports = ports.map_or_else(|error| error.to_string(), |ports| ports::summary(&ports));
+    BoardError::Open {
+        port,
+        ports,
+        source,
     }
 }
 

@@ -127,3 +127,22 @@ fn a_board_that_never_stops_is_given_up() {
         }
     }
 }
+
+/// Each error may be that of a line that an earlier program has left, but they do not go on for ever.
+#[test]
+fn a_board_that_never_stops_refusing_is_given_up() {
+    let text = b"error: expected a command\r\n";
+    let mut board = Endless { text, sent: 0 };
+    let error = Console::new(&mut board).synchronise().unwrap_err();
+    assert!(
+        matches!(
+            error,
+            ConsoleError::Endless {
+                limit: MAX_REPLY,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert!(board.sent < MAX_REPLY + 1000);
+}

@@ -59,6 +59,11 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
         assert_eq!(triangles, 320);
     }
 
+    // Noise of an earlier program: a hundred lines, each of which is refused.
+    board.write(&b"\xff?x\r".repeat(100)).unwrap();
+    let triangles = info::<u32>(&mut again(&mut board), "triangles");
+    assert_eq!(triangles, 320);
+
     // A command that starts a transfer is no command with a reply, and leaves no transfer.
     let mut console = again(&mut board);
     let refused = console.command("load 100 0").unwrap_err();

@@ -2,7 +2,7 @@
 
 use crate::common::{begin_upload, mesh};
 use crate::terminal::Terminal;
-use glint::board::{Board, SerialBoard, SimulatedBoard};
+use glint::board::{Board as _, SerialBoard, SimulatedBoard};
 use glint::console::Console;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -11,9 +11,6 @@ use virtual_board::pty::Pty;
 
 /// Seconds without output after which litex_term counts as failed.
 const PATIENCE: u32 = 120;
-
-/// Milliseconds without a prompt after which a board counts as failed.
-const PATIENCE_MS: u64 = 120_000;
 
 /// `glint board` in a process of its own, with an emulated board.
 struct Stay {
@@ -80,11 +77,17 @@ impl Drop for Stay {
     }
 }
 
-/// Begins an upload, and closes the port in the middle of it.
-fn upload_a_part(port: &Path, mesh: &[u8]) {
+/// Begins an upload, and closes the port in the middle of it. Meanwhile no other program can use the port.
+fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
     console.synchronise().unwrap();
+    let other = stay.glint(&["info", "--board", "port"], "");
+    assert_eq!(other.status.code(), Some(1));
+    let error = String::from_utf8(other.stderr).unwrap();
+    let expected =
+        "error: port: expected a serial port that no other program uses, found one in use";
+    assert!(error.starts_with(expected), "{error}");
     begin_upload(&mut console, mesh);
 }
 
@@ -96,7 +99,7 @@ fn programs_use_one_board_in_turn() {
     let report: serde_json::Value = serde_json::from_str(&stay.succeed(&upload, "")).unwrap();
     assert_eq!(report["bytes"], mesh("icosphere:1").len());
 
-    upload_a_part(&port, &mesh("icosphere:4"));
+    upload_a_part(&stay, &port, &mesh("icosphere:4"));
     std::fs::write(
         stay.folder.join("script"),
         "# the model\n\ninfo triangles\n",
@@ -104,7 +107,7 @@ fn programs_use_one_board_in_turn() {
     .unwrap();
     let script = ["console", "port", "--file", "script"];
     assert_eq!(stay.succeed(&script, ""), "triangles 20\n");
-    upload_a_part(&port, &mesh("icosphere:4"));
+    upload_a_part(&stay, &port, &mesh("icosphere:4"));
     stay.succeed(&["upload", "icosphere:4", "--board", "port"], "");
     let pipe = stay.succeed(&["console", "port"], "info triangles\n");
     assert_eq!(pipe, "triangles 320\n");
@@ -168,19 +171,7 @@ fn a_board_starts_from_an_image() {
         .status();
     assert!(made.unwrap().success());
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
-    // A command that comes before the firmware is lost, and repeated after 30 s only.
-    let mut board = SerialBoard::open(stay.folder.join("port").to_str().unwrap(), 115_200).unwrap();
-    let mut said = Vec::new();
-    while !String::from_utf8_lossy(&said).contains("glint> ") {
-        assert!(
-            board.now_ms() < PATIENCE_MS,
-            "{}",
-            String::from_utf8_lossy(&said)
-        );
-        board.read(&mut said, 1000).unwrap();
-    }
-    drop(board);
-    // Whatever scene the demo shows by now.
+    // A command that comes before the firmware is lost, and repeated. Whatever scene the demo shows by now.
     let scenes = stay.succeed(&["console", "port", "--send", "scene"], "");
     assert!(scenes.contains("scene start flash\n"), "{scenes}");
 }
