@@ -21,9 +21,6 @@ fn main() -> ExitCode {
         cause.is::<InputError>() || cause.is::<FormatError>() || cause.is::<SceneError>()
     });
     // The error is printed on one line, even if the message of an operating system or board has several.
-    eprintln!(
-        "error: {}",
-        format!("{error:#}").trim_end().replace('\n', " ")
-    );
+    cli::fail(format!("{error:#}").trim_end().replace('\n', " "));
     ExitCode::from(if bad_input { BAD_INPUT } else { FAILED })
 }

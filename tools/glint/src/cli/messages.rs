@@ -1,6 +1,7 @@
 //! What the commands print: results on standard output, warnings and notes on standard error.
 
 use anyhow::Context;
+use clap::builder::styling::AnsiColor;
 use serde::Serialize;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
@@ -58,20 +59,29 @@ pub fn loudness() -> Loudness {
 
 /// Prints a warning to standard error, on one line.
 pub fn warn(text: impl std::fmt::Display) {
-    if loudness() == Loudness::Quiet {
-        return;
+    if loudness() != Loudness::Quiet {
+        print_labelled(AnsiColor::Yellow, "warning", text);
     }
-    // There is no place to report that standard error is closed.
-    let _ = writeln!(std::io::stderr(), "warning: {text}");
 }
 
 /// Prints a note to standard error, on one line.
 pub fn note(text: impl std::fmt::Display) {
-    if loudness() == Loudness::Quiet {
-        return;
+    if loudness() != Loudness::Quiet {
+        print_labelled(AnsiColor::Cyan, "note", text);
     }
+}
+
+/// Prints an error to standard error, on one line.
+pub fn fail(text: impl std::fmt::Display) {
+    print_labelled(AnsiColor::Red, "error", text);
+}
+
+/// Prints a line after a label to standard error. On a terminal the label has the colour, unless the environment has NO_COLOR, as the
+/// errors of the command line have.
+fn print_labelled(colour: AnsiColor, label: &str, text: impl std::fmt::Display) {
+    let style = colour.on_default().bold();
     // There is no place to report that standard error is closed.
-    let _ = writeln!(std::io::stderr(), "note: {text}");
+    let _ = writeln!(anstream::stderr(), "{style}{label}:{style:#} {text}");
 }
 
 /// Prints a value as JSON on one line.

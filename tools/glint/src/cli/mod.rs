@@ -27,6 +27,8 @@ mod wireframe;
 use clap::{CommandFactory, Parser, Subcommand};
 use messages::{Loudness, set_loudness};
 
+pub use messages::fail;
+
 /// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
 /// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,

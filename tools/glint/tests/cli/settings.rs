@@ -56,6 +56,44 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     succeed(&folder, &["model", "cube", "cube.obj"]);
 }
 
+/// Labels of errors and warnings have the colours of clap's where a terminal shows them, and nowhere else. A standard error that takes
+/// nothing does not hide the exit code.
+#[test]
+fn colours() {
+    let folder = folder("colours");
+    let missing = ["render", "missing.obj", "--out", "a.png"];
+    let inside = [
+        "render",
+        "--field",
+        "box:3,3,3",
+        "--camera",
+        "3,30,60",
+        "--out",
+        "a.png",
+    ];
+    for (arguments, label) in [
+        (&missing[..], "\x1b[1m\x1b[31merror:\x1b[0m missing.obj: "),
+        (&["render"], "\x1b[1m\x1b[31merror:\x1b[0m the following"),
+        (&inside, "\x1b[1m\x1b[33mwarning:\x1b[0m the eye "),
+    ] {
+        let said = |variables: &[(&str, &str)]| {
+            let arguments = [arguments, &["--force"]].concat();
+            String::from_utf8(glint_in(&folder, &arguments, variables).stderr).unwrap()
+        };
+        let forced = said(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "")]);
+        assert!(forced.contains(label), "{forced:?}");
+        assert!(!said(&[]).contains('\x1b'));
+    }
+    let full = [
+        "-c",
+        "exec \"$0\" \"$@\" 2>/dev/full",
+        env!("CARGO_BIN_EXE_glint"),
+    ];
+    let mut command = std::process::Command::new("sh");
+    let command = command.args(full).args(missing).current_dir(&folder);
+    assert_eq!(command.status().unwrap().code(), Some(2));
+}
+
 /// Options that do nothing with the chosen board are refused.
 #[test]
 fn options_of_another_board() {
