@@ -33,6 +33,8 @@ def main():
     parser.add_argument("--blocks", nargs="*", choices=sorted(OPTIONAL_BLOCKS),
                         help="optional blocks of this build (default: all; for the ulx3s: all but flash and raymarch)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
+    parser.add_argument("--no-depths", dest="depths", action="store_false",
+                        help="leave out the memory of depths, which a build without `triangle` does not need for pictures")
     parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
                                          "an FPGA: faces)")
     parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
@@ -56,7 +58,7 @@ def main():
         fields = build(arguments.fields or ("all" if arguments.board == "virtual" else "faces"), arguments.lanes)
     except ValueError as error:
         parser.error(error)
-    options = {"smooth": arguments.smooth, "fields": fields}
+    options = {"smooth": arguments.smooth, "depths": arguments.depths, "fields": fields}
     if arguments.clock:
         options["sys_clk_freq"] = arguments.clock * 1e6
     soc = make_soc(arguments.board, build_id, arguments.blocks, **options)

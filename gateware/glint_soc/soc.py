@@ -48,8 +48,9 @@ class GlintSoC(SoCCore):
     `blocks` names the optional blocks of this build. With the raymarcher but without the
     triangle engine, the part of the engine that the raymarcher draws through is built: the raster pass, the band buffer and all
     registers. `line`, the line engine, is a part of the triangle engine. `build_id` is the checksum of the register map of the
-    full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine. `fields` are the build
-    options of the raymarcher. `mode` is the video mode, which also limits the picture sizes.
+    full build (see `register_map.build_id`). `smooth` builds smooth shading into the triangle engine, `depths` the memory of depths,
+    which a build without triangles may lack. `fields` are the build options of the raymarcher. `mode` is the video mode, which also
+    limits the picture sizes.
     """
 
     csr_map = CSR_MAP
@@ -58,19 +59,22 @@ class GlintSoC(SoCCore):
     default_blocks = possible_blocks
     """The optional blocks of a build that names none."""
 
-    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ,
-                 mode=CEA_1280X720):
+    def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, depths=True, fields=None,
+                 sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720):
         unknown = set(blocks) - self.possible_blocks
         if unknown:
             raise ValueError(f"blocks {sorted(unknown)}: expected some of {sorted(self.possible_blocks)}")
         if "line" in blocks and "triangle" not in blocks:
             raise ValueError("the block 'line' is a part of the triangle engine: expected 'triangle' too")
+        if "triangle" in blocks and not depths:
+            raise ValueError("no depths: expected a build without the block 'triangle', whose meshes need them")
         if sys_clk_freq % CLOCK_UNIT:
             raise ValueError(f"system clock of {sys_clk_freq / 1e6} MHz: expected a multiple of {CLOCK_UNIT / 1e6} MHz")
         self.draws_triangles = "triangle" in blocks
         self.blocks = frozenset({*blocks, "triangle"} if "raymarch" in blocks else blocks)
         self.mode = mode
         self.smooth = smooth
+        self.depths = depths
         self.fields = fields or Fields()
         # Set before SoCCore adds `uart` and `timer0`, because SoCCore keeps an interrupt number that is already set.
         self.interrupt_map = {
@@ -161,7 +165,8 @@ class GlintSoC(SoCCore):
             lists = [self._port("write", main_ram, self.draws_triangles) for _ in range(2)]
             frame = [self._port("write", main_ram) for _ in range(2)]
             self.triangle = TriangleEngine(self.platform, readers, lists + frame, main_ram, self.mode.sizes,
-                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, "line" in self.blocks)
+                                           self.draws_triangles, self.smooth, "raymarch" in self.blocks, "line" in self.blocks,
+                                           self.depths)
         if "raymarch" in self.blocks:
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 

@@ -48,10 +48,11 @@ class TriangleEngine(LiteXModule):
     `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
     sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
     raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two
-    writers; the registers are the same.
+    writers; the registers are the same. Then `depths` may be left out too: the memory of the depths of a band.
     """
 
-    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False):
+    def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False,
+                 depths=True):
         memory_bits = log2_int(main_ram.size // 16)
         for port in (*readers, *writers):
             if port.data_width != 128 or port.address_width != memory_bits:
@@ -69,6 +70,8 @@ class TriangleEngine(LiteXModule):
             CSRField("triangles", offset=4, reset=int(triangles), description="Triangles: geometry passes, and raster passes with "
                      "lists. Without them a raster pass draws the raymarcher's field alone."),
             CSRField("lines", offset=5, reset=int(lines), description="Lines: geometry passes with `lines`."),
+            CSRField("depths", offset=6, reset=int(depths), description="Depths: the depth test, and `depth` of a raster pass, which "
+                     "writes 0 without them."),
             CSRField("count_bits", size=6, offset=8, reset=_COUNT_BITS, description="Bits of a count of descriptors or entries."),
         ], description="Capabilities of this build.")
         self._control = CSRStorage(name="control", fields=[
@@ -342,6 +345,7 @@ class TriangleEngine(LiteXModule):
             p_SMOOTH          = int(smooth),
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
+            p_DEPTHS          = int(depths),
             i_clk             = self.clk,
             i_rst             = ResetSignal("sys"),
             i_cancel          = cancel,

@@ -97,10 +97,10 @@ class CRG(LiteXModule):
 class VirtualSoC(GlintSoC):
     """SoC of the virtual board."""
 
-    def __init__(self, build_id, blocks, smooth=False, fields=None, sys_clk_freq=SYS_CLK_FREQ):
+    def __init__(self, build_id, blocks, smooth=False, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):
         platform = Platform()
-        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, fields=fields,
-                          sys_clk_freq=sys_clk_freq)
+        GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, depths=depths,
+                          fields=fields, sys_clk_freq=sys_clk_freq)
         module = MT41K64M16(sys_clk_freq, "1:4")
         self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=sys_clk_freq)
         self._name_banks()

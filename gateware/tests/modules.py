@@ -33,6 +33,7 @@ _SMALL_RASTER = {"H_ACTIVE": 160, "H_FRONT": 8, "H_SYNC": 4, "H_BACK": 12,
 _SMOOTH = {"SMOOTH": 1}
 _LINES = {"LINES": 1}
 _FIELDS_ALONE = {"TRIANGLES": 0, "FIELDS": 1}
+_NO_DEPTHS = _FIELDS_ALONE | {"DEPTHS": 0}
 # Parameters of the builds with every field: of a lane (ring_lane), and of the module that colours the ends of rays (ray_paint).
 _ALL_FIELDS = {name: BUILDS["all"].parameters()[name] for name in ("LEVELS", "FIELDS", "ROUND", "BLEND", "PREPASS")}
 _ALL_PAINT = {"ROUND": 1, "OCTANTS": int(has_octants(NAMES))}
@@ -59,7 +60,8 @@ MODULES = [
     Module(top="raster_unit", variants={"raster_unit_fields": {"FIELDS": 1}}, measured=("raster_unit", "raster_unit_fields")),
     Module(top="triangle_engine",
            variants={"triangle_engine_smooth": _SMOOTH, "triangle_engine_fields": {"FIELDS": 1},
-                     "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_lines": _LINES,
+                     "triangle_engine_fields_alone": _FIELDS_ALONE, "triangle_engine_no_depths": _NO_DEPTHS,
+                     "triangle_engine_lines": _LINES,
                      "triangle_engine_smooth_lines": _SMOOTH | _LINES},
            measured=("triangle_engine_fields",)),
     Module(top="cdc_fifo", variants={"cdc_fifo_4": {"DEPTH": 4}}),

@@ -38,6 +38,8 @@ pub enum EngineError {
     Timeout,
     /// This gateware is built without smooth shading.
     Shading,
+    /// This gateware is built without the memory of depths.
+    Depths,
     /// The eye is farther from the origin than the number formats of the triangle engine allow.
     Eye,
 }
@@ -69,6 +71,7 @@ impl fmt::Display for EngineError {
             Self::Unknown => f.write_str("unknown error code"),
             Self::Timeout => write!(f, "timed out: no progress for {} ms", whole_millis(TIMEOUT)),
             Self::Shading => f.write_str("this gateware has no smooth shading"),
+            Self::Depths => f.write_str("this gateware has no depths"),
             Self::Eye => f.write_str("the eye is too far from the origin"),
         }
     }
@@ -202,6 +205,12 @@ impl TriangleEngine {
     #[must_use]
     pub fn draws_lines(&self) -> bool {
         self.registers.caps().read().lines()
+    }
+
+    /// Whether this gateware has the memory of depths. If not, the depth codes that a raster pass writes are 0.
+    #[must_use]
+    pub fn has_depths(&self) -> bool {
+        self.registers.caps().read().depths()
     }
 
     /// Best shading that this gateware can draw: `Smooth` if it was built with smooth shading, otherwise `Flat`. It

@@ -2,7 +2,7 @@
 // fails when this file is not what the generator makes of the SoC.
 
 /// CRC-32 of the SoC's pinned register map. A SoC whose `identity.build_id` differs has other registers.
-pub const BUILD_ID: u32 = 0x3c6f_1fca;
+pub const BUILD_ID: u32 = 0x1a16_7ca8;
 
 /// The interrupt lines, numbered by their bit in the CPU's mask and pending registers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -4021,6 +4021,20 @@ pub mod triangle {
         #[must_use]
         pub const fn with_lines(self, value: bool) -> Self {
             Self(self.0 & !(0x1 << 5) | (value as u32 & 0x1) << 5)
+        }
+
+        /// `depths`, bit 6: Depths: the depth test, and `depth` of a raster pass, which writes 0 without them.
+        #[inline]
+        #[must_use]
+        pub const fn depths(self) -> bool {
+            (self.0 >> 6) & 1 != 0
+        }
+
+        /// This value with another `depths`.
+        #[inline]
+        #[must_use]
+        pub const fn with_depths(self, value: bool) -> Self {
+            Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
         }
 
         /// `count_bits`, bits 13 to 8: Bits of a count of descriptors or entries.

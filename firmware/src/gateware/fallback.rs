@@ -31,7 +31,11 @@ impl Fallback {
             Self::Field(_)
                 | Self::NoRaymarcher
                 | Self::NoLineEngine
-                | Self::Triangle(EngineError::Shading | EngineError::Status(Error::Triangles))
+                | Self::Triangle(
+                    EngineError::Shading
+                        | EngineError::Depths
+                        | EngineError::Status(Error::Triangles)
+                )
         )
     }
 }

@@ -272,6 +272,9 @@ impl GatewareRenderer {
 
     fn begin(&mut self, frame: &Frame, output: &mut Output, cpu: &mut Cpu) -> Result<(), Fallback> {
         self.start_measurement(frame);
+        if output.depth.is_some() && !self.engine.has_depths() {
+            return Err(EngineError::Depths.into());
+        }
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
         if WIREFRAME.is_built

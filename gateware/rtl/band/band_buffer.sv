@@ -21,7 +21,8 @@
 // Lane i is written if mask[i] is set and code[i] is at least the stored depth code. With STEREO a group may belong to one eye:
 // `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is
 // written without a depth test, and the stored depth is that of the left eye. The flush composes the colours of both eyes, see
-// band_flush; every pixel must then be drawn for both eyes. Throughput one group a clock; band_pipe explains the hazards.
+// band_flush; every pixel must then be drawn for both eyes. Without DEPTHS there is no memory of depths: each stored depth is 0, so
+// every lane of the mask is written. Throughput one group a clock; band_pipe explains the hazards.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first
@@ -48,7 +49,8 @@
 
 module band_buffer #(
     parameter int unsigned ADDRESS_BITS = 23,
-    parameter bit          STEREO       = 1'b0
+    parameter bit          STEREO       = 1'b0,
+    parameter bit          DEPTHS       = 1'b1
 ) (
     input  wire                     clk,
     input  wire                     rst,
@@ -192,15 +194,20 @@ module band_buffer #(
     assign flushed_written = bank_written[!drawn];
     assign flushed_colours = bank_colours[!drawn];
 
-    band_bank #(.WIDTH(18), .ROW_BITS(ROW_BITS)) depths (
-        .clk,
-        .read_row(flush_reads_depth ? flush_row : draw_read_row),
-        .read_data(stored_codes),
-        .write_row(draw_write_row),
-        .write_lanes(draw_lanes & {8{draw_halves[0]}}),
-        .write_halves(1'b1),
-        .write_data(draw_codes)
-    );
+    if (DEPTHS) begin : of_depths
+        band_bank #(.WIDTH(18), .ROW_BITS(ROW_BITS)) depths (
+            .clk,
+            .read_row(flush_reads_depth ? flush_row : draw_read_row),
+            .read_data(stored_codes),
+            .write_row(draw_write_row),
+            .write_lanes(draw_lanes & {8{draw_halves[0]}}),
+            .write_halves(1'b1),
+            .write_data(draw_codes)
+        );
+    end else begin : without_depths
+        assign stored_codes = '0;
+        wire _unused = &{1'b0, draw_codes};
+    end
 
     // Without STEREO both halves of a colour are always written.
     wire _unused_half = draw_halves[1];

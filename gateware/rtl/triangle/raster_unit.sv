@@ -38,6 +38,7 @@ module raster_unit #(
     parameter  bit          SMOOTH       = 1'b0,
     parameter  bit          FIELDS       = 1'b0,
     parameter  bit          LINES        = 1'b0,
+    parameter  bit          DEPTHS       = 1'b1,
     localparam int unsigned ADDRESS_BITS = triangle_registers_pkg::ADDRESS_BITS,
     localparam int unsigned COUNT_BITS   = triangle_registers_pkg::COUNT_BITS
 ) (
@@ -305,7 +306,7 @@ module raster_unit #(
     logic [127:0]            word_data;
     logic [1:0]              port_ready, port_idle;
 
-    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS)) band_buffer (
+    band_buffer #(.ADDRESS_BITS(ADDRESS_BITS), .STEREO(FIELDS), .DEPTHS(DEPTHS)) band_buffer (
         .clk, .rst, .restart, .clearing, .flushed,
         .group_valid, .group_ready, .group_row, .group_line, .group_column, .group_mask, .group_halves, .group_codes, .group_colours,
         .band_valid(state == HAND_OVER), .band_ready, .band_base(base), .band_depth_base, .band_lines(rows), .band_stride(stride),

@@ -19,7 +19,8 @@
 //
 // FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws what a raymarcher sends and nothing else: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.
-// `geometry_start` must then stay low.
+// `geometry_start` must then stay low. Without DEPTHS as well, there is no depth test: of a pixel that is drawn twice the last one is
+// seen, and depths in memory are 0.
 
 `default_nettype none
 
@@ -27,7 +28,8 @@ module triangle_engine #(
     parameter bit TRIANGLES = 1'b1,
     parameter bit SMOOTH    = 1'b0,
     parameter bit FIELDS    = 1'b0,
-    parameter bit LINES     = 1'b0
+    parameter bit LINES     = 1'b0,
+    parameter bit DEPTHS    = 1'b1
 ) (
     input  wire  clk,
     input  wire  rst,
@@ -130,7 +132,7 @@ module triangle_engine #(
                          data_valid, data_ready, data, mesh_read_answer, vertex_read_answer, raster_read_answer};
     end
 
-    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS), .LINES(LINES)) raster_unit (
+    raster_unit #(.TRIANGLES(TRIANGLES), .SMOOTH(SMOOTH), .FIELDS(FIELDS), .LINES(LINES), .DEPTHS(DEPTHS)) raster_unit (
         .clk, .rst, .restart(cancel), .ready(raster_ready), .start(raster_start), .busy(status.raster_busy),
         .done(status.raster_done), .list_error(status.list_error), .flags(raster_flags), .parameters(raster),
         .field_source, .field_sink,

@@ -85,6 +85,18 @@ impl<'a> File<'a> {
         }
     }
 
+    /// The value of a key that is true or false.
+    ///
+    /// # Errors
+    /// The value is of another type.
+    pub fn switch(&self, key: &str) -> Result<Option<bool>, SceneError> {
+        let switch = |value: &Value| match value.get_ref() {
+            DeValue::Boolean(on) => Ok(*on),
+            _ => Err(self.refuse(key, value, "true or false")),
+        };
+        self.get(key).map(switch).transpose()
+    }
+
     /// The value of a key that is a positive number.
     ///
     /// # Errors

@@ -84,7 +84,9 @@ pub const COMMANDS: [Key; 24] = [
 ];
 
 /// The keys that are no console commands.
-pub const OTHERS: [&str; 6] = ["title", "steer", "scenes", "lanes", "clock", "budget"];
+pub const OTHERS: [&str; 7] = [
+    "title", "steer", "scenes", "depth", "lanes", "clock", "budget",
+];
 
 /// The members of the key `budget`.
 pub const BUDGET: [&str; 7] = ["lut", "ff", "dsp", "ramb36", "firmware", "cycles", "fps"];

@@ -45,6 +45,8 @@ pub struct Needs {
     pub features: BTreeSet<Feature>,
     /// Smooth shading in the triangle engine.
     pub smooth: bool,
+    /// The memory of depths: for triangles, and where depth codes are wanted.
+    pub depths: bool,
     /// The raymarcher's features.
     pub fields: Option<Fields>,
 }
@@ -58,6 +60,7 @@ impl Scene {
             if let (Some(fields), Some(lanes)) = (&mut needs.fields, self.lanes) {
                 fields.lanes = lanes;
             }
+            needs.depths |= self.depth;
             return needs;
         }
         let commands: Vec<Command> = self.commands().collect();
@@ -85,6 +88,7 @@ impl Scene {
         Needs {
             features: self.features(),
             smooth: smooth && has_triangles,
+            depths: has_triangles || self.depth,
             fields,
             blocks,
         }
@@ -149,6 +153,7 @@ impl Needs {
             blocks: &self.blocks | &other.blocks,
             features: &self.features | &other.features,
             smooth: self.smooth || other.smooth,
+            depths: self.depths || other.depths,
             fields: match (self.fields, other.fields) {
                 (Some(one), Some(other)) => Some(one.with(&other)),
                 (one, other) => one.or(other),
@@ -164,6 +169,9 @@ impl Needs {
             options.push("--smooth".to_owned());
         }
         if let Some(fields) = &self.fields {
+            if !self.depths {
+                options.push("--no-depths".to_owned());
+            }
             options.extend([
                 "--fields".to_owned(),
                 fields.names(),

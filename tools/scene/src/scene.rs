@@ -35,6 +35,8 @@ pub struct Scene {
     steer: Steer,
     /// The scenes of a list of scenes, in place of settings.
     scenes: Vec<Scene>,
+    /// Whether depth codes are wanted beside the colours.
+    pub(crate) depth: bool,
     pub(crate) lanes: Option<u8>,
     clock: Option<f64>,
     budget: Budget,
@@ -70,6 +72,7 @@ impl Scene {
                 .into_iter()
                 .map(|(name, span)| member(&file, name, &span))
                 .collect::<Result<_, _>>()?,
+            depth: file.switch("depth")?.unwrap_or(false),
             lanes: lanes(&file)?,
             clock: file.number("clock")?,
             budget: file.numbers("budget", &BUDGET)?,

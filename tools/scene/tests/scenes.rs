@@ -67,7 +67,7 @@ fn the_scene_of_the_page_is_valid() {
     let needs = scene.needs().options().join(" ");
     assert_eq!(
         needs,
-        "--blocks scanout raymarch --fields box,spheres --lanes 2"
+        "--blocks scanout raymarch --no-depths --fields box,spheres --lanes 2"
     );
 }
 
@@ -241,6 +241,11 @@ fn refused_files() {
             "expected `cube`, the built-in program",
         ),
         (
+            FIELD,
+            "depth = \"on\"",
+            "depth: `\"on\"`: expected true or false",
+        ),
+        (
             "",
             "title = \"a\"\nscenes = []",
             "scenes: `[]`: expected at least one scene",
@@ -285,19 +290,23 @@ fn needs_follow_from_the_keys() {
         ),
         (
             "field = \"menger:3\"",
-            "--blocks scanout raymarch --fields menger:3 --lanes 2",
+            "--blocks scanout raymarch --no-depths --fields menger:3 --lanes 2",
         ),
         (
             "field = \"sphere:1\"\nlanes = 1",
-            "--blocks scanout raymarch --fields spheres --lanes 1",
+            "--blocks scanout raymarch --no-depths --fields spheres --lanes 1",
+        ),
+        (
+            "field = \"menger:3\"\ndepth = true",
+            "--blocks scanout raymarch --fields menger:3 --lanes 2",
         ),
         (
             "field = \"planes:4\"\nprepass = true",
-            "--blocks scanout raymarch --fields box,prepass --lanes 2",
+            "--blocks scanout raymarch --no-depths --fields box,prepass --lanes 2",
         ),
         (
             "field = \"octahedron:1\"\nstereo = \"0.1,4\"",
-            "--blocks scanout raymarch --fields octahedron,stereo --lanes 2",
+            "--blocks scanout raymarch --no-depths --fields octahedron,stereo --lanes 2",
         ),
         (
             "model = \"cube\"\nstereo = \"0.1,4\"",
@@ -309,11 +318,11 @@ fn needs_follow_from_the_keys() {
         ),
         (
             "field = \"union:menger:3+sphere:1\"",
-            "--blocks scanout raymarch --fields menger:3,spheres --lanes 2",
+            "--blocks scanout raymarch --no-depths --fields menger:3,spheres --lanes 2",
         ),
         (
             "field = \"smooth:0.3,box:1,1,0.2+sphere:1\"",
-            "--blocks scanout raymarch --fields box,spheres,fillets --lanes 2",
+            "--blocks scanout raymarch --no-depths --fields box,spheres,fillets --lanes 2",
         ),
         (
             "field = \"menger:2\"\nmodel = \"cube\"",

@@ -49,11 +49,14 @@ impl Board {
 #[derive(clap::Args)]
 pub struct Options {
     /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all`
-    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "fields", "lanes", "blocks"])]
+    #[arg(long, value_name = "NAME|FILE.toml|all", value_delimiter = ',', conflicts_with_all = ["smooth", "no_depths", "fields", "lanes", "blocks"])]
     scene: Vec<String>,
     /// Build the triangle engine with smooth shading
     #[arg(long)]
     smooth: bool,
+    /// Leave out the memory of depths, which a build without `triangle` does not need for pictures
+    #[arg(long)]
+    no_depths: bool,
     /// Fields of the raymarcher: `all`, `round`, `faces` or `sponge` (docs/raymarch.md), or features with commas between them:
     /// `menger:LEVELS`, `box`, `octahedron`, `spheres`, `fillets`, `stereo`, `prepass` [default: all; faces for a board with an FPGA]
     #[arg(long)]
@@ -92,6 +95,9 @@ impl Options {
         }
         if self.smooth {
             arguments.push("--smooth".to_owned());
+        }
+        if self.no_depths {
+            arguments.push("--no-depths".to_owned());
         }
         let values = [
             ("--fields", &self.fields),

@@ -40,7 +40,7 @@ enum Task {
         #[command(flatten)]
         options: gateware::Options,
         /// Also build a second library of the virtual board, which writes waveforms
-        #[arg(long, conflicts_with_all = ["scene", "smooth", "fields", "lanes", "clock", "blocks"])]
+        #[arg(long, conflicts_with_all = ["scene", "smooth", "no_depths", "fields", "lanes", "clock", "blocks"])]
         waveforms: bool,
     },
     /// Generate the register access crate and the register map from the SoC's description

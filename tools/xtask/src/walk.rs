@@ -3,7 +3,7 @@
 //! A build is that of a scene, or of a single optional block with the blocks which this one is a part of. Each has to start and to
 //! answer `info` with its blocks. The build of a scene draws the scene's picture with the firmware for the scene; the picture has to
 //! equal that of the complete build, which has all blocks and all parts of the firmware, in no more cycles. That firmware has to refuse
-//! the commands of all other parts.
+//! the commands of all other parts, and depths if the gateware has none.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -218,7 +218,8 @@ impl Build {
         Ok(())
     }
 
-    /// Fails unless the firmware refuses the commands of each part that the scene does not need. The emulated board runs it.
+    /// Fails unless the firmware refuses the commands of each part that the scene does not need, on the emulated board, and depths that
+    /// the gateware lacks.
     fn refuses_others(&self, scene: &Scene) -> Result<()> {
         let needs = scene.needs().features;
         for (part, command) in COMMANDS {
@@ -226,15 +227,29 @@ impl Build {
             if needs.contains(&part) || !is_reached {
                 continue;
             }
-            let arguments = ["console", "emulated", "--send", command].map(Path::new);
-            let output = self.glint(&arguments).output()?;
-            let error = String::from_utf8_lossy(&output.stderr);
             let expected = format!("lacks the feature {},", part.name);
-            ensure!(
-                !output.status.success() && error.contains(&expected),
-                "`{command}`: expected a refusal that {expected} got {error:?}"
-            );
+            self.refuses("emulated", &[command], &expected)?;
         }
+        if !scene.needs().depths {
+            let show = format!("scene {}", scene.name());
+            let commands = [&show, "size 320 180", "render depth"];
+            self.refuses("virtual", &commands, "this gateware has no depths")?;
+        }
+        Ok(())
+    }
+
+    /// Fails unless a board refuses the last of these commands with an error that contains `expected`.
+    fn refuses(&self, board: &str, commands: &[&str], expected: &str) -> Result<()> {
+        let mut arguments = vec!["console", board];
+        arguments.extend(commands.iter().flat_map(|command| ["--send", command]));
+        let arguments: Vec<_> = arguments.into_iter().map(Path::new).collect();
+        let output = self.glint(&arguments).output()?;
+        let error = String::from_utf8_lossy(&output.stderr);
+        ensure!(
+            !output.status.success() && error.contains(expected),
+            "{}: expected the error `{expected}`, got {error:?}",
+            commands.join(", ")
+        );
         Ok(())
     }
 

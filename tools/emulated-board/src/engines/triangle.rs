@@ -236,6 +236,7 @@ impl Device for TriangleEngine {
                 .with_sizes(0b111)
                 .with_triangles(true)
                 .with_lines(true)
+                .with_depths(true)
                 .with_count_bits(COUNT_BITS as u8)
                 .bits(),
             offset::STATUS => self.status().bits(),

@@ -103,6 +103,11 @@ impl Bench {
         Self::of("triangle_engine_fields_alone", Shading::Flat, seed, stalls)
     }
 
+    /// As [`fields_alone`](Self::fields_alone), without the memory of depths.
+    pub fn no_depths(seed: u32, stalls: f64) -> Self {
+        Self::of("triangle_engine_no_depths", Shading::Flat, seed, stalls)
+    }
+
     fn of(name: &str, ability: Shading, seed: u32, stalls: f64) -> Self {
         let module = Module::new(name, seed);
         let seed = u64::from(seed);

@@ -144,6 +144,15 @@ fn fields_are_drawn_without_triangles() {
         let read = bench.reads.each_ref().map(|port| port.given);
         assert_eq!(read, [0; 3], "words read");
     }
+    // Without the memory of depths the colours are the same, and depths are written as 0.
+    let mut bench = Bench::no_depths(3, 0.4);
+    for (name, picture) in &mut pictures {
+        picture.expected.depth.fill(0);
+        for with_depth in [false, true] {
+            bench.with_depth = with_depth;
+            draw(&mut bench, &mut random, name, picture);
+        }
+    }
 }
 
 /// Without a field the picture has the clear colour, also after a field that was cancelled.
