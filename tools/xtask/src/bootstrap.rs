@@ -11,7 +11,7 @@ use crate::{paths, run};
 const PACKAGES: [(&str, &str); 5] = [
     ("chromium", "opens the live page in tests"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
-    ("g++", "compiles the verilated SoC and meshoptimizer"),
+    ("g++", "compiles the verilated SoC"),
     ("make", "builds the LiteX BIOS"),
     ("python3-venv", "holds the Python packages"),
 ];

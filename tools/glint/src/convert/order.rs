@@ -4,7 +4,6 @@ use crate::error::FormatError;
 use crate::formats::glm;
 use glint_core::mesh::{self, IndexedTriangle, Vertex};
 use glint_model::triangle::vertex_cache;
-use std::collections::{HashMap, VecDeque};
 
 /// A mesh in the board's memory layout, with the number of vertices that the engine fetches for it.
 pub struct Encoded {
@@ -36,22 +35,135 @@ impl Encoded {
 /// order.
 ///
 /// The vertices of a chunk are numbered in the order of their first use, so a new vertex replaces the oldest one in the
-/// direct-mapped cache, as in a FIFO of as many places.
+/// direct-mapped cache, as in a FIFO of as many places. The order is that of Sander, Nehab and Barczak, "Fast Triangle Reordering for
+/// Vertex Locality and Reduced Overdraw", ACM Transactions on Graphics 26(3), 2007: all triangles about one vertex after another, in
+/// a time proportional to their number. `vertices` is above all indices.
 pub fn for_cache(vertices: usize, triangles: &[IndexedTriangle]) -> Vec<IndexedTriangle> {
-    let indices: Vec<u32> = triangles.iter().flat_map(|t| t.indices).collect();
-    let places = vertex_cache::SLOTS as u32;
-    let ordered = meshopt::optimize_vertex_cache_fifo(&indices, vertices, places);
-    let mut rest: HashMap<[u32; 3], VecDeque<&IndexedTriangle>> = HashMap::new();
-    for triangle in triangles {
-        rest.entry(triangle.indices)
-            .or_default()
-            .push_back(triangle);
+    let mut fans = Fans::new(vertices, triangles);
+    let mut ordered = Vec::with_capacity(triangles.len());
+    let mut next = fans.after_dead_end();
+    while let Some(vertex) = next {
+        let start = ordered.len();
+        fans.draw(vertex, triangles, &mut ordered);
+        let drawn = ordered.get(start..).unwrap_or_default();
+        next = fans.best(drawn).or_else(|| fans.after_dead_end());
     }
-    let (ordered, _) = ordered.as_chunks();
     ordered
-        .iter()
-        .filter_map(|indices| rest.get_mut(indices)?.pop_front().copied())
-        .collect()
+}
+
+/// The triangles about each vertex, and the state of the cache while they are drawn.
+struct Fans {
+    /// Numbers of triangles, in the order of the file, those about one vertex after those about another.
+    triangles: Vec<u32>,
+    /// Place in `triangles` of the first one about each vertex, and the end.
+    starts: Vec<usize>,
+    /// Number of triangles about each vertex that are not drawn yet.
+    left: Vec<u32>,
+    is_drawn: Vec<bool>,
+    /// The number of fetches after that of each vertex.
+    fetched: Vec<usize>,
+    fetches: usize,
+    /// Vertices of the triangles drawn, the latest last.
+    recent: Vec<u32>,
+    /// The vertices before this one have no triangles left.
+    cursor: usize,
+}
+
+impl Fans {
+    fn new(vertices: usize, triangles: &[IndexedTriangle]) -> Self {
+        let mut left = vec![0; vertices];
+        for index in triangles.iter().flat_map(|triangle| triangle.indices) {
+            left[index as usize] += 1;
+        }
+        let mut starts = vec![0; vertices + 1];
+        for (vertex, count) in left.iter().enumerate() {
+            starts[vertex + 1] = starts[vertex] + *count as usize;
+        }
+        let mut ends = starts.clone();
+        let mut about = vec![0; 3 * triangles.len()];
+        for (number, triangle) in (0..).zip(triangles) {
+            for index in triangle.indices {
+                let end = &mut ends[index as usize];
+                about[*end] = number;
+                *end += 1;
+            }
+        }
+        Self {
+            triangles: about,
+            starts,
+            left,
+            is_drawn: vec![false; triangles.len()],
+            fetched: vec![0; vertices],
+            fetches: vertex_cache::SLOTS,
+            recent: Vec::new(),
+            cursor: 0,
+        }
+    }
+
+    /// Number of fetches since a vertex was fetched: less than [`vertex_cache::SLOTS`] while it is in the cache.
+    fn age(&self, vertex: u32) -> usize {
+        self.fetches - self.fetched[vertex as usize]
+    }
+
+    /// Draws the triangles about a vertex.
+    fn draw(
+        &mut self,
+        vertex: u32,
+        triangles: &[IndexedTriangle],
+        ordered: &mut Vec<IndexedTriangle>,
+    ) {
+        for place in self.starts[vertex as usize]..self.starts[vertex as usize + 1] {
+            let number = self.triangles[place] as usize;
+            if std::mem::replace(&mut self.is_drawn[number], true) {
+                continue;
+            }
+            ordered.push(triangles[number]);
+            for corner in triangles[number].indices {
+                self.recent.push(corner);
+                self.left[corner as usize] -= 1;
+                if self.age(corner) >= vertex_cache::SLOTS {
+                    self.fetches += 1;
+                    self.fetched[corner as usize] = self.fetches;
+                }
+            }
+        }
+    }
+
+    /// Of the vertices of `drawn` that have triangles left, the one that was fetched first, if it stays in the cache until they are
+    /// drawn.
+    fn best(&self, drawn: &[IndexedTriangle]) -> Option<u32> {
+        let mut best = None;
+        for vertex in drawn.iter().flat_map(|triangle| triangle.indices) {
+            let left = self.left[vertex as usize] as usize;
+            if left == 0 {
+                continue;
+            }
+            let age = self.age(vertex);
+            let rank = if age + 2 * left < vertex_cache::SLOTS {
+                age + 1
+            } else {
+                0
+            };
+            if best.is_none_or(|(highest, _)| rank > highest) {
+                best = Some((rank, vertex));
+            }
+        }
+        best.map(|(_, vertex)| vertex)
+    }
+
+    /// The latest vertex with triangles left, or else the first one.
+    fn after_dead_end(&mut self) -> Option<u32> {
+        let is_left = |left: &[u32], vertex: u32| left[vertex as usize] > 0;
+        while let Some(vertex) = self.recent.pop() {
+            if is_left(&self.left, vertex) {
+                return Some(vertex);
+            }
+        }
+        while self.left.get(self.cursor) == Some(&0) {
+            self.cursor += 1;
+        }
+        (self.cursor < self.left.len()).then_some(self.cursor as u32)
+    }
 }
 
 #[cfg(test)]
