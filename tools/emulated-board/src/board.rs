@@ -1,5 +1,6 @@
 //! The board: CPU, bus and devices, and what a person connects to it.
 
+use glint_board::Frame;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
 use virtual_flash::Flash;
@@ -8,7 +9,7 @@ use virtual_mpu6050::Wires;
 
 use crate::bus::Bus;
 use crate::cpu::{Cpu, Pause};
-use crate::devices::{Devices, Frame};
+use crate::devices::Devices;
 use crate::error::Error;
 
 /// Longest time in cycles between two looks at a condition.

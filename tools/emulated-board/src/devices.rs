@@ -17,7 +17,6 @@ use litex_pac::{
 use crate::{Device, GestureEngine, MainMemory, TriangleEngine};
 use i2c::I2c;
 use pins::{Digits, Inputs, Outputs};
-pub use scanout::Frame;
 use scanout::Scanout;
 use system::{Controller, Identity};
 use timer::Timer;

@@ -16,6 +16,14 @@ pub enum Error {
         /// Number of bytes.
         length: usize,
     },
+    /// The frame on the monitor has another size.
+    #[error("frame on the monitor: expected {expected} pixels in a line, found {found}")]
+    FrameWidth {
+        /// Expected number of pixels in a line.
+        expected: usize,
+        /// Number of pixels in a line.
+        found: usize,
+    },
     /// The expected output did not come in time.
     #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {

@@ -26,13 +26,14 @@ mod engines;
 mod error;
 mod events;
 mod memory;
+mod simulation;
 
 pub use board::EmulatedBoard;
 pub use device::Device;
-pub use devices::Frame;
 pub use engines::{GestureEngine, Raymarcher, TriangleEngine};
 pub use error::Error;
 pub use events::Events;
+pub use glint_board::Frame;
 pub use memory::MainMemory;
 pub use virtual_image_sensor;
 pub use virtual_mpu6050;

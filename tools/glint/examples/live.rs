@@ -3,7 +3,7 @@
 
 use std::time::Instant;
 
-use glint::board::{SimulatedBoard, Simulation, built_firmware};
+use glint::board::{self, Simulation, built_firmware};
 use glint::console::Console;
 use glint::gesture::moving_hand;
 use glint::imu::sensor;
@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let all = ["holoforge", "poor-mans-vr"];
     let is_chosen = |scene: &&str| chosen.is_empty() || chosen.iter().any(|name| name == scene);
     for scene in all.into_iter().filter(is_chosen) {
-        let mut board = SimulatedBoard::emulated(&built_firmware(None)?)?;
+        let mut board = board::emulated(&built_firmware(None)?)?;
         board.inner().plug(sensor::virtual_sensor(None));
         board.inner().plug_image_sensor(ImageSensor::new(
             Model::Ov7670,

@@ -18,27 +18,20 @@
 #![forbid(unsafe_code)]
 
 pub mod board;
-pub mod console;
-pub mod convert;
 pub mod counters;
-pub mod error;
 pub mod field;
 pub mod flash;
-pub mod formats;
 pub mod fuzz;
-pub mod generate;
 pub mod gesture;
 pub mod image;
 pub mod imu;
-pub mod model;
-pub mod normals;
 pub mod object;
 pub mod picture;
-pub mod polygons;
 pub mod render;
 pub mod scene;
-pub mod transfer;
-pub mod triangulate;
 pub mod view;
 pub mod web;
 pub mod wireframe;
+
+pub use glint_board::{console, transfer};
+pub use glint_mesh::{convert, error, formats, generate, model, normals, polygons, triangulate};

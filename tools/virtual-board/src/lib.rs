@@ -19,7 +19,7 @@
 //! # Time
 //! One cycle is one period of the SoC's system clock, by default 1/81.25 MHz; the pixel clock has exactly 74.25 MHz.
 //! Nothing depends on wall time: equal calls give equal boards, cycle by cycle. At a pseudo-terminal, a board runs at most as fast as in
-//! reality ([`Pace`]).
+//! reality ([`glint_board::pace::Pace`]).
 //!
 //! # Limits
 //! The UART moves one byte per cycle, where a serial line needs 7053 cycles of 1/81.25 MHz, so output arrives earlier than on a real board.
@@ -32,14 +32,13 @@ mod error;
 mod library;
 mod memory;
 mod monitor;
-mod pace;
 mod picture;
 pub mod pty;
+mod simulation;
 
 pub use board::{Builder, Start, VirtualBoard};
 pub use error::Error;
 pub use monitor::{HEIGHT, Monitor, TimingError, WIDTH};
-pub use pace::Pace;
 pub use picture::{Picture, PictureError};
 pub use virtual_flash;
 pub use virtual_image_sensor;

@@ -6,12 +6,13 @@ use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
-use std::time::Instant;
 
+use glint_board::Uart;
+use glint_board::pace::{Pace, SystemClock};
 use rustix::fs::{Mode, OFlags};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-use crate::{Error, Pace, VirtualBoard};
+use crate::{Error, VirtualBoard};
 
 /// Cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
@@ -19,55 +20,13 @@ const SLICE: u64 = 2000;
 /// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
-/// A board with a UART, simulated in a thread of its own.
-pub trait Uart: Send + 'static {
-    /// Runs `cycles` cycles of the system clock.
-    fn run(&mut self, cycles: u64);
-    /// Cycles of the system clock since the start.
-    fn cycles(&self) -> u64;
-    /// System clock frequency in Hz.
-    fn clock_hz(&self) -> u32;
-    /// Number of bytes that the UART has not received yet.
-    fn uart_queued(&self) -> usize;
-    /// Sends bytes to the UART.
-    fn uart_write(&mut self, bytes: &[u8]);
-    /// Moves the unread serial output to the end of `output`.
-    fn uart_read(&mut self, output: &mut Vec<u8>);
-}
-
-impl Uart for VirtualBoard {
-    fn run(&mut self, cycles: u64) {
-        self.run(cycles);
-    }
-
-    fn cycles(&self) -> u64 {
-        self.cycles()
-    }
-
-    fn clock_hz(&self) -> u32 {
-        self.clock_hz()
-    }
-
-    fn uart_queued(&self) -> usize {
-        self.uart_queued()
-    }
-
-    fn uart_write(&mut self, bytes: &[u8]) {
-        self.uart_write(bytes);
-    }
-
-    fn uart_read(&mut self, output: &mut Vec<u8>) {
-        self.uart_read(output);
-    }
-}
-
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
 type Task<B> = Box<dyn FnOnce(&mut B) + Send>;
 
 /// A board in its own thread, with its UART on a pseudo-terminal. It runs at most as fast as in reality.
 ///
 /// The terminal is raw: every byte passes unchanged in both directions. Dropping the `Pty` stops the board.
-pub struct Pty<B: Uart = VirtualBoard> {
+pub struct Pty<B = VirtualBoard> {
     path: PathBuf,
     tasks: Option<Sender<Task<B>>>,
     thread: Option<JoinHandle<B>>,
@@ -75,7 +34,7 @@ pub struct Pty<B: Uart = VirtualBoard> {
     _terminal: OwnedFd,
 }
 
-impl<B: Uart> Pty<B> {
+impl<B: Uart + Send + 'static> Pty<B> {
     /// Moves the board to a new thread, and starts it.
     ///
     /// # Errors
@@ -135,7 +94,7 @@ impl<B: Uart> Pty<B> {
     }
 }
 
-impl<B: Uart> Drop for Pty<B> {
+impl<B> Drop for Pty<B> {
     fn drop(&mut self) {
         self.tasks = None;
         if let Some(thread) = self.thread.take() {
@@ -170,7 +129,7 @@ fn open() -> rustix::io::Result<(File, OwnedFd, PathBuf)> {
 /// passes bytes from the UART to the terminal.
 fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> B {
     let mut output = Vec::new();
-    let mut pace = Pace::new(board.clock_hz(), board.cycles(), Instant::now());
+    let mut pace = Pace::new(SystemClock::start(), board.clock_hz(), board.cycles());
     loop {
         loop {
             match tasks.try_recv() {

@@ -1,5 +1,6 @@
 //! Scan-out: vertical blanking at the rate of the video mode, and the frame that is shown.
 
+use glint_board::Frame;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::register::Value;
 use litex_pac::scanout::{Caps, Control, Error, Scanout as Block, Status, offset};
@@ -21,17 +22,6 @@ const WORD: u32 = 16;
 
 /// Cycles of the fetch of a line beside one for each word: an estimate.
 const FETCH_OVERHEAD: u32 = 30;
-
-/// A frame that scan-out shows.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
-    /// Pixels of a line.
-    pub width: usize,
-    /// Number of lines.
-    pub height: usize,
-    /// RGB565 colours, line by line.
-    pub pixels: Vec<u16>,
-}
 
 /// The scan-out block.
 pub struct Scanout {

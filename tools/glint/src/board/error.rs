@@ -1,25 +1,14 @@
-//! Errors of boards.
+//! Errors of boards that are opened or started.
 
-/// An error in the access to a board.
+/// An error while a board is opened or started.
 #[derive(Debug, thiserror::Error)]
-pub enum BoardError {
+pub enum OpenError {
     /// An error of the virtual board.
     #[error(transparent)]
     Virtual(#[from] virtual_board::Error),
     /// An error of the emulated board.
     #[error(transparent)]
     Emulated(#[from] emulated_board::Error),
-    /// The picture on the virtual board's monitor is not that of a frame.
-    #[error(transparent)]
-    Picture(#[from] virtual_board::PictureError),
-    /// The frame on the emulated board's monitor has another size.
-    #[error("frame on the monitor: expected {expected} pixels in a line, found {found}")]
-    FrameWidth {
-        /// Expected number of pixels in a line.
-        expected: usize,
-        /// Number of pixels in a line.
-        found: usize,
-    },
     /// The serial port cannot be opened.
     #[error(
         "{port}: expected `emulated`, `virtual` or a serial port, found: {source}; this host has {ports}"
@@ -51,9 +40,6 @@ pub enum BoardError {
         /// The ports of this host.
         found: String,
     },
-    /// Reading from or writing to the serial line failed.
-    #[error("serial line: {0}")]
-    Line(#[from] std::io::Error),
     /// The BIOS of the virtual board, which the emulated board starts with, cannot be read.
     #[error("the BIOS {path} cannot be read ({source}); run `cargo xtask gateware`")]
     Bios {

@@ -1,16 +1,19 @@
 //! Access to boards over their serial line: the emulated or the virtual board in this process, or a board on a serial port.
 
 mod error;
-mod line;
 mod name;
 mod ports;
+mod route;
 mod serial;
 mod simulated;
 
-pub use emulated_board::{EmulatedBoard, Frame as MonitorFrame};
-pub use error::BoardError;
-pub use line::{Board, Memory, read_in_steps};
+pub use emulated_board::EmulatedBoard;
+pub use error::OpenError;
+pub use glint_board::{Board, BoardError, Frame as MonitorFrame, Memory, Meter, Simulation, Uart};
 pub use name::{BoardName, ModelOrBoard};
 pub use ports::{Port, ports};
+pub use route::Route;
 pub use serial::SerialBoard;
-pub use simulated::{Meter, SimulatedBoard, Simulation, built_firmware};
+pub use simulated::{
+    SimulatedBoard, built_firmware, emulated, emulated_bios, verilated, verilated_bios,
+};

@@ -1,6 +1,6 @@
 //! The serial ports of this host, and which of them is probably a board's.
 
-use super::error::BoardError;
+use super::error::OpenError;
 use serialport::{SerialPortType, available_ports};
 
 /// USB vendor FTDI, which makes the bridges of both boards.
@@ -25,8 +25,8 @@ pub struct Port {
 ///
 /// # Errors
 /// The operating system does not list them.
-pub fn ports() -> Result<Vec<Port>, BoardError> {
-    let found = available_ports().map_err(BoardError::Ports)?;
+pub fn ports() -> Result<Vec<Port>, OpenError> {
+    let found = available_ports().map_err(OpenError::Ports)?;
     let mut ports: Vec<Port> = found
         .into_iter()
         .map(|port| describe(port.port_name, &port.port_type))
@@ -66,9 +66,9 @@ fn describe(name: String, kind: &SerialPortType) -> Port {
 ///
 /// # Errors
 /// There is none, or more than one.
-pub fn guess() -> Result<String, BoardError> {
+pub fn guess() -> Result<String, OpenError> {
     let ports = ports()?;
-    chosen(&ports).ok_or_else(|| BoardError::Guess {
+    chosen(&ports).ok_or_else(|| OpenError::Guess {
         found: summary(&ports),
     })
 }

@@ -1,8 +1,8 @@
 //! A board on a serial port.
 
-use super::error::BoardError;
-use super::line::Board;
+use super::error::OpenError;
 use super::ports;
+use glint_board::{Board, BoardError};
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -23,8 +23,8 @@ impl SerialBoard {
     /// Opens a port; `serial` stands for the one that is probably a board's.
     ///
     /// # Errors
-    /// [`BoardError::Open`] for a port that does not exist, [`BoardError::Busy`] for one in use, [`BoardError::Guess`] if no port can be guessed.
-    pub fn open(name: &str, baud: u32) -> Result<Self, BoardError> {
+    /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for one in use, [`OpenError::Guess`] if no port can be guessed.
+    pub fn open(name: &str, baud: u32) -> Result<Self, OpenError> {
         if name == GUESS {
             return Self::open(&ports::guess()?, baud);
         }
@@ -40,15 +40,15 @@ impl SerialBoard {
 }
 
 /// The error for a port that cannot be opened.
-fn open_error(name: &str, source: serialport::Error) -> BoardError {
+fn open_error(name: &str, source: serialport::Error) -> OpenError {
     let port = name.to_owned();
     // The crate has one kind for a port that does not exist and for one that another program has locked.
     if source.kind() == serialport::ErrorKind::NoDevice && Path::new(name).exists() {
-        return BoardError::Busy { port };
+        return OpenError::Busy { port };
     }
     let ports = ports::ports();
     let ports = ports.map_or_else(|error| error.to_string(), |ports| ports::summary(&ports));
-    BoardError::Open {
+    OpenError::Open {
         port,
         ports,
         source,

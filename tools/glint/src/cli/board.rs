@@ -7,7 +7,7 @@ use super::progress::{show_simulation, spinner};
 use super::terminal::talk;
 use anyhow::Context;
 use clap::Args;
-use glint::board::{BoardName, SerialBoard, SimulatedBoard, Simulation};
+use glint::board::{self, BoardName, SerialBoard, SimulatedBoard, Simulation, Uart};
 use glint::error::{FormatError, quote};
 use glint::formats::read_file;
 use glint::web::{Live, LiveSerial, LiveSimulation, Server};
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
-use virtual_board::pty::{Pty, Uart};
+use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
 /// Ends of the prompts of firmware and BIOS.
@@ -62,11 +62,9 @@ impl BoardArguments {
         }
         let bios = self.bios || self.flash.is_some();
         match (&self.board, bios) {
-            (BoardName::Emulated, true) => {
-                self.stay(|| self.powered(SimulatedBoard::emulated_bios()?))
-            }
+            (BoardName::Emulated, true) => self.stay(|| self.powered(board::emulated_bios()?)),
             (BoardName::Emulated, false) => self.stay(|| self.line.emulated_board()),
-            (BoardName::Virtual, true) => self.stay(|| self.powered(SimulatedBoard::full()?)),
+            (BoardName::Virtual, true) => self.stay(|| self.powered(board::verilated_bios()?)),
             (BoardName::Virtual, false) => self.stay(|| self.line.virtual_board()),
             (BoardName::Serial(port), _) => {
                 let expected = "emulated or virtual, or --web";
@@ -125,7 +123,10 @@ impl BoardArguments {
         Ok(board)
     }
 
-    fn stay<B: Uart>(&self, start: impl FnOnce() -> anyhow::Result<B>) -> anyhow::Result<()> {
+    fn stay<B: Uart + Send + 'static>(
+        &self,
+        start: impl FnOnce() -> anyhow::Result<B>,
+    ) -> anyhow::Result<()> {
         let ready = self.ready()?;
         let (report, events) = channel();
         let end = report.clone();

@@ -4,12 +4,11 @@ use super::config;
 use super::progress::{show_simulation, spinner};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glint::board::{
-    Board, BoardName, EmulatedBoard, ModelOrBoard, SerialBoard, SimulatedBoard, Simulation,
-    built_firmware,
+    self, Board, BoardName, EmulatedBoard, ModelOrBoard, Route, SerialBoard, SimulatedBoard,
+    Simulation, built_firmware,
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
-use glint::transfer::Route;
 use glint_core::picture::{Backend, Size};
 use std::path::PathBuf;
 
@@ -82,14 +81,14 @@ impl LineArguments {
     pub fn virtual_board(&self) -> anyhow::Result<SimulatedBoard> {
         self.check(&BoardName::Virtual)?;
         let firmware = built_firmware(self.firmware.as_deref())?;
-        started(SimulatedBoard::fast(&firmware)?)
+        started(board::verilated(&firmware)?)
     }
 
     /// Starts an emulated board and runs it to the firmware's first prompt.
     pub fn emulated_board(&self) -> anyhow::Result<SimulatedBoard<EmulatedBoard>> {
         self.check(&BoardName::Emulated)?;
         let firmware = built_firmware(self.firmware.as_deref())?;
-        started(SimulatedBoard::emulated(&firmware)?)
+        started(board::emulated(&firmware)?)
     }
 
     /// Opens a board on a serial port, and ends what an earlier program has left there.

@@ -6,7 +6,7 @@ use super::output::{Output, PICTURE};
 use super::progress::{advance, bar, spinner};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{Board, SimulatedBoard, built_firmware};
+use glint::board::{self, Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::flash;
 use glint::model::Model;
@@ -114,7 +114,7 @@ impl DemoArguments {
     /// Shows a model on the first board by the serial line alone: BIOS, serial boot of the firmware, upload of the model. Then
     /// the soft core draws the same picture, to compare the cycles.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
-        let mut board = SimulatedBoard::full()?;
+        let mut board = board::verilated_bios()?;
         let mut renderer =
             BoardRenderer::new(boot(&mut board, firmware)?).with_backend(Backend::Gateware);
         let mut row = self.show(&mut renderer, model, 0, Route::Serial)?;
@@ -134,7 +134,7 @@ impl DemoArguments {
         models: &[Named],
         firmware: &[u8],
     ) -> anyhow::Result<(Vec<Row>, Vec<String>)> {
-        let mut board = SimulatedBoard::fast(firmware)?;
+        let mut board = board::verilated(firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
         let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);

@@ -7,7 +7,7 @@ use super::messages::{note, print_json, say};
 use super::progress::{advance, bar, show_simulation, spinner};
 use anyhow::Context;
 use clap::Args;
-use glint::board::{Board, BoardName, SerialBoard, SimulatedBoard, Simulation};
+use glint::board::{self, Board, BoardName, SerialBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
 use glint::flash;
 use glint::formats::read_file;
@@ -103,8 +103,8 @@ impl FlashArguments {
         self.baud.check(&name)?;
         let program = read_file(&self.program)?;
         let mut board: Box<dyn Board> = match &name {
-            BoardName::Emulated => metered(SimulatedBoard::emulated_bios()?),
-            BoardName::Virtual => metered(SimulatedBoard::full()?),
+            BoardName::Emulated => metered(board::emulated_bios()?),
+            BoardName::Virtual => metered(board::verilated_bios()?),
             BoardName::Serial(port) => Box::new(SerialBoard::open(port, self.baud.rate()?)?),
         };
         let waiting = spinner("waiting for the BIOS");

@@ -5,12 +5,11 @@ use super::targets::Target;
 use super::{firmware, host, transfer};
 use crate::convert::{self, Options};
 use crate::error::Place;
+use crate::formats::gltf::example::{TWO_MESHES, as_binary};
 use crate::formats::write;
 use crate::generate;
 use crate::image;
 use crate::polygons::{Corner, Polygons, Rgb8};
-use base64::Engine;
-use base64::prelude::BASE64_STANDARD;
 use glint_core::calibration::Units;
 use glint_core::flash::CONTENTS;
 use glint_core::orientation::Sample;
@@ -88,26 +87,6 @@ fn written(write: impl Fn(&Polygons, &mut Vec<u8>) -> std::io::Result<()>) -> Ve
         write(&polygons, &mut out).ok().map(|()| out)
     };
     models().into_iter().filter_map(one).collect()
-}
-
-/// A glTF of two meshes, with its buffer in base64.
-pub const TWO_MESHES: &str = include_str!("two-meshes.gltf");
-
-/// A glTF with one buffer in base64 as `.glb`, and that buffer.
-pub fn as_binary(gltf: &str) -> Option<(Vec<u8>, Vec<u8>)> {
-    let (start, rest) = gltf.split_once("\"uri\": \"data:application/octet-stream;base64,")?;
-    let (data, end) = rest.split_once("\", ")?;
-    let buffer = BASE64_STANDARD.decode(data).ok()?;
-    let glb = gltf::Glb {
-        header: gltf::binary::Header {
-            magic: *b"glTF",
-            version: 2,
-            length: 0,
-        },
-        json: [start, end].concat().into_bytes().into(),
-        bin: Some(buffer.as_slice().into()),
-    };
-    glb.to_vec().ok().map(|glb| (glb, buffer))
 }
 
 fn gltfs() -> Vec<Vec<u8>> {

@@ -1,7 +1,7 @@
 //! The fuzz target of the whole firmware on the emulated board: anything on its serial line.
 
 use super::transfer::{SESSION, upload_data};
-use crate::board::{Board, BoardError, EmulatedBoard, SimulatedBoard, built_firmware};
+use crate::board::{self, Board, BoardError, EmulatedBoard, SimulatedBoard, built_firmware};
 use crate::console::Console;
 use crate::transfer::upload;
 use glint_core::console::PROMPT;
@@ -62,7 +62,7 @@ pub fn run(input: &[u8]) -> bool {
 
 /// A board whose firmware has just started, and waits for a command.
 fn start() -> SimulatedBoard<EmulatedBoard> {
-    let mut board = SimulatedBoard::emulated(&FIRMWARE).expect("the firmware fits");
+    let mut board = board::emulated(&FIRMWARE).expect("the firmware fits");
     let mut said = Vec::new();
     while !said.ends_with(PROMPT.as_bytes()) {
         board

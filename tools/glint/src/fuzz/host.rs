@@ -2,12 +2,12 @@
 //! anything.
 
 use super::transfer::{SESSION, exchange, upload_data};
-use crate::board::{Board, BoardError};
+use crate::board::{Board, BoardError, Route};
 use crate::console::{Console, value};
 use crate::imu::log::Entry;
 use crate::imu::{replay, sensor};
 use crate::render::BoardRenderer;
-use crate::transfer::{Route, download, upload};
+use crate::transfer::{download, upload};
 use crate::{flash, gesture, view};
 use glint_core::calibration::Units;
 use glint_core::orientation::log::{self as image, HEADER_BYTES};

@@ -11,7 +11,6 @@ mod mutate;
 mod targets;
 mod transfer;
 
-pub use corpus::{TWO_MESHES, as_binary};
 pub use mutate::{MAX_INPUT, Random};
 pub use targets::{Target, Verdict};
 

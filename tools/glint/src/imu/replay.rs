@@ -1,10 +1,10 @@
 //! Computes the attitudes of a log with the firmware's arithmetic, on this host or on a board.
 
 use super::log::Entry;
-use crate::board::Board;
+use crate::board::{Board, Route};
 use crate::console::{self, Console, ConsoleError};
 use crate::error::{FormatError, Place};
-use crate::transfer::{self, Route, TransferError};
+use crate::transfer::{self, TransferError};
 use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report, Units};
 use glint_core::orientation::log::{
     self as image, HEADER_BYTES, LogError, RECORD_BYTES, Setup, attitude, from_bytes, record,

@@ -6,11 +6,11 @@ use super::commands::{
 };
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
-use crate::board::Board;
+use crate::board::{Board, Route};
 use crate::console::{self, Console};
 use crate::picture::Image;
 use crate::scene;
-use crate::transfer::{self, Progress, Route};
+use crate::transfer::{self, Progress};
 use crate::wireframe::Action;
 use glint_core::camera::View;
 use glint_core::light::Background;

@@ -10,7 +10,7 @@ mod remarks;
 mod renderer;
 mod stats;
 
-pub use crate::transfer::Route;
+pub use crate::board::Route;
 pub use board::BoardRenderer;
 pub use commands::{
     field_commands, lighting_commands, mesh_commands, size_command, stereo_command, view_command,

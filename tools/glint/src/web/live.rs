@@ -3,12 +3,10 @@
 use super::inputs::{Hold, Levels};
 use super::message::Pins;
 use super::motion::Motion;
-use crate::board::{
-    Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation, read_in_steps,
-};
+use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
+use glint_board::pace::{Pace, SystemClock};
+use glint_board::read_in_steps;
 use std::sync::Arc;
-use std::time::Instant;
-use virtual_board::Pace;
 
 /// Time of the board in ms that it runs at once.
 const SLICE_MS: u64 = 1;
@@ -37,7 +35,7 @@ pub struct LiveSimulation<S> {
     sample_period: u64,
     motion: Arc<Motion>,
     hold: Hold,
-    pace: Pace,
+    pace: Pace<SystemClock>,
     /// The number of the last vertical blanking that was looked at, and the picture shown then.
     shown: (u64, Option<MonitorFrame>),
 }
@@ -49,7 +47,11 @@ impl<S: Simulation> LiveSimulation<S> {
         board.inner().plug(motion.sensor());
         board.inner().plug_image_sensor(motion.camera());
         let simulation = board.inner();
-        let pace = Pace::new(simulation.clock_hz(), simulation.cycles(), Instant::now());
+        let pace = Pace::new(
+            SystemClock::start(),
+            simulation.clock_hz(),
+            simulation.cycles(),
+        );
         Self {
             board,
             sample_period,

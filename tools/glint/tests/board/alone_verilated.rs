@@ -2,7 +2,7 @@
 //! so that it runs beside the others.
 
 use crate::power_up::read_until;
-use glint::board::{SimulatedBoard, Simulation, built_firmware};
+use glint::board::{self, SimulatedBoard, Simulation, built_firmware};
 use glint::console::Console;
 use glint::image;
 use virtual_board::virtual_flash::Flash;
@@ -27,7 +27,7 @@ fn the_verilated_board_runs_alone_from_its_flash() {
     let scenes = ["cubes", "wireframe"].map(|name| glint_scene::built_in(name).unwrap());
     let pieces = image::pieces(&scenes).unwrap();
     let image = image::make(&[], &built_firmware(None).unwrap(), &pieces).unwrap();
-    let mut board = SimulatedBoard::full().unwrap();
+    let mut board = board::verilated_bios().unwrap();
     board.inner().plug_flash(Flash::new(image));
     let output = read_until(&mut board, "glint> ");
     assert!(!output.contains("error"), "{output}");

@@ -1,6 +1,6 @@
 //! A board with a console, and the queries that the tests share.
 
-use glint::board::{Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
+use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
 use glint::console::{Console, value};
 use glint::convert::{self, Options};
 use glint::counters::Counters;
@@ -15,12 +15,12 @@ const PATIENCE_MS: u64 = 2000;
 
 /// A virtual board that starts with the built firmware in its memory.
 pub fn running_board() -> SimulatedBoard {
-    SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
+    board::verilated(&built_firmware(None).unwrap()).unwrap()
 }
 
 /// An emulated board that starts with the built firmware in its memory.
 pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
-    SimulatedBoard::emulated(&built_firmware(None).unwrap()).unwrap()
+    board::emulated(&built_firmware(None).unwrap()).unwrap()
 }
 
 /// The console of a board that has just started.

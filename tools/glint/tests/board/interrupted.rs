@@ -2,14 +2,14 @@
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
 use crate::terminal::Terminal;
-use glint::board::{Board, EmulatedBoard, SimulatedBoard};
+use glint::board::{Board, EmulatedBoard, SimulatedBoard, Uart};
 use glint::console::Console;
 use glint::transfer;
 use std::path::Path;
 use std::process::Command;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
-use virtual_board::pty::{Pty, Uart};
+use virtual_board::pty::Pty;
 
 /// Received bytes after which a transfer counts as half done: more than all commands together, less than the mesh.
 const PART: usize = 4_000;

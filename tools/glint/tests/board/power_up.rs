@@ -1,6 +1,6 @@
 //! Power-up of an emulated board with an image in its SPI flash, through the BIOS.
 
-use glint::board::{Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
+use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
 use glint::console::Console;
 use glint::flash;
 use glint_core::flash::{FIRMWARE, encode};
@@ -22,7 +22,7 @@ fn image() -> Vec<u8> {
 
 /// A board before power-up, with this image in its flash.
 fn board(image: Vec<u8>) -> SimulatedBoard<EmulatedBoard> {
-    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let mut board = board::emulated_bios().unwrap();
     board.inner().plug_flash(Flash::new(image));
     board
 }

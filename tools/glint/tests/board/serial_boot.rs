@@ -3,7 +3,7 @@
 
 use crate::power_up::read_until;
 use crate::terminal::Terminal;
-use glint::board::SimulatedBoard;
+use glint::board::{self};
 use glint::console::Console;
 use glint::flash;
 use litex_pac::uart::{self, offset};
@@ -84,7 +84,7 @@ fn litex_term_loads_a_program_into_the_verilated_board() {
 
 #[test]
 fn litex_term_loads_the_firmware_into_the_emulated_board() {
-    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let mut board = board::emulated_bios().unwrap();
     read_until(&mut board, "litex");
     let board = Pty::start(board).unwrap();
     let mut terminal = litex_term(&firmware(), board.path());
@@ -106,7 +106,7 @@ fn litex_term_loads_the_firmware_into_the_emulated_board() {
 #[test]
 fn glint_flash_loads_the_firmware_and_it_answers() {
     let program = std::fs::read(firmware()).unwrap();
-    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let mut board = board::emulated_bios().unwrap();
     let report = flash::flash(&mut board, &program, MAIN_RAM, PATIENCE_MS, &mut |_, _| {}).unwrap();
     assert_eq!(report.bytes, program.len());
     assert_eq!(report.retries, 0);

@@ -2,7 +2,7 @@
 
 use crate::common::{begin_upload, mesh};
 use crate::terminal::Terminal;
-use glint::board::{Board as _, SerialBoard, SimulatedBoard};
+use glint::board::{self, Board as _, SerialBoard};
 use glint::console::Console;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -201,7 +201,7 @@ fn the_start_with_the_bios_has_progress() {
             seconds > PATIENCE
         });
     }
-    let mut board = SimulatedBoard::emulated_bios().unwrap();
+    let mut board = board::emulated_bios().unwrap();
     let meter = board.meter();
     board.read(&mut Vec::new(), 1).unwrap();
     assert_eq!(meter.cycles(), board.inner().cycles());

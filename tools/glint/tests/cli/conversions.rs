@@ -1,7 +1,7 @@
 //! `glint model` and `glint convert`.
 
 use crate::common::{SQUARE, folder, glint_within, picture, refused, succeed};
-use glint::fuzz::{TWO_MESHES, as_binary};
+use glint::formats::gltf::example::{TWO_MESHES, as_binary};
 
 #[test]
 fn conversions_by_every_way_agree() {

@@ -4,7 +4,7 @@ use crate::browser::{Browser, Page};
 use crate::served::Served;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use glint::board::{EmulatedBoard, SimulatedBoard, built_firmware};
+use glint::board::{self, EmulatedBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::convert::Options;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ fn documented() -> PathBuf {
 fn a_board_in_a_browser() {
     let served = Served::start("page-browser");
     let mut browser = Browser::start();
-    let mut board = SimulatedBoard::emulated(&built_firmware(None).unwrap()).unwrap();
+    let mut board = board::emulated(&built_firmware(None).unwrap()).unwrap();
     Console::new(&mut board).greet().unwrap();
 
     let page = browser.open(&served.url);

@@ -1,7 +1,7 @@
 //! The page of a board on a serial port.
 
 use crate::served::{Served, wait_for};
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::{self, built_firmware};
 use glint::console::Console;
 use glint::transfer::download;
 use glint_core::picture::Size;
@@ -11,7 +11,7 @@ const SCENE: &str = "scene cube";
 
 /// The colours that a board without a page sends for the scene.
 fn expected() -> Vec<u8> {
-    let mut board = SimulatedBoard::emulated(&built_firmware(None).unwrap()).unwrap();
+    let mut board = board::emulated(&built_firmware(None).unwrap()).unwrap();
     let mut console = Console::new(&mut board);
     console.synchronise().unwrap();
     console.command(SCENE).unwrap();

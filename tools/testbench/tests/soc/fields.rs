@@ -1,7 +1,7 @@
 //! Compares the whole SoC, including its raymarcher, with glint-model: colours, depths and statistics of every field, from three
 //! cameras, for one eye and for two eyes.
 
-use glint::board::{Board, SimulatedBoard, built_firmware};
+use glint::board::{self, Board, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::picture::Image;
 use glint::render::{self, FieldSubject, Frame, MeshSubject, Rendered, Stats, Subject, on_model};
@@ -76,7 +76,7 @@ fn eyes() -> [Option<Stereo>; 3] {
 }
 
 pub fn board() -> SimulatedBoard {
-    SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap()
+    board::verilated(&built_firmware(None).unwrap()).unwrap()
 }
 
 /// Draws a field on the board, with or without depths, and compares the frame and its statistics with the model's.

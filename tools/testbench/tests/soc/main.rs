@@ -14,7 +14,7 @@
 mod fields;
 mod objects;
 
-use glint::board::{Board, BoardError, Memory, SimulatedBoard, built_firmware};
+use glint::board::{self, Board, BoardError, Memory, SimulatedBoard, built_firmware};
 use glint::console::{Console, value};
 use glint::render::{self, Frame, MeshSubject, Rendered, Stats, Subject};
 use glint::{convert, generate, view};
@@ -213,7 +213,7 @@ fn scenes(small: bool) -> Vec<Scene> {
 }
 
 fn draw(size: Size, scenes: Vec<Scene>) {
-    let board = SimulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
+    let board = board::verilated(&built_firmware(None).unwrap()).unwrap();
     let mut board = Watched {
         board,
         scale: (1280 / size.width()) as usize,

@@ -2,7 +2,7 @@
 //! where the engine shares LiteDRAM with the scan-out to the monitor.
 
 use anyhow::{Context, Result, ensure};
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::{self, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::convert::{self, Options};
 use glint::error::Place;
@@ -277,7 +277,7 @@ fn measure_cases<R: Send>(
             "{} at {}x{} by {backend} …",
             case.name, case.size.0, case.size.1
         );
-        let mut board = SimulatedBoard::fast(&firmware)?;
+        let mut board = board::verilated(&firmware)?;
         let mut console = Console::new(&mut board);
         console.greet()?;
         let mut renderer = BoardRenderer::new(console).with_backend(backend);

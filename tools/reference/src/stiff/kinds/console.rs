@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use anyhow::{Context, Result, bail};
-use glint::board::{EmulatedBoard, SimulatedBoard, built_firmware};
+use glint::board::{self, EmulatedBoard, SimulatedBoard, built_firmware};
 use glint::console::{Console, ConsoleError};
 use glint::transfer::{TransferError, upload};
 use glint_vectors::Model;
@@ -23,7 +23,7 @@ static FIRMWARE: LazyLock<Result<Vec<u8>, String>> =
 /// A board that has just started.
 fn start() -> Result<SimulatedBoard<EmulatedBoard>> {
     match &*FIRMWARE {
-        Ok(firmware) => Ok(SimulatedBoard::emulated(firmware)?),
+        Ok(firmware) => Ok(board::emulated(firmware)?),
         Err(error) => bail!("{error}: run `cargo xtask firmware`"),
     }
 }

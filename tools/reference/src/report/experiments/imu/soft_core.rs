@@ -2,11 +2,10 @@
 //! the one that the host computes by the same code.
 
 use anyhow::{Context, Result};
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::{self, Route, built_firmware};
 use glint::console::Console;
 use glint::imu::log::Entry;
 use glint::imu::replay::{self, Options, Stage};
-use glint::transfer::Route;
 use glint_core::calibration::Units;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::{Deserialize, Serialize};
@@ -94,7 +93,7 @@ pub fn replay(source: &Source, samples: u64) -> Result<Replay> {
     };
     let prepared = replay::prepare(&entries, &options)?;
     let firmware = built_firmware(Some(&source.firmware()))?;
-    let mut board = SimulatedBoard::fast(&firmware)?;
+    let mut board = board::verilated(&firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
     let bar = ProgressBar::new(samples).with_style(ProgressStyle::with_template(

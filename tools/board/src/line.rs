@@ -1,6 +1,24 @@
 //! The serial line of a board, and direct access to its memory.
 
-use super::error::BoardError;
+use std::io;
+
+/// An error in the access to a board.
+#[derive(Debug, thiserror::Error)]
+pub enum BoardError {
+    /// Reading from or writing to the serial line failed.
+    #[error("serial line: {0}")]
+    Line(#[from] io::Error),
+    /// An error of a simulated board.
+    #[error(transparent)]
+    Simulation(Box<dyn std::error::Error + Send + Sync>),
+}
+
+impl BoardError {
+    /// An error of a simulated board.
+    pub fn simulation(error: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
+        Self::Simulation(error.into())
+    }
+}
 
 /// A board that the host reaches over its serial line.
 pub trait Board {

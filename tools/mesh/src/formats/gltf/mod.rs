@@ -4,6 +4,7 @@
 //! done here.
 
 mod buffers;
+pub mod example;
 
 use super::text::{BYTE_ORDER_MARK, checked};
 use crate::error::{FormatError, MAX_COORDINATE, Place, quote};

@@ -1,7 +1,7 @@
 //! Uploads and downloads over a board's line, by the transfer protocol of `glint-core`.
 
-use crate::board::{Board, BoardError, BoardName};
 use crate::console::{self, Console, ConsoleError};
+use crate::line::{Board, BoardError};
 use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
 
 /// An error of a transfer.
@@ -21,25 +21,6 @@ pub enum TransferError {
         "memory transfer: expected the emulated or the virtual board, found a board with a serial line only"
     )]
     NoMemory,
-}
-
-/// The route by which data get into and out of a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Route {
-    /// Over the serial line.
-    Serial,
-    /// Directly through the simulated memory, which the emulated and the virtual board offer.
-    Memory,
-}
-
-impl Route {
-    /// The fastest route of a board.
-    pub const fn of(board: &BoardName) -> Self {
-        match board {
-            BoardName::Emulated | BoardName::Virtual => Self::Memory,
-            BoardName::Serial(_) => Self::Serial,
-        }
-    }
 }
 
 /// A callback that gets the number of bytes transferred so far, and the total.

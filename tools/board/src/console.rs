@@ -1,9 +1,9 @@
 //! The firmware's console as programs use it: sends a command, and reads its reply line by line.
 
-use crate::board::{Board, BoardError};
+use crate::line::{Board, BoardError};
 use glint_core::console::PROMPT;
 use glint_core::wire::{self, MAX_FRAME};
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::hash::{BuildHasher, RandomState};
 
 /// An error of a command that was sent to the console.
 #[derive(Debug, thiserror::Error)]
@@ -136,9 +136,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// [`ConsoleError::Silence`] without an answer.
     pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
         self.reset_transfer()?;
-        let since_epoch = SystemTime::now().duration_since(UNIX_EPOCH);
-        let number =
-            since_epoch.map_or(0, |time| time.as_nanos() as u64) ^ u64::from(std::process::id());
+        // Each state has random keys, so earlier programs have sent other numbers.
+        let number = RandomState::new().hash_one(0);
         self.allowance = MAX_REPLY;
         let patience_ms = self.patience_ms;
         let (mut attempt, mut silences) = (1, 0);

@@ -1,8 +1,8 @@
 //! Tests with a file of two meshes under a node: one turned by 90° about z, with a material and indices, one mirrored, a strip with
 //! colours of vertices.
 
+use super::example::{TWO_MESHES, as_binary};
 use super::*;
-use crate::fuzz::{TWO_MESHES, as_binary};
 
 fn read(text: &str) -> Result<Polygons, FormatError> {
     parse(text.as_bytes(), &mut |_| None)

@@ -1,0 +1,272 @@
+//! Boards that are simulated in this process. A read from the serial line advances the simulation.
+
+use crate::line::{Board, BoardError, Memory};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use virtual_flash::Flash;
+use virtual_image_sensor::ImageSensor;
+use virtual_mpu6050::Wires;
+
+/// Clock cycles to simulate between two checks for bytes from the board.
+const SLICE: u64 = 1000;
+
+/// A board with a UART, simulated.
+pub trait Uart {
+    /// Runs `cycles` cycles of the system clock.
+    fn run(&mut self, cycles: u64);
+
+    /// Cycles of the system clock since the start.
+    fn cycles(&self) -> u64;
+
+    /// System clock frequency in Hz.
+    fn clock_hz(&self) -> u32;
+
+    /// Sends bytes to the UART.
+    fn uart_write(&mut self, bytes: &[u8]);
+
+    /// Number of bytes that the UART has not received yet.
+    fn uart_queued(&self) -> usize;
+
+    /// Moves the unread serial output to the end of `output`.
+    fn uart_read(&mut self, output: &mut Vec<u8>);
+}
+
+/// A frame on a board's monitor.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    /// Number of pixels in a line.
+    pub width: usize,
+    /// Number of lines.
+    pub height: usize,
+    /// RGB565 colours, line by line from the top left.
+    pub pixels: Vec<u16>,
+}
+
+/// What the simulated boards have in common.
+pub trait Simulation: Uart {
+    /// Fills `bytes` with main memory from `address` on.
+    ///
+    /// # Errors
+    /// The range is not in main memory.
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError>;
+
+    /// Writes `bytes` to main memory from `address` on.
+    ///
+    /// # Errors
+    /// The range is not in main memory.
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError>;
+
+    /// Connects a motion sensor to the I2C bus instead of the present one, if any.
+    fn plug(&mut self, sensor: Wires);
+
+    /// Connects a SPI flash instead of the present one, if any.
+    fn plug_flash(&mut self, flash: Flash);
+
+    /// Connects an image sensor instead of the present one, if any.
+    fn plug_image_sensor(&mut self, sensor: ImageSensor);
+
+    /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
+    fn digits(&self) -> [u8; 8];
+
+    /// Sets which of the buttons 0 to 3 are pressed, one bit each.
+    fn set_buttons(&mut self, pressed: u8);
+
+    /// Sets the 16 switches, one bit each.
+    fn set_switches(&mut self, on: u16);
+
+    /// The 16 LEDs, one bit each.
+    fn leds(&self) -> u16;
+
+    /// The last whole frame on the monitor, if one has been shown since the call that returned the blanking number `last`, with its own
+    /// number. The first call is made with 0.
+    ///
+    /// # Errors
+    /// The picture on the monitor is not that of a frame.
+    fn new_frame(&mut self, last: u64) -> Result<Option<(u64, Frame)>, BoardError>;
+
+    /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
+    ///
+    /// # Errors
+    /// There is no video, or the frame has another size.
+    fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
+}
+
+/// The methods of [`Uart`] for a board that has methods of the same names.
+#[macro_export]
+macro_rules! own_uart {
+    () => {
+        fn run(&mut self, cycles: u64) {
+            self.run(cycles);
+        }
+
+        fn cycles(&self) -> u64 {
+            self.cycles()
+        }
+
+        fn clock_hz(&self) -> u32 {
+            self.clock_hz()
+        }
+
+        fn uart_write(&mut self, bytes: &[u8]) {
+            self.uart_write(bytes);
+        }
+
+        fn uart_queued(&self) -> usize {
+            self.uart_queued()
+        }
+
+        fn uart_read(&mut self, output: &mut Vec<u8>) {
+            self.uart_read(output);
+        }
+    };
+}
+
+/// The methods of [`Simulation`] for the pins of a board that has methods of the same names.
+#[macro_export]
+macro_rules! own_pins {
+    () => {
+        fn digits(&self) -> [u8; 8] {
+            self.digits()
+        }
+
+        fn set_buttons(&mut self, pressed: u8) {
+            self.set_buttons(pressed);
+        }
+
+        fn set_switches(&mut self, on: u16) {
+            self.set_switches(on);
+        }
+
+        fn leds(&self) -> u16 {
+            self.leds()
+        }
+
+        fn plug(&mut self, sensor: $crate::virtual_mpu6050::Wires) {
+            self.plug(sensor);
+        }
+
+        fn plug_flash(&mut self, flash: $crate::virtual_flash::Flash) {
+            self.plug_flash(flash);
+        }
+
+        fn plug_image_sensor(&mut self, sensor: $crate::virtual_image_sensor::ImageSensor) {
+            self.plug_image_sensor(sensor);
+        }
+    };
+}
+
+/// Reads the cycles of a simulated board from another thread.
+#[derive(Clone, Debug)]
+pub struct Meter {
+    cycles: Arc<AtomicU64>,
+    clock_hz: u32,
+}
+
+impl Meter {
+    /// Cycles of the system clock since the start.
+    pub fn cycles(&self) -> u64 {
+        self.cycles.load(Ordering::Relaxed)
+    }
+
+    /// System clock frequency in Hz.
+    pub const fn clock_hz(&self) -> u32 {
+        self.clock_hz
+    }
+}
+
+/// A simulated board with a serial line and direct access to its memory.
+pub struct SimulatedBoard<S> {
+    board: S,
+    meter: Meter,
+}
+
+impl<S: Uart> SimulatedBoard<S> {
+    /// Wraps a board that the caller has built.
+    pub fn new(board: S) -> Self {
+        let meter = Meter {
+            cycles: Arc::default(),
+            clock_hz: board.clock_hz(),
+        };
+        Self { board, meter }
+    }
+
+    /// The cycles that the board has run, for another thread.
+    pub fn meter(&self) -> Meter {
+        self.meter.clone()
+    }
+
+    /// Runs the board, and counts its cycles for other threads.
+    fn advance(&mut self, cycles: u64) {
+        self.board.run(cycles);
+        let cycles = self.board.cycles();
+        self.meter.cycles.store(cycles, Ordering::Relaxed);
+    }
+
+    /// The underlying board, for access to its pins, its monitor and its cycle counter.
+    pub fn inner(&mut self) -> &mut S {
+        &mut self.board
+    }
+}
+
+impl<S: Uart> Uart for SimulatedBoard<S> {
+    fn run(&mut self, cycles: u64) {
+        self.advance(cycles);
+    }
+
+    fn cycles(&self) -> u64 {
+        self.board.cycles()
+    }
+
+    fn clock_hz(&self) -> u32 {
+        self.board.clock_hz()
+    }
+
+    fn uart_queued(&self) -> usize {
+        self.board.uart_queued()
+    }
+
+    fn uart_write(&mut self, bytes: &[u8]) {
+        self.board.uart_write(bytes);
+    }
+
+    fn uart_read(&mut self, output: &mut Vec<u8>) {
+        self.board.uart_read(output);
+    }
+}
+
+impl<S: Simulation> Board for SimulatedBoard<S> {
+    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.uart_write(bytes);
+        Ok(())
+    }
+
+    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
+        let before = bytes.len();
+        let limit = wait_ms.saturating_mul(u64::from(self.board.clock_hz()) / 1000);
+        let end = self.board.cycles().saturating_add(limit);
+        self.board.uart_read(bytes);
+        while bytes.len() == before && self.board.cycles() < end {
+            self.advance(SLICE);
+            self.board.uart_read(bytes);
+        }
+        Ok(())
+    }
+
+    fn now_ms(&self) -> u64 {
+        self.board.cycles() / (u64::from(self.board.clock_hz()) / 1000).max(1)
+    }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        Some(self)
+    }
+}
+
+impl<S: Simulation> Memory for SimulatedBoard<S> {
+    fn read_memory(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), BoardError> {
+        self.board.read_memory(address, bytes)
+    }
+
+    fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError> {
+        self.board.write_memory(address, bytes)
+    }
+}
