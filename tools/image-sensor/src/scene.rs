@@ -107,7 +107,11 @@ impl Scene {
 
     /// A random number of mean 0 and variance 1, approximately normally distributed.
     fn gauss(&mut self) -> f64 {
-        let sum: f64 = (0..3).map(|_| self.random.random_range(0.0..1.0)).sum();
+        // Three uniform numbers of 21 bits each.
+        const BITS: u32 = 21;
+        let bits: u64 = self.random.random();
+        let part = |number: u32| bits >> (number * BITS) & ((1 << BITS) - 1);
+        let sum = (part(0) + part(1) + part(2)) as f64 / f64::from(1 << BITS);
         2.0 * (sum - 1.5)
     }
 }

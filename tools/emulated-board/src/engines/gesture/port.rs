@@ -7,6 +7,30 @@ use virtual_image_sensor::{ImageSensor, Levels};
 /// Frequency of the system clock in Hz.
 const CLOCK: u64 = CONFIG_CLOCK_FREQUENCY as u64;
 
+/// A time or a length of time: a number of cycles, and what is left of it, in parts of `2 * clock`.
+#[derive(Clone, Copy, Debug, Default)]
+struct Time {
+    cycle: u64,
+    part: u64,
+}
+
+impl Time {
+    /// The time after this one by `length`; a cycle has `parts` parts.
+    fn after(self, length: Self, parts: u64) -> Self {
+        let part = self.part + length.part;
+        let carry = u64::from(part >= parts);
+        Self {
+            cycle: self.cycle + length.cycle + carry,
+            part: part - carry * parts,
+        }
+    }
+
+    /// The first cycle that does not begin before the time.
+    fn ceil(self) -> u64 {
+        self.cycle + u64::from(self.part > 0)
+    }
+}
+
 /// The frame that the sensor is sending.
 #[derive(Default)]
 pub struct Port {
@@ -17,8 +41,12 @@ pub struct Port {
     change: usize,
     /// Half periods of the sensor's clock in which `frame` began, counted from the start of the board.
     begin: u64,
-    /// The cycle in which it began, and what is left of it, in parts of `2 * clock`.
-    first: [u64; 2],
+    /// The time in which it began.
+    first: Time,
+    /// The time in which the period `at` begins.
+    now: Time,
+    /// Length of half a period.
+    half: Time,
     /// Frequency of the sensor's clock in Hz.
     clock: u64,
     /// Levels of the period before the next one.
@@ -49,7 +77,15 @@ impl Port {
         self.clock = clock;
         let (begin, halves) = (u128::from(self.begin), u128::from(2 * clock));
         let parts = begin * u128::from(CLOCK);
-        self.first = [parts / halves, parts % halves].map(|part| part as u64);
+        self.first = Time {
+            cycle: (parts / halves) as u64,
+            part: (parts % halves) as u64,
+        };
+        self.now = self.first;
+        self.half = Time {
+            cycle: CLOCK / (2 * clock),
+            part: CLOCK % (2 * clock),
+        };
         let seconds = self.begin as f64 / (2.0 * clock as f64);
         self.frame = sensor.frame(seconds);
         self.at = 0;
@@ -61,13 +97,16 @@ impl Port {
         while let Some(&levels) = self.frame.get(self.at) {
             // Levels change at the beginning of a period, and PCLK rises in its middle.
             let begins = levels.is_inverted() != falling;
-            let cycle = self.cycle(2 * self.at as u64 + u64::from(!begins));
+            let parts = 2 * self.clock;
+            let middle = self.now.after(self.half, parts);
+            let cycle = if begins { self.now } else { middle }.ceil();
             if cycle > now {
                 return None;
             }
             let seen = if begins { self.before } else { levels };
             self.before = levels;
             self.at += 1;
+            self.now = middle.after(self.half, parts);
             if self.at > self.change {
                 self.find_change();
             }
@@ -105,7 +144,7 @@ impl Port {
 
     /// The first cycle after a number of half periods of the frame.
     fn cycle(&self, halves: u64) -> u64 {
-        let [cycle, part] = self.first;
+        let Time { cycle, part } = self.first;
         cycle + (part + halves * CLOCK).div_ceil(2 * self.clock.max(1))
     }
 
