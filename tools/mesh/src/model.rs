@@ -2,7 +2,7 @@
 
 use crate::convert::{self, Options, Report};
 use crate::error::InputError;
-use crate::formats::{self, Format, glm};
+use crate::formats::{self, Beside, Format, glm};
 use crate::generate;
 use crate::polygons::Polygons;
 use std::path::Path;
@@ -38,18 +38,49 @@ pub fn polygons(name: &str) -> Result<Polygons, InputError> {
 /// As [`polygons`] and [`convert::convert`].
 pub fn load(name: &str, options: Options) -> Result<Model, InputError> {
     let path = Path::new(name);
-    let polygons = if is_generated(name) {
-        polygons(name)?
-    } else {
-        let (format, mesh) = formats::read_mesh(path)?;
-        if format == Format::Glm {
-            glm::check_file(&mesh).map_err(|error| error.in_path(path))?;
-            return Ok(Model { mesh, report: None });
-        }
-        formats::parse(path, format, &mesh)?
-    };
+    if is_generated(name) {
+        return converted(path, &polygons(name)?, options);
+    }
+    let (format, bytes) = formats::read_mesh(path)?;
+    of_bytes(
+        path,
+        format,
+        bytes,
+        options,
+        &mut formats::in_folder_of(path),
+    )
+}
+
+/// Converts a mesh file that is in memory, without further files. Its name tells the format.
+///
+/// # Errors
+/// As [`load`].
+pub fn of_file(name: &str, bytes: Vec<u8>, options: Options) -> Result<Model, InputError> {
+    let path = Path::new(name);
+    of_bytes(path, Format::of(path)?, bytes, options, &mut |_| None)
+}
+
+fn of_bytes(
+    path: &Path,
+    format: Format,
+    bytes: Vec<u8>,
+    options: Options,
+    beside: &mut Beside,
+) -> Result<Model, InputError> {
+    if format == Format::Glm {
+        glm::check_file(&bytes).map_err(|error| error.in_path(path))?;
+        return Ok(Model {
+            mesh: bytes,
+            report: None,
+        });
+    }
+    let polygons = formats::parse(path, format, &bytes, beside)?;
+    converted(path, &polygons, options)
+}
+
+fn converted(path: &Path, polygons: &Polygons, options: Options) -> Result<Model, InputError> {
     let (mesh, report) =
-        convert::convert(&polygons, options).map_err(|error| error.in_path(path))?;
+        convert::convert(polygons, options).map_err(|error| error.in_path(path))?;
     Ok(Model {
         mesh,
         report: Some(report),

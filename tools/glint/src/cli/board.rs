@@ -10,7 +10,9 @@ use clap::Args;
 use glint::board::{self, BoardName, SerialBoard, SimulatedBoard, Simulation, Uart};
 use glint::error::{FormatError, quote};
 use glint::formats::read_file;
-use glint::web::{Live, LiveSerial, LiveSimulation, Server};
+use glint::web::{LiveSerial, Server};
+use glint_board::pace::SystemClock;
+use glint_live::{Live, LiveSimulation};
 use rustix::termios::isatty;
 use std::net::SocketAddr;
 use std::os::unix::fs::symlink;
@@ -18,6 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
+use std::time::Duration;
 use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
@@ -92,8 +95,16 @@ impl BoardArguments {
         ctrlc::set_handler(move || ended.store(true, Ordering::Relaxed))?;
         let server = Server::bind(address).with_context(|| format!("--web {address}"))?;
         let mut board: Box<dyn Live> = match &self.board {
-            BoardName::Emulated => Box::new(LiveSimulation::new(self.line.emulated_board()?, 250)),
-            BoardName::Virtual => Box::new(LiveSimulation::new(self.line.virtual_board()?, 2000)),
+            BoardName::Emulated => Box::new(LiveSimulation::new(
+                self.line.emulated_board()?,
+                Duration::from_millis(250),
+                SystemClock::start(),
+            )),
+            BoardName::Virtual => Box::new(LiveSimulation::new(
+                self.line.virtual_board()?,
+                Duration::from_secs(2),
+                SystemClock::start(),
+            )),
             BoardName::Serial(port) => Box::new(LiveSerial(self.line.serial_board(port)?)),
         };
         let url = server.url()?;

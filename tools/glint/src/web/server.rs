@@ -1,17 +1,14 @@
 //! Listens for browsers, checks their requests, and serves the files of the page.
 
-use super::hub::{Hub, MAX_VIEWERS};
-use super::inputs::Inputs;
-use super::live::Live;
-use super::message::ToPage;
-use super::session;
-use super::viewer::{self, Channels};
+use super::connection;
 use crate::board::BoardError;
+use glint_live::files::{FILES, File, SCRIPT};
+use glint_live::hub::MAX_VIEWERS;
+use glint_live::{Channels, Live, session};
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::sync_channel;
 use std::time::{Duration, Instant};
 use tungstenite::handshake::machine::TryParse;
 use tungstenite::handshake::server::{Request, create_response, write_response};
@@ -23,35 +20,20 @@ const MAX_HEAD: usize = 8 << 10;
 const HEAD_TIME: Duration = Duration::from_secs(5);
 /// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 4 * MAX_VIEWERS;
-/// Maximum number of commands that wait for the board.
-const MAX_REQUESTS: usize = 64;
+/// The file of the page that passes its messages: by a WebSocket to this program.
+const LINK: File = File {
+    name: "link.js",
+    media: SCRIPT,
+    content: include_str!("../../web/link.js"),
+};
 
-/// Media types of the files.
-const HTML: &str = "text/html; charset=utf-8";
-const CSS: &str = "text/css; charset=utf-8";
-const SCRIPT: &str = "text/javascript; charset=utf-8";
+/// Media type of errors.
+const TEXT: &str = "text/plain";
 
-/// The files of the page: name, media type and content.
-const FILES: [(&str, &str, &str); 9] = [
-    ("", HTML, include_str!("../../web/index.html")),
-    ("page.css", CSS, include_str!("../../web/page.css")),
-    ("page.js", SCRIPT, include_str!("../../web/page.js")),
-    ("monitor.js", SCRIPT, include_str!("../../web/monitor.js")),
-    ("console.js", SCRIPT, include_str!("../../web/console.js")),
-    ("panel.js", SCRIPT, include_str!("../../web/panel.js")),
-    ("motion.js", SCRIPT, include_str!("../../web/motion.js")),
-    ("upload.js", SCRIPT, include_str!("../../web/upload.js")),
-    ("curves.js", SCRIPT, include_str!("../../web/curves.js")),
-];
-
-/// Header fields of all files: nothing comes from elsewhere, no other page shows this one, and the address, which has the token,
-/// stays here.
+/// Header fields of all files: no other page shows this one, and the address, which has the token, stays here. The page itself states
+/// that nothing comes from elsewhere.
 const HEADER: [(&str, &str); 5] = [
-    (
-        "content-security-policy",
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:; connect-src 'self'; frame-ancestors 'none'; \
-         base-uri 'none'; form-action 'none'",
-    ),
+    ("content-security-policy", "frame-ancestors 'none'"),
     ("referrer-policy", "no-referrer"),
     ("x-content-type-options", "nosniff"),
     ("cache-control", "no-store"),
@@ -108,22 +90,12 @@ impl Server {
         name: &str,
         stop: &AtomicBool,
     ) -> Result<(), BoardError> {
-        let (requests, queue) = sync_channel(MAX_REQUESTS);
+        let (channels, requests) = Channels::new(board, name, true);
         let shared = Arc::new(Shared {
-            channels: Channels {
-                hub: Hub::default(),
-                inputs: Inputs::default(),
-                motion: board.motion(),
-                requests,
-            },
+            channels,
             address: self.listener.local_addr()?,
             token: self.token,
             connections: AtomicUsize::new(0),
-        });
-        let channels = &shared.channels;
-        channels.hub.send(&ToPage::Board {
-            name: name.to_owned(),
-            has_pins: channels.motion.is_some(),
         });
         let listener = self.listener;
         let served = Arc::clone(&shared);
@@ -133,7 +105,7 @@ impl Server {
                 accept(stream, &served);
             }
         });
-        session::run(board, &channels.hub, &channels.inputs, &queue, stop)
+        session::run(board, &shared.channels, requests, stop)
     }
 }
 
@@ -158,8 +130,8 @@ struct Refused(StatusCode, &'static str);
 /// The answer to a request.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
-    /// The file of this number.
-    File(usize),
+    /// A file of the page.
+    File(File),
     /// The connection of a viewer.
     Socket,
 }
@@ -173,22 +145,21 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> tungstenite::Result<()> {
         Err(Refused(status, text)) => Err(Refused(*status, text)),
     };
     match (answer, head) {
-        (Ok(Answer::File(number)), _) => {
-            let (_, media, content) = FILES[number];
-            write_file(&mut stream, StatusCode::OK, media, content)
+        (Ok(Answer::File(file)), _) => {
+            write_file(&mut stream, StatusCode::OK, file.media, file.content)
         }
         (Ok(Answer::Socket), Ok((request, rest))) => match create_response(&request) {
             Ok(response) => {
                 write_response(&mut stream, &response)?;
-                viewer::serve(stream, rest, &shared.channels)
+                connection::serve(stream, rest, &shared.channels)
             }
             Err(error) => {
                 let text = format!("expected a WebSocket request: {error}\n");
-                write_file(&mut stream, StatusCode::BAD_REQUEST, "text/plain", &text)
+                write_file(&mut stream, StatusCode::BAD_REQUEST, TEXT, &text)
             }
         },
         (Err(Refused(status, text)), _) | (_, Err(Refused(status, text))) => {
-            write_file(&mut stream, status, "text/plain", &format!("{text}\n"))
+            write_file(&mut stream, status, TEXT, &format!("{text}\n"))
         }
     }
 }
@@ -236,7 +207,10 @@ fn answer(request: &Request, address: SocketAddr, token: &str) -> Result<Answer,
         let expected = "token: expected the address that glint has printed";
         return Err(Refused(StatusCode::FORBIDDEN, expected));
     }
-    let name = parts.next();
+    let name = match parts.next() {
+        Some("") => Some(FILES[0].name),
+        name => name,
+    };
     if name == Some("socket") {
         let origin = text(headers, header::ORIGIN).unwrap_or_default();
         if origin.strip_prefix("http://") != Some(host) {
@@ -245,8 +219,10 @@ fn answer(request: &Request, address: SocketAddr, token: &str) -> Result<Answer,
         }
         return Ok(Answer::Socket);
     }
-    let file = FILES.iter().position(|(file, ..)| name == Some(file));
-    file.map(Answer::File)
+    let mut files = FILES.into_iter().chain([LINK]);
+    files
+        .find(|file| name == Some(file.name))
+        .map(Answer::File)
         .ok_or(Refused(StatusCode::NOT_FOUND, "no such file"))
 }
 
@@ -329,12 +305,12 @@ mod tests {
         };
         let host = ("host", "127.0.0.1:8080");
         let page = ("origin", "http://127.0.0.1:8080");
-        assert_eq!(asked("/00ff/", &[host]), Ok(Answer::File(0)));
-        assert_eq!(asked("/00ff/page.js", &[host]), Ok(Answer::File(2)));
+        assert_eq!(asked("/00ff/", &[host]), Ok(Answer::File(FILES[0])));
+        assert_eq!(asked("/00ff/link.js", &[host]), Ok(Answer::File(LINK)));
         assert_eq!(asked("/00ff/socket", &[host, page]), Ok(Answer::Socket));
         assert_eq!(
             asked("/00ff/", &[("host", "localhost:8080")]),
-            Ok(Answer::File(0))
+            Ok(Answer::File(FILES[0]))
         );
         assert_eq!(asked("/00ff/other", &[host]), Err(StatusCode::NOT_FOUND));
         assert_eq!(asked("/00ff", &[host]), Err(StatusCode::NOT_FOUND));

@@ -110,7 +110,7 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, InputError> {
 /// The file cannot be read, or violates its format.
 pub fn read(path: &Path) -> Result<Polygons, InputError> {
     let (format, bytes) = read_mesh(path)?;
-    parse(path, format, &bytes)
+    parse(path, format, &bytes, &mut in_folder_of(path))
 }
 
 /// Reads the bytes of a mesh file, and tells its format by the file's name, or by its contents for standard input.
@@ -125,24 +125,36 @@ pub fn read_mesh(path: &Path) -> Result<(Format, Vec<u8>), InputError> {
     Ok((Format::of(path)?, read_file(path)?))
 }
 
-/// Parses a mesh file. Further files are read from the folder of `path`.
-///
-/// # Errors
-/// The file violates its format.
-pub fn parse(path: &Path, format: Format, bytes: &[u8]) -> Result<Polygons, InputError> {
-    let mut beside = |name: &str| {
+/// Reads a further file of a mesh file, by its name.
+pub type Beside<'a> = dyn FnMut(&str) -> Option<Vec<u8>> + 'a;
+
+/// Reads further files from the folder of `path`.
+pub fn in_folder_of(path: &Path) -> impl FnMut(&str) -> Option<Vec<u8>> {
+    move |name| {
         let file = path.with_file_name(Path::new(name).file_name()?);
         // A device or a pipe could block, or be endless.
         file.metadata().ok().filter(Metadata::is_file)?;
         read_file(&file).ok()
-    };
+    }
+}
+
+/// Parses a mesh file that is named `path` in errors.
+///
+/// # Errors
+/// The file violates its format.
+pub fn parse(
+    path: &Path,
+    format: Format,
+    bytes: &[u8],
+    beside: &mut Beside,
+) -> Result<Polygons, InputError> {
     let parsed = match format {
-        Format::Obj => match obj::parse(bytes, &mut beside) {
+        Format::Obj => match obj::parse(bytes, beside) {
             Err(obj::ObjError::Mtl(error)) => return Err(error),
             Err(obj::ObjError::Obj(error)) => Err(error),
             Ok(polygons) => Ok(polygons),
         },
-        Format::Gltf => gltf::parse(bytes, &mut beside),
+        Format::Gltf => gltf::parse(bytes, beside),
         Format::Stl => stl::parse(bytes),
         Format::Ply => ply::parse(bytes),
         Format::Glm => glm::parse(bytes),

@@ -60,7 +60,7 @@ fn mesh_file(file: File) -> Result<Outcome> {
     bytes.extend(file.repeated.repeat(file.times).bytes());
     bytes.extend(file.end.bytes());
     bytes.extend(bytes_of(&file.hex)?);
-    let polygons = parse(path, Format::of(path)?, &bytes);
+    let polygons = parse(path, Format::of(path)?, &bytes, &mut |_| None);
     Ok(Outcome::of(polygons, |polygons| {
         let counts = format!(
             "{} points, {} faces",
@@ -138,7 +138,12 @@ struct Conversion {
 
 /// Converts a mesh for boards.
 fn conversion(Conversion { obj, keep_scale }: Conversion) -> Result<Outcome> {
-    let polygons = parse(Path::new("mesh.obj"), Format::Obj, obj.as_bytes())?;
+    let polygons = parse(
+        Path::new("mesh.obj"),
+        Format::Obj,
+        obj.as_bytes(),
+        &mut |_| None,
+    )?;
     let options = Options {
         keep_scale,
         ..Options::default()

@@ -1,15 +1,35 @@
-//! Messages between the page and the server: JSON texts, and binary messages for pictures and uploads.
+//! Messages between the page and the board's side: JSON texts, and binary messages for pictures and uploads.
 
-use crate::board::MonitorFrame;
+use glint_board::Frame;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use tungstenite::Message;
+use std::sync::Arc;
 
 /// Bytes of a picture's message before its pixels.
 pub const PICTURE_HEAD: usize = 8;
 
 /// Maximum size of a message from the page in bytes; an upload comes in several messages.
 pub const MAX_MESSAGE: usize = 128 << 10;
+
+/// A message to the page as it is sent. Copies share their bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Message {
+    /// A JSON text.
+    Text(Arc<str>),
+    /// A picture.
+    Binary(Arc<[u8]>),
+}
+
+impl Message {
+    /// Length in bytes.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        match self {
+            Self::Text(text) => text.len(),
+            Self::Binary(bytes) => bytes.len(),
+        }
+    }
+}
 
 /// A command of the console with its purpose.
 #[derive(Clone, Debug, Serialize)]
@@ -42,6 +62,8 @@ pub enum ToPage {
         name: String,
         /// Whether the host reaches the monitor and the pins; otherwise there are no pictures.
         has_pins: bool,
+        /// Whether other pages may show the board too.
+        is_shared: bool,
     },
     /// The lists of the firmware.
     Lists {
@@ -112,21 +134,21 @@ impl ToPage {
     #[must_use]
     pub fn encoded(&self) -> Message {
         let text = serde_json::to_string(self).expect("the messages have string keys only");
-        Message::text(text)
+        Message::Text(text.into())
     }
 }
 
 /// The binary message of a picture: width and height as 16-bit words, the picture's number as a 32-bit word, and the RGB565
 /// colours line by line as 16-bit words; little-endian.
 #[must_use]
-pub fn picture(frame: &MonitorFrame, number: u32) -> Message {
+pub fn picture(frame: &Frame, number: u32) -> Message {
     let mut bytes = Vec::with_capacity(PICTURE_HEAD + 2 * frame.pixels.len());
     for side in [frame.width, frame.height] {
         bytes.extend((side as u16).to_le_bytes());
     }
     bytes.extend(number.to_le_bytes());
     bytes.extend(frame.pixels.iter().flat_map(|pixel| pixel.to_le_bytes()));
-    Message::binary(bytes)
+    Message::Binary(bytes.into())
 }
 
 /// A message from the page. All but `take`, `release` and `help` need control.

@@ -1,12 +1,12 @@
 //! Boards in real time, with their monitor and pins.
 
-use super::inputs::{Hold, Levels};
-use super::message::Pins;
-use super::motion::Motion;
-use crate::board::{Board, BoardError, MonitorFrame, SerialBoard, SimulatedBoard, Simulation};
-use glint_board::pace::{Pace, SystemClock};
-use glint_board::read_in_steps;
+use crate::inputs::{Hold, Levels};
+use crate::message::Pins;
+use crate::motion::Motion;
+use glint_board::pace::{Clock, Pace};
+use glint_board::{Board, BoardError, Frame, Memory, SimulatedBoard, Simulation, read_in_steps};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Time of the board in ms that it runs at once.
 const SLICE_MS: u64 = 1;
@@ -23,35 +23,40 @@ pub trait Live: Board {
     ///
     /// # Errors
     /// The monitor shows no frame.
-    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError>;
+    fn picture(&mut self) -> Result<Option<Frame>, BoardError>;
 
-    /// Time in ms between two measurements on the console.
-    fn sample_period(&self) -> u64;
+    /// Time between two measurements on the console.
+    fn sample_period(&self) -> Duration;
+
+    /// The time on the clock that the board follows.
+    fn clock(&self) -> Duration;
+
+    /// How far the board is ahead of its clock, because that cannot wait.
+    fn early(&mut self) -> Duration {
+        Duration::ZERO
+    }
 }
 
 /// A simulated board in real time.
-pub struct LiveSimulation<S> {
+pub struct LiveSimulation<S, C> {
     board: SimulatedBoard<S>,
-    sample_period: u64,
+    sample_period: Duration,
     motion: Arc<Motion>,
     hold: Hold,
-    pace: Pace<SystemClock>,
+    pace: Pace<C>,
     /// The number of the last vertical blanking that was looked at, and the picture shown then.
-    shown: (u64, Option<MonitorFrame>),
+    shown: (u64, Option<Frame>),
 }
 
-impl<S: Simulation> LiveSimulation<S> {
-    /// Takes a board that runs its firmware, and connects a motion sensor and a camera. `sample_period` is the time in ms between two measurements on its console.
-    pub fn new(mut board: SimulatedBoard<S>, sample_period: u64) -> Self {
+impl<S: Simulation, C: Clock> LiveSimulation<S, C> {
+    /// Takes a board that runs its firmware, and connects a motion sensor and a camera. The board follows `clock`. `sample_period` is the
+    /// time between two measurements on its console.
+    pub fn new(mut board: SimulatedBoard<S>, sample_period: Duration, clock: C) -> Self {
         let motion = Arc::new(Motion::default());
         board.inner().plug(motion.sensor());
         board.inner().plug_image_sensor(motion.camera());
         let simulation = board.inner();
-        let pace = Pace::new(
-            SystemClock::start(),
-            simulation.clock_hz(),
-            simulation.cycles(),
-        );
+        let pace = Pace::new(clock, simulation.clock_hz(), simulation.cycles());
         Self {
             board,
             sample_period,
@@ -71,7 +76,7 @@ impl<S: Simulation> LiveSimulation<S> {
     }
 }
 
-impl<S: Simulation> Board for LiveSimulation<S> {
+impl<S: Simulation, C: Clock> Board for LiveSimulation<S, C> {
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
         self.board.write(bytes)
     }
@@ -88,9 +93,13 @@ impl<S: Simulation> Board for LiveSimulation<S> {
     fn now_ms(&self) -> u64 {
         self.board.now_ms()
     }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        self.board.memory()
+    }
 }
 
-impl<S: Simulation> Live for LiveSimulation<S> {
+impl<S: Simulation, C: Clock> Live for LiveSimulation<S, C> {
     fn motion(&self) -> Option<Arc<Motion>> {
         Some(Arc::clone(&self.motion))
     }
@@ -108,7 +117,7 @@ impl<S: Simulation> Live for LiveSimulation<S> {
         })
     }
 
-    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError> {
+    fn picture(&mut self) -> Result<Option<Frame>, BoardError> {
         let Some((number, frame)) = self.board.inner().new_frame(self.shown.0)? else {
             return Ok(None);
         };
@@ -120,42 +129,16 @@ impl<S: Simulation> Live for LiveSimulation<S> {
         Ok(Some(frame))
     }
 
-    fn sample_period(&self) -> u64 {
+    fn sample_period(&self) -> Duration {
         self.sample_period
     }
-}
 
-/// A board on a serial port: its console, and pictures on request.
-pub struct LiveSerial(pub SerialBoard);
-
-impl Board for LiveSerial {
-    fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError> {
-        self.0.write(bytes)
+    fn clock(&self) -> Duration {
+        self.pace.clock().now()
     }
 
-    fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        self.0.read(bytes, wait_ms)
-    }
-
-    fn now_ms(&self) -> u64 {
-        self.0.now_ms()
-    }
-}
-
-impl Live for LiveSerial {
-    fn motion(&self) -> Option<Arc<Motion>> {
-        None
-    }
-
-    fn pins(&mut self, _levels: Levels) -> Option<Pins> {
-        None
-    }
-
-    fn picture(&mut self) -> Result<Option<MonitorFrame>, BoardError> {
-        Ok(None)
-    }
-
-    fn sample_period(&self) -> u64 {
-        2000
+    fn early(&mut self) -> Duration {
+        let cycles = self.board.inner().cycles();
+        self.pace.early(cycles)
     }
 }

@@ -1,20 +1,20 @@
 //! Runs the board, its console and its transfers for the page.
 
-use super::hub::Hub;
-use super::inputs::Inputs;
-use super::live::Live;
-use super::message::{Entry, Pins, ToPage};
-use crate::board::{Board, BoardError, MonitorFrame};
-use crate::console::{self, Console, ConsoleError};
-use crate::transfer::{self, TransferError};
-use glint_board::read_in_steps;
+use crate::channels::{Channels, Request};
+use crate::hub::Hub;
+use crate::inputs::Inputs;
+use crate::live::Live;
+use crate::message::{Entry, Pins, ToPage};
+use glint_board::console::{self, Console, ConsoleError};
+use glint_board::transfer::{self, TransferError};
+use glint_board::{Board, BoardError, Frame, Memory, read_in_steps};
 use glint_core::console::PROMPT;
 use glint_core::picture::Size;
 use serde_json::Value;
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Longest time of the board in ms between two looks at the page's wishes.
 const LOOK_MS: u64 = 2;
@@ -22,23 +22,8 @@ const LOOK_MS: u64 = 2;
 /// The key Ctrl-C, which ends the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Time between two reports of a transfer's progress.
-const REPORT: Duration = Duration::from_millis(100);
-
-/// A wish of a page.
-#[derive(Debug)]
-pub enum Request {
-    /// Types a line on the console.
-    Command(String),
-    /// Ends the running command.
-    Interrupt,
-    /// Asks for the description of a command.
-    Help(String),
-    /// Fetches the picture over the console.
-    Picture,
-    /// Uploads a mesh, and shows it.
-    Upload(Vec<u8>),
-}
+/// Number of reports of a transfer's progress.
+const REPORTS: u64 = 100;
 
 /// A board that shows its picture and its pins while its line is read.
 struct Watched<'a> {
@@ -82,6 +67,10 @@ impl Board for Watched<'_> {
     fn now_ms(&self) -> u64 {
         self.board.now_ms()
     }
+
+    fn memory(&mut self) -> Option<&mut dyn Memory> {
+        self.board.memory()
+    }
 }
 
 /// Runs a board whose firmware waits for a command, until `stop` is set.
@@ -90,84 +79,121 @@ impl Board for Watched<'_> {
 /// The line to the board is broken.
 pub fn run(
     board: &mut dyn Live,
-    hub: &Hub,
-    inputs: &Inputs,
-    requests: &Receiver<Request>,
+    channels: &Channels,
+    requests: Receiver<Request>,
     stop: &AtomicBool,
 ) -> Result<(), BoardError> {
-    let mut session = Session {
-        period: Duration::from_millis(board.sample_period()),
-        board: Watched {
-            board,
-            hub,
-            inputs,
-            stop,
-            pins: None,
-        },
-        hub,
-        sampled: Instant::now(),
-        uploads: 0,
-        end: Vec::new(),
+    let serve = || {
+        let mut session = Session::start(board, channels, requests, stop)?;
+        loop {
+            session.step()?;
+        }
     };
-    match session.serve(requests) {
+    match serve() {
         _ if stop.load(Ordering::Relaxed) => Ok(()),
         result => result,
     }
 }
 
-struct Session<'a> {
+/// The session with a board, which runs while the session takes steps.
+pub struct Session<'a> {
     board: Watched<'a>,
     hub: &'a Hub,
-    period: Duration,
+    requests: Receiver<Request>,
+    /// A transfer that waits for the end of a command.
+    waiting: Option<Request>,
     /// Time of the last measurement.
-    sampled: Instant,
+    sampled: Duration,
     /// Number of uploads, which tells one transfer from the next.
     uploads: u8,
-    /// The end of the console's output; empty after commands of the server, which end with the prompt.
+    /// The end of the console's output; empty after commands of the session, which end with the prompt.
     end: Vec<u8>,
 }
 
-impl Session<'_> {
-    fn serve(&mut self, requests: &Receiver<Request>) -> Result<(), BoardError> {
-        self.ask(Self::send_lists)?;
+impl<'a> Session<'a> {
+    /// Begins the session with a board whose firmware waits for a command, and sends the lists of the firmware. All calls fail once `stop`
+    /// is set.
+    ///
+    /// # Errors
+    /// The line to the board is broken.
+    pub fn start(
+        board: &'a mut dyn Live,
+        channels: &'a Channels,
+        requests: Receiver<Request>,
+        stop: &'a AtomicBool,
+    ) -> Result<Self, BoardError> {
+        let mut session = Self {
+            sampled: board.clock(),
+            board: Watched {
+                board,
+                hub: &channels.hub,
+                inputs: &channels.inputs,
+                stop,
+                pins: None,
+            },
+            hub: &channels.hub,
+            requests,
+            waiting: None,
+            uploads: 0,
+            end: Vec::new(),
+        };
+        session.ask(Self::send_lists)?;
+        Ok(session)
+    }
+
+    /// How far the board is ahead of its clock, because that cannot wait.
+    pub fn early(&mut self) -> Duration {
+        self.board.board.early()
+    }
+
+    /// Runs the board for a short time, and acts on one request.
+    ///
+    /// # Errors
+    /// The line to the board is broken.
+    pub fn step(&mut self) -> Result<(), BoardError> {
         let mut output = Vec::new();
-        let mut waiting = None;
-        loop {
-            self.board.read(&mut output, LOOK_MS)?;
-            self.pass(&mut output)?;
-            let next = waiting.take().or_else(|| requests.try_recv().ok());
-            if !self.is_idle() {
-                // The user's keys go to the program that runs, as on a terminal.
-                match next {
-                    Some(Request::Command(line)) => self.type_line(&line)?,
-                    Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
-                    // Transfers wait for the end of the command.
-                    Some(transfer @ (Request::Upload(_) | Request::Picture)) => {
-                        waiting = Some(transfer);
-                    }
-                    Some(Request::Help(_)) | None => {}
-                }
-                continue;
-            }
+        self.board.read(&mut output, LOOK_MS)?;
+        self.pass(&mut output)?;
+        let next = self
+            .waiting
+            .take()
+            .or_else(|| self.requests.try_recv().ok());
+        if !self.is_idle() {
+            // The user's keys go to the program that runs, as on a terminal.
             match next {
                 Some(Request::Command(line)) => self.type_line(&line)?,
-                Some(Request::Help(command)) => {
-                    self.ask(|console, hub| send_help(console, hub, command))?;
+                Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
+                Some(transfer @ (Request::Upload(_) | Request::Picture)) => {
+                    self.waiting = Some(transfer);
                 }
-                Some(Request::Upload(mesh)) => {
-                    self.uploads = self.uploads.wrapping_add(1);
-                    let session = self.uploads;
-                    self.ask(|console, hub| upload(console, hub, &mesh, session))?;
-                }
-                Some(Request::Picture) => self.ask(send_picture)?,
-                Some(Request::Interrupt) => {}
-                None if self.sampled.elapsed() >= self.period && self.hub.has_viewers() => {
-                    self.ask(send_sample)?;
-                    self.sampled = Instant::now();
-                }
-                None => {}
+                Some(Request::Help(_)) | None => {}
             }
+            return Ok(());
         }
+        match next {
+            Some(Request::Command(line)) => self.type_line(&line),
+            Some(Request::Help(command)) => {
+                self.ask(|console, hub| send_help(console, hub, command))
+            }
+            Some(Request::Upload(mesh)) => {
+                self.uploads = self.uploads.wrapping_add(1);
+                let session = self.uploads;
+                self.ask(|console, hub| upload(console, hub, &mesh, session))
+            }
+            Some(Request::Picture) => self.ask(send_picture),
+            None if self.is_sample_due() => {
+                self.ask(send_sample)?;
+                self.sampled = self.board.board.clock();
+                Ok(())
+            }
+            Some(Request::Interrupt) | None => Ok(()),
+        }
+    }
+
+    /// Whether it is time for a measurement.
+    fn is_sample_due(&self) -> bool {
+        let live = &self.board.board;
+        live.clock() >= self.sampled + live.sample_period() && self.hub.has_viewers()
     }
 
     /// Passes output of the console to the viewers.
@@ -197,7 +223,7 @@ impl Session<'_> {
         self.board.write(format!("\0{line}\r").as_bytes())
     }
 
-    /// Lets the server use the console, whose output the viewers do not see, up to the next prompt.
+    /// Lets the session use the console, whose output the viewers do not see, up to the next prompt.
     fn ask(
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
@@ -289,7 +315,7 @@ fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfe
     let length = 2 * size.pixel_count();
     let data = transfer::download(console, "frame", length, &mut reporter(hub))?;
     let (pixels, _) = data.as_chunks();
-    hub.show(&MonitorFrame {
+    hub.show(&Frame {
         width: size.width() as usize,
         height: size.height() as usize,
         pixels: pixels
@@ -302,10 +328,11 @@ fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfe
 
 /// Passes the progress of a transfer to the pages.
 fn reporter(hub: &Hub) -> impl FnMut(u64, u64) {
-    let mut reported = Instant::now();
+    let mut reported = 0;
     move |done, all| {
-        if done == all || reported.elapsed() >= REPORT {
-            reported = Instant::now();
+        let part = done * REPORTS / all.max(1);
+        if part != reported {
+            reported = part;
             hub.send(&ToPage::Progress { done, all });
         }
     }
@@ -317,6 +344,9 @@ fn upload(
     mesh: &[u8],
     session: u8,
 ) -> Result<(), TransferError> {
+    if console.board().memory().is_some() {
+        transfer::stage(console, mesh)?;
+    }
     transfer::upload(console, mesh, None, session, &mut reporter(hub))?;
     let size = mesh.len() as u64;
     hub.send(&ToPage::Progress {

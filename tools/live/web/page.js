@@ -1,4 +1,5 @@
-// The page: connects to the server, and passes messages between it and the parts. docs/live-page.md describes the messages.
+// The page: passes messages between its parts and the board. docs/live-page.md describes the messages.
+import { startLink } from "./link.js";
 import { showPicture } from "./monitor.js";
 import { startConsole } from "./console.js";
 import { startPanel } from "./panel.js";
@@ -6,13 +7,12 @@ import { startMotion } from "./motion.js";
 import { startUpload } from "./upload.js";
 import { startCurves } from "./curves.js";
 
-const RETRY_MS = 1000;
 const element = (id) => document.getElementById(id);
-let socket;
 let holder = "nobody";
+let sendData;
 
 function send(message) {
-  if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+  sendData(JSON.stringify(message));
 }
 
 function notify(text) {
@@ -22,7 +22,7 @@ function notify(text) {
 
 const console_ = startConsole(send);
 const panel = startPanel(send);
-const showProgress = startUpload(send, (bytes) => socket.send(bytes), notify);
+const showProgress = startUpload(send, (bytes) => sendData(bytes), notify);
 const showSample = startCurves();
 startMotion(send);
 
@@ -43,9 +43,10 @@ element("control").addEventListener("click", () => send({ type: holder === "you"
 
 element("fetch").addEventListener("click", () => send({ type: "picture" }));
 
-function showBoard({ name, has_pins }) {
+function showBoard({ name, has_pins, is_shared }) {
   element("board").textContent = `board ${name}`;
   document.body.classList.toggle("no-pins", !has_pins);
+  document.body.classList.toggle("alone", !is_shared);
 }
 
 function showLists({ commands, scenes }) {
@@ -92,26 +93,19 @@ const HANDLERS = {
   notice: ({ text }) => notify(text),
 };
 
-function connect() {
-  const address = new URL("socket", location.href);
-  address.protocol = "ws:";
-  socket = new WebSocket(address);
-  socket.binaryType = "arraybuffer";
-  socket.addEventListener("open", () => {
+setHolder("nobody");
+sendData = startLink({
+  opened() {
     notify("");
     console_.clear();
-  });
-  socket.addEventListener("message", ({ data }) => {
+  },
+  received(data) {
     if (typeof data !== "string") return showPicture(data);
     const message = JSON.parse(data);
     HANDLERS[message.type]?.(message);
-  });
-  socket.addEventListener("close", ({ reason }) => {
+  },
+  closed(text) {
     setHolder("nobody");
-    notify(`The board's program has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`);
-    setTimeout(connect, RETRY_MS);
-  });
-}
-
-setHolder("nobody");
-connect();
+    notify(text);
+  },
+});

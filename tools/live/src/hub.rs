@@ -1,10 +1,9 @@
 //! Passes pictures, texts and levels of the board to all viewers. One viewer has control.
 
-use super::message::{Holder, Pins, ToPage, picture};
-use crate::board::MonitorFrame;
+use crate::message::{Holder, Message, Pins, ToPage, picture};
+use glint_board::Frame;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use tungstenite::Message;
 
 /// Maximum number of viewers.
 pub const MAX_VIEWERS: usize = 16;
@@ -63,7 +62,7 @@ impl State {
 
 impl Queue {
     fn push(&mut self, message: Message) {
-        self.bytes += message.len();
+        self.bytes += message.length();
         self.messages.push_back(message);
     }
 }
@@ -188,7 +187,7 @@ impl Hub {
     }
 
     /// Shows a picture to all viewers.
-    pub fn show(&self, frame: &MonitorFrame) {
+    pub fn show(&self, frame: &Frame) {
         let mut state = self.lock();
         state.pictures = state.pictures.wrapping_add(1);
         let message = picture(frame, state.pictures);
@@ -203,8 +202,8 @@ impl Hub {
 mod tests {
     use super::*;
 
-    fn frame(colour: u16) -> MonitorFrame {
-        MonitorFrame {
+    fn frame(colour: u16) -> Frame {
+        Frame {
             width: 2,
             height: 1,
             pixels: vec![colour; 2],
@@ -221,7 +220,11 @@ mod tests {
         hub.send_console(b"b");
         hub.show(&frame(3));
         let messages = hub.take(id).unwrap();
-        let texts: Vec<_> = messages.iter().filter_map(|m| m.to_text().ok()).collect();
+        let text = |message: &Message| match message {
+            Message::Text(text) => Some(text.to_string()),
+            Message::Binary(_) => None,
+        };
+        let texts: Vec<_> = messages.iter().filter_map(text).collect();
         assert_eq!(
             &texts[..4],
             [
@@ -231,7 +234,7 @@ mod tests {
                 r#"{"type":"console","text":"b"}"#
             ]
         );
-        let expected = Message::binary(vec![2, 0, 1, 0, 3, 0, 0, 0, 3, 0, 3, 0]);
+        let expected = Message::Binary([2, 0, 1, 0, 3, 0, 0, 0, 3, 0, 3, 0].into());
         assert_eq!(messages.last(), Some(&expected));
         assert!(hub.take(id).unwrap().is_empty());
     }

@@ -1,8 +1,8 @@
 //! The motion sensor that the page turns, and the hand that it moves in front of the camera.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use virtual_board::virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
-use virtual_board::virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
+use virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
+use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
 /// Time constant in s with which the sensor follows the page.
 const FOLLOW: f64 = 0.03;
@@ -10,6 +10,11 @@ const FOLLOW: f64 = 0.03;
 const MAX_RATE: f64 = 1500.0;
 /// Width and height of a frame of the camera in pixels.
 const CAMERA: [usize; 2] = [320, 240];
+/// Timing of the camera: 59.9 frames of this size a second, as many as the monitor shows.
+const CAMERA_TIMING: Timing = Timing {
+    clock: 15_000_000,
+    ..Timing::OV7670
+};
 /// The sensor's noise, without which the firmware refuses to calibrate it.
 const NOISE: Imperfections = Imperfections {
     noise: 0.005,
@@ -93,7 +98,7 @@ impl Motion {
             place.into_iter().collect()
         });
         scene.noise = 2.0;
-        ImageSensor::new(Model::Ov7670, scene, Timing::OV7670)
+        ImageSensor::new(Model::Ov7670, scene, CAMERA_TIMING)
     }
 }
 

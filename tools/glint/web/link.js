@@ -1,0 +1,26 @@
+// The link to the board: a WebSocket to the program that serves the page.
+const RETRY_MS = 1000;
+
+// Calls `opened`, `received` with each message, and `closed` with a text for the user. Returns a function that sends a message: a text,
+// or bytes.
+export function startLink({ opened, received, closed }) {
+  let socket;
+
+  function connect() {
+    const address = new URL("socket", location.href);
+    address.protocol = "ws:";
+    socket = new WebSocket(address);
+    socket.binaryType = "arraybuffer";
+    socket.addEventListener("open", opened);
+    socket.addEventListener("message", ({ data }) => received(data));
+    socket.addEventListener("close", ({ reason }) => {
+      closed(`The board's program has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`);
+      setTimeout(connect, RETRY_MS);
+    });
+  }
+
+  connect();
+  return (data) => {
+    if (socket.readyState === WebSocket.OPEN) socket.send(data);
+  };
+}
