@@ -1,11 +1,11 @@
-//! Setup of a Debian machine: packages, the soft core's Rust target, the Python environment.
+//! Setup of a Debian machine: packages, Rust targets, the Python environment.
 
 use std::fs;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail};
 
-use crate::{paths, run};
+use crate::{firmware, paths, run};
 
 /// Debian packages and their purposes.
 const PACKAGES: [(&str, &str); 5] = [
@@ -16,8 +16,11 @@ const PACKAGES: [(&str, &str); 5] = [
     ("python3-venv", "holds the Python packages"),
 ];
 
-/// Rust target of the soft core: RV32IM without an operating system.
-const RUST_TARGET: &str = "riscv32im-unknown-none-elf";
+/// Rust target of the board in a web page.
+pub const WEB_TARGET: &str = "wasm32-unknown-unknown";
+
+/// Rust targets.
+const RUST_TARGETS: [&str; 2] = [firmware::TARGET, WEB_TARGET];
 
 /// Pinned Python packages, for the gateware and for the tests.
 const REQUIREMENTS: [&str; 2] = [
@@ -30,7 +33,7 @@ const REQUIREMENTS: [&str; 2] = [
 /// # Errors
 /// Lists each prerequisite that is still missing, and the command that installs it.
 pub fn bootstrap() -> Result<()> {
-    let missing: Vec<String> = [debian_packages(), rust_target(), python_environment()]
+    let missing: Vec<String> = [debian_packages(), rust_targets(), python_environment()]
         .into_iter()
         .filter_map(Result::err)
         .map(|error| format!("{error:#}"))
@@ -85,20 +88,35 @@ fn is_present(package: &str) -> bool {
     }
 }
 
-fn rust_target() -> Result<()> {
-    let installed = Command::new("rustc")
-        .args(["--print", "target-libdir", "--target", RUST_TARGET])
-        .output()
-        .context("rustc: not found; install Rust with rustup")?;
-    let folder = String::from_utf8_lossy(&installed.stdout).trim().to_owned();
-    if fs::exists(&folder).unwrap_or(false) {
+/// Installs the missing ones of the Rust targets.
+///
+/// # Errors
+/// Names the command that installs them.
+pub fn rust_targets() -> Result<()> {
+    let mut missing = Vec::new();
+    for target in RUST_TARGETS {
+        let installed = Command::new("rustc")
+            .args(["--print", "target-libdir", "--target", target])
+            .output()
+            .context("rustc: not found; install Rust with rustup")?;
+        let folder = String::from_utf8_lossy(&installed.stdout).trim().to_owned();
+        if !fs::exists(&folder).unwrap_or(false) {
+            missing.push(target);
+        }
+    }
+    if missing.is_empty() {
         return Ok(());
     }
     run::step(
         "rustup target add",
-        Command::new("rustup").args(["target", "add", RUST_TARGET]),
+        Command::new("rustup")
+            .args(["target", "add"])
+            .args(&missing),
     )
-    .with_context(|| format!("the soft core's Rust target: run: rustup target add {RUST_TARGET}"))
+    .with_context(|| {
+        let missing = missing.join(" ");
+        format!("Rust targets: run: rustup target add {missing}")
+    })
 }
 
 fn python_environment() -> Result<()> {

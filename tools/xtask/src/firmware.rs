@@ -15,7 +15,7 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
 use crate::gateware::Board;
 use crate::{paths, run};
 
-/// Rust target of the soft core.
+/// Rust target of the soft core: RV32IM without an operating system.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
 /// Size in bytes of the main memory of `board`. The virtual board's and the Urbana's is in the register access crate; the description

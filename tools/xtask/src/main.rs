@@ -16,6 +16,9 @@ mod rust_tests;
 mod scenes;
 mod test;
 mod walk;
+mod web;
+
+use std::path::PathBuf;
 
 use anyhow::Result;
 use clap::{Parser, Subcommand};
@@ -30,7 +33,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install missing prerequisites: Debian packages, the Rust target, the Python environment
+    /// Install missing prerequisites: Debian packages, Rust targets, the Python environment
     Bootstrap,
     /// Build the SoC of a board
     Gateware {
@@ -66,6 +69,12 @@ enum Task {
         /// Further Cargo features of the firmware, as in its Cargo.toml; `peers` lets the console command `bench` measure other crates too
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
+    },
+    /// Build the live page with the emulated board in it: a folder of files for any web server
+    Web {
+        /// Folder to write [default: target/web]
+        #[arg(long, value_name = "FOLDER")]
+        out: Option<PathBuf>,
     },
     /// Build everything, run it on the virtual board, write pictures to `out/`
     Demo {
@@ -156,6 +165,7 @@ fn main() -> Result<()> {
             }
             Ok(())
         }
+        Task::Web { out } => web::build(out.as_deref()),
         Task::Demo { arguments } => demo::demo(&arguments),
         Task::Test { clock: None } => test::test(),
         Task::Test { clock: Some(clock) } => test::test_at_clock(&clock),

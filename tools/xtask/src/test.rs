@@ -10,7 +10,7 @@ use anyhow::{Result, bail};
 
 use crate::gateware::{self, Board, Library};
 use crate::rust_tests::{self, Programs};
-use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk};
+use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, walk, web};
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
@@ -43,6 +43,7 @@ pub fn test() -> Result<()> {
             results.add(resources::check_clock_rates().map(|()| 1));
         });
         firmware::build(Board::Virtual, &[])?;
+        web::build(None)?;
         results.add(scenes::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));

@@ -1,7 +1,10 @@
-//! The live page of an emulated board, in a real browser. Needs the build of `cargo xtask firmware` and Debian's `chromium`.
+//! The live page of an emulated board, in a real browser. Needs the builds of `cargo xtask firmware` and `cargo xtask web`, and Debian's
+//! `chromium`.
 
+mod alone;
 mod browser;
 mod page;
+mod rates;
 mod refusals;
 mod serial;
 mod served;

@@ -1,0 +1,178 @@
+//! The emulated board and the session of the live page, as WebAssembly for a worker of the page.
+//!
+//! The worker (`web/worker.js`) puts bytes into the [`inbox`] and says what they are by [`start`], [`receive_text`] and [`receive_bytes`];
+//! [`run`] runs the board until it is ahead of the page's clock, and [`take`] hands the messages for the page to `deliver`. All
+//! numbers and bytes are those of docs/live-page.md.
+
+use std::cell::RefCell;
+use std::panic;
+use std::sync::atomic::AtomicBool;
+use std::time::Duration;
+
+use emulated_board::EmulatedBoard;
+use glint_board::console::{Console, ConsoleError};
+use glint_board::pace::Clock;
+use glint_board::{BoardError, SimulatedBoard};
+use glint_live::{Channels, Live, LiveSimulation, Message, Session, Viewer};
+
+/// Longest time that the board runs before the worker looks for messages from the page; the work of an engine may take longer.
+const TURN: Duration = Duration::from_millis(8);
+
+/// Time between two measurements on the console.
+const SAMPLE_PERIOD: Duration = Duration::from_millis(250);
+
+// SAFETY: these are the functions of `web/worker.js`. `deliver` reads the bytes during the call, in the module's own memory.
+unsafe extern "C" {
+    /// Time in ms since the start of the worker.
+    safe fn now() -> f64;
+
+    /// Takes `length` bytes of this kind that begin at `start`.
+    safe fn deliver(kind: Kind, start: *const u8, length: usize);
+}
+
+/// What the worker gets.
+#[repr(u32)]
+#[derive(Clone, Copy)]
+enum Kind {
+    /// A message to the page that is a text.
+    Text = 0,
+    /// A message to the page that is a picture.
+    Picture = 1,
+    /// The reason why the board has stopped.
+    End = 2,
+}
+
+fn send(kind: Kind, bytes: &[u8]) {
+    deliver(kind, bytes.as_ptr(), bytes.len());
+}
+
+/// The clock of the page. Only the worker can wait.
+struct PageClock;
+
+impl Clock for PageClock {
+    fn now(&self) -> Duration {
+        Duration::from_secs_f64(now() / 1000.0)
+    }
+
+    fn wait(&self, _time: Duration) {}
+}
+
+/// The board and its page, which are there until the worker ends.
+struct Page {
+    session: Session<'static>,
+    channels: &'static Channels,
+    viewer: Viewer,
+}
+
+thread_local! {
+    static INBOX: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
+    static PAGE: RefCell<Option<Page>> = const { RefCell::new(None) };
+}
+
+/// Makes room for `length` bytes, and returns their address, to which the worker writes them before the next call.
+#[unsafe(no_mangle)]
+pub extern "C" fn inbox(length: usize) -> *mut u8 {
+    INBOX.with_borrow_mut(|inbox| {
+        inbox.clear();
+        inbox.resize(length, 0);
+        inbox.as_mut_ptr()
+    })
+}
+
+/// Starts the board with the firmware in the inbox.
+#[unsafe(no_mangle)]
+pub extern "C" fn start() {
+    panic::set_hook(Box::new(|info| {
+        send(Kind::End, info.to_string().as_bytes())
+    }));
+    match INBOX.with_borrow(|firmware| opened(firmware)) {
+        Ok(page) => PAGE.set(Some(page)),
+        Err(error) => end(&error),
+    }
+}
+
+fn opened(firmware: &[u8]) -> Result<Page, ConsoleError> {
+    let board = EmulatedBoard::fast(firmware).map_err(BoardError::simulation)?;
+    let mut board = SimulatedBoard::new(board);
+    Console::new(&mut board).greet()?;
+    let live: &mut dyn Live = Box::leak(Box::new(LiveSimulation::new(
+        board,
+        SAMPLE_PERIOD,
+        PageClock,
+    )));
+    let (channels, requests) = Channels::new(live, "emulated", false);
+    let channels = Box::leak(Box::new(channels));
+    let viewer = Viewer::join(channels).expect("this is the only page");
+    static STOP: AtomicBool = AtomicBool::new(false);
+    let session = Session::start(live, channels, requests, &STOP)?;
+    Ok(Page {
+        session,
+        channels,
+        viewer,
+    })
+}
+
+/// Takes the text in the inbox, a message from the page.
+#[unsafe(no_mangle)]
+pub extern "C" fn receive_text() {
+    receive(|page, bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        page.viewer.receive_text(&text, page.channels)
+    });
+}
+
+/// Takes the bytes in the inbox, a part of a file from the page.
+#[unsafe(no_mangle)]
+pub extern "C" fn receive_bytes() {
+    receive(|page, bytes| page.viewer.receive_bytes(bytes, page.channels));
+}
+
+fn receive<E: ToString>(act: impl FnOnce(&mut Page, &[u8]) -> Result<(), E>) {
+    let result = with_page(|page| INBOX.with_borrow(|bytes| act(page, bytes)));
+    if let Some(Err(reason)) = result {
+        end(&reason);
+    }
+}
+
+/// Runs the board until it is ahead of the page's clock, or for some ms. Returns how far it is ahead in ms.
+#[unsafe(no_mangle)]
+pub extern "C" fn run() -> f64 {
+    let early = with_page(|page| {
+        let stop = PageClock.now() + TURN;
+        loop {
+            let early = page.session.early();
+            if !early.is_zero() || PageClock.now() >= stop {
+                return Ok(early);
+            }
+            page.session.step()?;
+        }
+    });
+    let early = early.unwrap_or(Ok(Duration::ZERO));
+    let early = early.inspect_err(|error: &BoardError| end(error));
+    early.unwrap_or_default().as_secs_f64() * 1000.0
+}
+
+/// Delivers the messages that wait for the page.
+#[unsafe(no_mangle)]
+pub extern "C" fn take() {
+    let messages = with_page(|page| page.channels.hub.take(page.viewer.id()));
+    match messages {
+        Some(Some(messages)) => messages.iter().for_each(|message| match message {
+            Message::Text(text) => send(Kind::Text, text.as_bytes()),
+            Message::Binary(picture) => send(Kind::Picture, picture),
+        }),
+        Some(None) => end(&"the page has fallen behind"),
+        None => {}
+    }
+}
+
+/// Calls `act` with the page, if the board has started and has not stopped.
+fn with_page<T>(act: impl FnOnce(&mut Page) -> T) -> Option<T> {
+    PAGE.with_borrow_mut(|page| page.as_mut().map(act))
+}
+
+/// Stops the board.
+fn end(reason: &dyn ToString) {
+    PAGE.set(None);
+    send(Kind::End, reason.to_string().as_bytes());
+}

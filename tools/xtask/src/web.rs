@@ -1,0 +1,115 @@
+//! `cargo xtask web`: the live page with its board in it, as a folder of files for any web server.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result, bail};
+
+use crate::bootstrap::{self, WEB_TARGET};
+use crate::gateware::Board;
+use crate::{firmware, paths, run};
+
+/// Cargo profile of the board in the page.
+const PROFILE: &str = "wasm";
+
+/// Folders with the files of the page, and of its worker.
+const SOURCES: [&str; 2] = ["tools/live/web", "tools/web-board/web"];
+
+/// The board's file in the folder, which marks a folder as made by this command.
+const BOARD: &str = "board.wasm";
+
+/// Builds the folder `out`, by default `target/web`. It replaces an earlier one.
+///
+/// # Errors
+/// A build fails, or the folder has other files.
+pub fn build(out: Option<&Path>) -> Result<()> {
+    bootstrap::rust_targets()?;
+    firmware::build(Board::Virtual, &[])?;
+    run::step(
+        "build web-board",
+        Command::new("cargo")
+            .args(["build", "--package", "web-board", "--profile", PROFILE])
+            .args(["--target", WEB_TARGET])
+            .current_dir(paths::root()),
+    )?;
+    let target = paths::target();
+    let built = target.join(WEB_TARGET).join(PROFILE).join("web_board.wasm");
+    let mut files = vec![
+        (built, BOARD.to_owned()),
+        (target.join("firmware/glint.bin"), "firmware.bin".to_owned()),
+    ];
+    for folder in SOURCES {
+        files.extend(files_of(&paths::root().join(folder))?);
+    }
+    let default = target.join("web");
+    let out = out.unwrap_or(&default);
+    let bytes = replace(out, &files).with_context(|| out.display().to_string())?;
+    let (count, shown) = (files.len(), out.display());
+    run::print_progress(&format!(
+        "  {shown}: {count} files, {bytes} bytes. Serve the folder by any web server, such as\n  \
+         python3 -m http.server --bind 127.0.0.1 --directory {shown}\n  \
+         A browser does not run the board from a file: address."
+    ));
+    Ok(())
+}
+
+/// The files of a folder, each with its name.
+fn files_of(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
+    let entries = fs::read_dir(folder).with_context(|| folder.display().to_string())?;
+    let file = |entry: std::io::Result<fs::DirEntry>| {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        Ok((entry.path(), name))
+    };
+    entries.map(file).collect()
+}
+
+/// Copies files to the folder `out` in place of an earlier one. Returns their number of bytes.
+fn replace(out: &Path, files: &[(PathBuf, String)]) -> Result<u64> {
+    let has_files = fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
+    if has_files && !out.join(BOARD).is_file() {
+        bail!("expected an empty folder, or one of `cargo xtask web`; found other files");
+    }
+    let part = out.with_extension("part");
+    if part.exists() {
+        fs::remove_dir_all(&part)?;
+    }
+    fs::create_dir_all(&part)?;
+    let mut bytes = 0;
+    for (source, name) in files {
+        let copied = fs::copy(source, part.join(name));
+        bytes += copied.with_context(|| source.display().to_string())?;
+    }
+    if out.exists() {
+        fs::remove_dir_all(out)?;
+    }
+    fs::rename(&part, out)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_with_other_files_stays() {
+        let folder = paths::target().join("tmp/xtask-web");
+        // The folder of an earlier run.
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let source = folder.join("source");
+        fs::write(&source, "1").unwrap();
+        let out = folder.join("out");
+        let files = |names: &[&str]| -> Vec<_> {
+            names
+                .iter()
+                .map(|name| (source.clone(), (*name).to_owned()))
+                .collect()
+        };
+        assert_eq!(replace(&out, &files(&[BOARD, "old"])).unwrap(), 2);
+        assert_eq!(replace(&out, &files(&[BOARD])).unwrap(), 1);
+        assert!(!out.join("old").exists() && !out.with_extension("part").exists());
+        assert!(replace(&folder, &files(&[BOARD])).is_err() && source.exists());
+    }
+}
