@@ -99,19 +99,18 @@ pub fn calibrate(
             .zip(samples.clone())
     };
 
-    let mut histograms = [[0_u16; 256]; 2];
-    let (mut taken, mut boxed) = (0, 0_u16);
+    let mut histograms = [[0_u32; 256]; 2];
+    let (mut taken, mut boxed) = (0, 0);
     for (is_boxed, sample) in placed() {
         taken += 1;
         if is_boxed {
-            boxed = boxed.saturating_add(1);
+            boxed += 1;
             for (histogram, value) in histograms.iter_mut().zip(sample) {
-                let bin = &mut histogram[usize::from(value)];
-                *bin = bin.saturating_add(1);
+                histogram[usize::from(value)] += 1;
             }
         }
     }
-    if taken < total || u32::from(boxed) < LEAST_SAMPLES {
+    if taken < total || boxed < LEAST_SAMPLES {
         return Err(CalibrationError::Samples);
     }
     let [cr, cb] = histograms.map(|histogram| window(&histogram, boxed / 10));
@@ -123,9 +122,8 @@ pub fn calibrate(
             *(if is_boxed { &mut inside } else { &mut outside }) += 1;
         }
     }
-    let boxed = u32::from(boxed);
     // The box is at most a fourth of a picture of at least 16 samples, so the rest is not empty.
-    let percent = |part: u32, whole: u32| (part * 100 / whole.max(1)) as u8;
+    let percent = |part: u32, whole: u32| (u64::from(part) * 100 / u64::from(whole.max(1))) as u8;
     let found = Calibrated {
         windows,
         inside: percent(inside, boxed),
@@ -141,7 +139,7 @@ pub fn calibrate(
 }
 
 /// Returns the window of a channel from the histogram of its values. `tail` is the number of values to leave out at each end.
-fn window(histogram: &[u16; 256], tail: u16) -> Result<Window, CalibrationError> {
+fn window(histogram: &[u32; 256], tail: u32) -> Result<Window, CalibrationError> {
     let lower = end((0..=255).zip(histogram), tail);
     let upper = end((0..=255).zip(histogram).rev(), tail);
     let span = upper.saturating_sub(lower);
@@ -156,7 +154,7 @@ fn window(histogram: &[u16; 256], tail: u16) -> Result<Window, CalibrationError>
 }
 
 /// Returns the first value of a histogram after `tail` values were left out.
-fn end<'h>(bins: impl Iterator<Item = (u8, &'h u16)>, tail: u16) -> u8 {
+fn end<'h>(bins: impl Iterator<Item = (u8, &'h u32)>, tail: u32) -> u8 {
     let mut left = tail;
     for (value, &count) in bins {
         match left.checked_sub(count) {

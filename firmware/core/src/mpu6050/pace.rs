@@ -2,7 +2,8 @@
 
 /// A model of the sensor's clock, which computes the times at which samples were measured.
 ///
-/// A new sample was measured in the interval between the previous read and the present read. The period of the samples is not a
+/// A new sample was measured in the interval between the previous read and the present read, and at most a period before the latter. The
+/// period of the samples is not a
 /// multiple of the period of the reads, so the reads drift across the samples, and from time to time the interval begins or ends
 /// close to the sample's time. The clock predicts the time of each sample. A prediction outside the interval is moved to the
 /// nearer end of the interval.
@@ -50,7 +51,9 @@ impl Pace {
         if !found {
             return None;
         }
-        let (from, to) = (before << 8, time << 8);
+        let to = time << 8;
+        // The chip has its newest sample, which is not older than a period, also if others were lost.
+        let from = (before << 8).max(to.saturating_sub(self.period.into()));
         let expected = self.expected.unwrap_or(from.midpoint(to));
         let measured = expected.clamp(from, to);
         if self.settling > 0 {
