@@ -9,8 +9,7 @@ use core::time::Duration;
 use critical_section::Mutex;
 use glint_core::colour::Rgb565;
 use glint_core::hand::{
-    Blob, Calibrated, CalibrationError, Control, Doubt, LONGEST_GAP, Pose, Presence, Window,
-    calibrate,
+    Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};
 use glint_hal::gesture::{GestureEngine, SetUpError};
@@ -32,12 +31,13 @@ const SKIN: [Window; 2] = [
     },
 ];
 
-/// Low word of the time in clock cycles at which the last frame ended, until the main loop takes it.
-static FRAME: Mutex<Cell<Option<u32>>> = Mutex::new(Cell::new(None));
+/// Time in clock cycles at which the last frame ended, until the main loop takes it.
+static FRAME: Mutex<Cell<Option<u64>>> = Mutex::new(Cell::new(None));
 
-/// Notes that a frame has ended. Call this in its interrupt, which began at `start`.
-pub fn on_interrupt(start: u32) {
-    critical_section::with(|token| FRAME.borrow(token).set(Some(start)));
+/// Notes that a frame has ended. Call this in its interrupt.
+pub fn on_interrupt() {
+    let now = cpu::cycles();
+    critical_section::with(|token| FRAME.borrow(token).set(Some(now)));
 }
 
 /// Whether a frame waits for [`Gesture::poll`].
@@ -53,9 +53,9 @@ pub struct Cycles {
     /// Cycles of the soft core for all frames, with interrupts during this work.
     pub total: u64,
     /// Cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
-    pub latency: u32,
+    pub latency: u64,
     /// The largest latency so far.
-    pub worst: u32,
+    pub worst: u64,
 }
 
 /// Time between two looks at an image sensor that is on.
@@ -81,12 +81,10 @@ pub struct Gesture {
     watch: Option<Watch>,
     windows: [Window; 2],
     control: Control,
-    /// Low word of the time in clock cycles at which the last frame ended, unless that was longer ago than the longest gap.
-    ended: Option<u32>,
     /// The place to which the camera was moved last.
     steered: Option<Pose>,
-    /// Low word of the time at which the last frame that moved the camera ended, until its picture is drawn.
-    waiting: Option<u32>,
+    /// Time in clock cycles at which the last frame that moved the camera ended, until its picture is drawn.
+    waiting: Option<u64>,
     is_marked: bool,
     cycles: Cycles,
 }
@@ -103,7 +101,6 @@ impl Gesture {
             watch: None,
             windows: SKIN,
             control: Control::default(),
-            ended: None,
             steered: None,
             waiting: None,
             is_marked: false,
@@ -163,11 +160,6 @@ impl Gesture {
         }
         let counters = self.engine.counters();
         let [whole, dropped] = *frames;
-        let elapsed = |ended| cpu::cycles_low().wrapping_sub(ended);
-        let frequency = self.clock.frequency();
-        self.ended = self
-            .ended
-            .filter(|ended| frequency.short_microseconds(elapsed(*ended)) <= LONGEST_GAP);
         let are_whole = counters.frames != whole && counters.frames_dropped == dropped;
         let found = match self.sensor {
             Some(Ok(_)) if are_whole => None,
@@ -207,16 +199,9 @@ impl Gesture {
         let start = cpu::cycles_low();
         // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
         if let Some((_, statistics)) = self.engine.statistics() {
-            // Cycles are counted modulo 2^32 here. After a pause that long, there is no last frame.
-            let gap = match self.ended.replace(ended) {
-                None => u32::MAX,
-                Some(before) => {
-                    let cycles = ended.wrapping_sub(before);
-                    self.clock.frequency().short_microseconds(cycles)
-                }
-            };
             let before = self.control.pose();
-            let _ = self.control.on_frame(gap, &statistics);
+            let time = self.clock.frequency().microseconds(ended);
+            let _ = self.control.on_frame(time, &statistics);
             self.engine.set_gate(&self.control.setting());
             if self.control.pose() != before {
                 self.waiting = Some(ended);
@@ -241,7 +226,7 @@ impl Gesture {
         if self.steered == Some(self.control.pose())
             && let Some(ended) = self.waiting.take()
         {
-            self.cycles.latency = cpu::cycles_low().wrapping_sub(ended);
+            self.cycles.latency = cpu::cycles() - ended;
             self.cycles.worst = self.cycles.worst.max(self.cycles.latency);
         }
     }

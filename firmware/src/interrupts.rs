@@ -68,7 +68,7 @@ fn handle() {
         Interrupt::Raymarch => raymarch::acknowledge(),
         Interrupt::Gesture if GESTURE.is_built => {
             engine::acknowledge();
-            gesture::on_interrupt(start);
+            gesture::on_interrupt();
         }
         Interrupt::I2c if IMU.is_built => {
             i2c::acknowledge();

@@ -12,6 +12,8 @@ const SLICE: usize = 256;
 /// A log in the staging memory and the progress of its replay.
 pub struct Replay {
     tracker: Tracker,
+    /// Time of the last replayed sample in µs.
+    time: u64,
     samples: usize,
     done: usize,
     /// Number of samples processed at the last report.
@@ -25,6 +27,7 @@ impl Replay {
     pub const fn new(tracker: Tracker, samples: usize) -> Self {
         Self {
             tracker,
+            time: log::START,
             samples,
             done: 0,
             reported: 0,
@@ -81,21 +84,23 @@ impl Replay {
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();
         let end = self.samples.min(self.done + SLICE);
         let records = records.get_mut(self.done..end).unwrap_or_default();
-        self.cycles += track(&mut self.tracker, records);
+        self.cycles += track(&mut self.tracker, &mut self.time, records);
         self.done = end;
     }
 }
 
-/// Replaces the samples in `records` by the attitudes after them, and returns the clock cycles of the tracker.
+/// Replaces the samples in `records` by the attitudes after them, and returns the clock cycles of the tracker. `time` is the time in µs of
+/// the last sample.
 // The linker script places this function next to the code of the tracker.
 #[inline(never)]
-pub fn track(tracker: &mut Tracker, records: &mut [Record]) -> u64 {
+pub fn track(tracker: &mut Tracker, time: &mut u64, records: &mut [Record]) -> u64 {
     // Measures the cost of a reading: the cycles between two consecutive readings of the cycle counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;
     for record in records {
-        let sample = log::sample(*record);
+        let sample = log::sample(*record, *time);
+        *time = sample.t_us;
         let start = cpu::cycles_low();
         tracker.on_sample(&sample);
         let cycles = cpu::cycles_low().wrapping_sub(start);

@@ -189,7 +189,7 @@ pub struct Calibration {
     wanted: u32,
     count: u32,
     first: Sample,
-    last_us: u32,
+    last_us: u64,
     /// Sums over all samples, for each axis: the gyroscope's counts (at most 2^31 in magnitude) and their squares (at most 2^46).
     sum: [i64; 3],
     squares: [u64; 3],

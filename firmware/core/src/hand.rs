@@ -26,8 +26,8 @@ mod target;
 pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics, quotient, root};
 pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
 pub use control::{
-    ANGLE, CHANNELS, Control, DISTANCE, LONGEST_GAP, PATIENCE, Pose, Presence, RUN_MOVING,
-    RUN_RESTING, RUN_SEARCHING, Setting,
+    ANGLE, CHANNELS, Control, DISTANCE, PATIENCE, Pose, Presence, RUN_MOVING, RUN_RESTING,
+    RUN_SEARCHING, Setting,
 };
 pub use filter::{Backlash, OneEuro, Step, Tuning, low_pass_gain, towards};
 pub use target::{POLE, WIDTHS, target};

@@ -262,8 +262,7 @@ impl<E: Copy> Sink<E> for Imu<E> {
 
     fn on_sample(&mut self, time: u64, measurement: &Measurement) {
         let sample = Sample {
-            // Time stamps wrap modulo 2^32.
-            t_us: time as u32,
+            t_us: time,
             accel: measurement.accel,
             gyro: measurement.gyro,
         };

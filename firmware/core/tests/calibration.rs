@@ -32,7 +32,7 @@ fn calibrate(
     let mut sum = [0.0; 3];
     for i in 0.. {
         let mut sample = Sample {
-            t_us: i * 1_000,
+            t_us: u64::from(i) * 1_000,
             accel: [90, -30, 4_100].map(|a: i16| a + (random.next() % 17) as i16),
             gyro: BIAS.map(|bias| (bias + 1.64 * random.normal()).round() as i16),
         };
@@ -177,7 +177,7 @@ fn stale_samples_do_not_count_and_extremes_fit() {
     ] {
         let mut calibration = Calibration::new(units, u32::MAX);
         let mut outcome = Ok(Progress::Going(0));
-        for t_us in 0..65_536 {
+        for t_us in 0..65_536_u64 {
             let gyro = [i16::MIN, i16::MAX, i16::MIN + (t_us % 2) as i16];
             outcome = calibration.on_sample(&Sample {
                 t_us,
@@ -202,7 +202,7 @@ fn followed(seconds: u32, start: [i32; 3], mut rate: impl FnMut(u32) -> [f64; 3]
         let accel = [0, 0, 4_096].map(|a: i16| a + (random.next() % 17) as i16);
         resting.on_sample(
             &Sample {
-                t_us: i * 1_000,
+                t_us: u64::from(i) * 1_000,
                 accel,
                 gyro,
             },

@@ -135,7 +135,7 @@ fn logs() {
         let mut log = setup.header(samples).to_vec();
         for i in 0..samples {
             log.extend(to_bytes(record(&Sample {
-                t_us: 0xFFFF_F000_u32.wrapping_add(1_000 * i),
+                t_us: 0xFFFF_F000 + 1_000 * u64::from(i),
                 accel: [i as i16, 100, 4_000],
                 gyro: [-(i as i16), 300, i as i16 * 100],
             })));

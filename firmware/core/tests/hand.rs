@@ -43,19 +43,28 @@ const EMPTY: Statistics = Statistics {
     is_whole: true,
 };
 
-/// A control with frames at a steady rate.
+/// A control with frames at a steady rate, unless one is stated to come later.
 struct Run {
     control: Control,
+    /// Time of the last frame in µs.
+    time: u64,
 }
 
 impl Run {
     fn new() -> Self {
-        let control = Control::default();
-        Self { control }
+        Self {
+            control: Control::default(),
+            time: 0,
+        }
     }
 
     fn frame(&mut self, statistics: &Statistics) -> Result<Blob, Doubt> {
-        self.control.on_frame(FRAME, statistics)
+        self.frame_after(FRAME.into(), statistics)
+    }
+
+    fn frame_after(&mut self, gap: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
+        self.time += gap;
+        self.control.on_frame(self.time, statistics)
     }
 
     fn frames(&mut self, number: u32, statistics: &Statistics) {
@@ -349,15 +358,26 @@ fn a_jump_of_the_area_holds_until_it_lasts() {
 
 #[test]
 fn a_pause_of_the_frames_ends_tracking() {
-    let mut run = Run::new();
-    run.frames(20, &hand(60, 60, 20));
-    let held = run.pose();
-    let seen = run.control.on_frame(2 * PATIENCE, &hand(60, 60, 20));
-    assert!(seen.is_ok());
-    assert_eq!(
-        (run.control.presence(), run.pose()),
-        (Presence::Appearing, held)
-    );
+    let after = |pause: u64| {
+        let mut run = Run::new();
+        run.frames(20, &hand(60, 60, 20));
+        let held = run.pose();
+        assert!(run.frame_after(pause, &hand(60, 60, 20)).is_ok());
+        (run.control.presence(), run.pose() == held)
+    };
+    let patience = u64::from(PATIENCE);
+    assert_eq!(after(patience).0, Presence::Tracked);
+    // 2^32 cycles at 81.25 MHz, and times that are short in 32 bits.
+    for pause in [
+        patience + 1,
+        2 * patience,
+        (1 << 32) * 4 / 325 + 1_000,
+        1 << 32,
+        (1 << 32) + u64::from(FRAME),
+        1 << 62,
+    ] {
+        assert_eq!(after(pause), (Presence::Appearing, true), "{pause} µs");
+    }
 }
 
 fn statistics() -> impl Strategy<Value = Statistics> {
@@ -405,10 +425,10 @@ proptest! {
 
     #[test]
     fn no_statistics_move_the_camera_out_of_range(frames in proptest::collection::vec((statistics(), 0..300_000_u32), 1..60)) {
-        let mut control = Control::default();
+        let mut run = Run::new();
         for (statistics, gap) in frames {
-            let _ = control.on_frame(gap, &statistics);
-            let pose = control.pose();
+            let _ = run.frame_after(gap.into(), &statistics);
+            let pose = run.control.pose();
             prop_assert!(pose.view().is_ok(), "{:?}", pose);
             prop_assert!(pose.phi >= Turns(POLE.to_bits() as u32 * 16) && pose.phi <= Turns::HALF);
             prop_assert!((Q32_32::lit("2")..=Q32_32::lit("5")).contains(&pose.r));

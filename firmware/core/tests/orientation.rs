@@ -5,7 +5,7 @@ mod random;
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
     Angles, Gain, Integrator, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT,
-    Tilt, Tracker,
+    Tilt, Tracker, log,
 };
 
 use random::Random;
@@ -317,7 +317,7 @@ fn gravity_says_where_up_is_from_everywhere() {
     assert_eq!(Tilt::align([0, 0, 4_096]), Quaternion::IDENTITY);
 }
 
-fn rest(t_us: u32) -> Sample {
+fn rest(t_us: u64) -> Sample {
     Sample {
         t_us,
         accel: [0, 0, 4_096],
@@ -331,24 +331,27 @@ fn tracker() -> Tracker {
 
 #[test]
 fn what_becomes_of_samples() {
+    const WRAP: u64 = 1 << 32;
     let mut tracker = tracker();
-    // The time stamps wrap between the first and the second sample.
-    assert_eq!(tracker.on_sample(&rest(u32::MAX - 400)), Outcome::First);
-    assert_eq!(tracker.on_sample(&rest(600)), Outcome::Step);
-    assert_eq!(tracker.on_sample(&rest(600)), Outcome::Stale);
-    assert_eq!(tracker.on_sample(&rest(599)), Outcome::Stale);
+    // The low word of the time wraps between the first and the second sample.
+    assert_eq!(tracker.on_sample(&rest(WRAP - 401)), Outcome::First);
+    assert_eq!(tracker.on_sample(&rest(WRAP + 600)), Outcome::Step);
+    for stale in [WRAP + 600, WRAP + 599, 601, 0] {
+        assert_eq!(tracker.on_sample(&rest(stale)), Outcome::Stale);
+    }
     let turning = |t_us| Sample {
         gyro: [0, 0, 16_400],
         ..rest(t_us)
     };
     let before = tracker.attitude();
+    let longest = u64::from(LONGEST_STEP);
     assert_eq!(
-        tracker.on_sample(&turning(601 + LONGEST_STEP)),
+        tracker.on_sample(&turning(WRAP + 601 + longest)),
         Outcome::Gap
     );
     assert_eq!(tracker.attitude(), before, "held");
     assert_eq!(
-        tracker.on_sample(&turning(601 + LONGEST_STEP + 90_000)),
+        tracker.on_sample(&turning(WRAP + 601 + longest + 90_000)),
         Outcome::Step
     );
     let yaw = degrees(tracker.attitude().angles().yaw);
@@ -356,8 +359,41 @@ fn what_becomes_of_samples() {
     let counts = tracker.counts();
     assert_eq!(
         (counts.steps, counts.stale, counts.gaps, counts.saturated),
-        (2, 2, 1, 0)
+        (2, 4, 1, 0)
     );
+}
+
+/// A log has the low words of times: a difference below 2^31 means a later sample, another one an earlier sample.
+#[test]
+fn times_of_a_log_go_on_beyond_32_bits() {
+    let mut time = log::START;
+    let mut next = |low: u32| {
+        time = log::sample([low, 0, 0, 0], time).t_us;
+        time
+    };
+    assert_eq!(next(u32::MAX - 400), u64::from(u32::MAX) - 400);
+    assert_eq!(next(600), (1 << 32) + 600);
+    assert_eq!(next(500), (1 << 32) + 500);
+    assert_eq!(next(500 + (1 << 31) - 1), (1 << 32) + 499 + (1 << 31));
+    assert_eq!(next(400), (2 << 32) + 400);
+    // An earlier time than 0 becomes 0, which is no later than the sample before it.
+    assert_eq!(log::sample([u32::MAX, 0, 0, 0], 3).t_us, 0);
+    assert_eq!(log::sample([0; 4], log::START).t_us, 0);
+}
+
+/// Times that are one step apart in 32 bits are more than an hour apart.
+#[test]
+fn a_pause_of_2_to_the_32_us_is_a_gap() {
+    for pause in [(1 << 32) + 1, (1 << 32) + 1_000, 1 << 33, 1 << 63] {
+        let mut tracker = tracker();
+        tracker.on_sample(&rest(7));
+        let turning = Sample {
+            gyro: [0, 0, 16_400],
+            ..rest(7 + pause)
+        };
+        assert_eq!(tracker.on_sample(&turning), Outcome::Gap, "{pause} µs");
+        assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
+    }
 }
 
 /// Saturation of the gyroscope turns the estimated attitude upside down while the body is level. Even this error of the tilt is
@@ -439,7 +475,7 @@ fn at_rest_nothing_cycles() {
     };
     tracker.on_sample(&tilted(0));
     let mut seen = Vec::new();
-    for i in 1..200_000_u32 {
+    for i in 1..200_000_u64 {
         tracker.on_sample(&tilted(i * 5_000));
         if i > 100_000 {
             seen.push(tracker.attitude());

@@ -79,12 +79,6 @@ impl Frequency {
         ((cycles as u128 * self.inverse as u128) >> 64) as u64
     }
 
-    /// Converts clock cycles to µs with a single multiplication. The result is at most 1 µs less than the exact one.
-    #[must_use]
-    pub const fn short_microseconds(self, cycles: u32) -> u32 {
-        ((cycles as u64 * (self.inverse >> 32)) >> 32) as u32
-    }
-
     /// Converts clock cycles to ms, rounded down.
     #[must_use]
     pub const fn milliseconds(self, cycles: u64) -> u64 {

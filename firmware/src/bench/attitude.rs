@@ -63,18 +63,19 @@ pub fn attitude(report: Report) {
         ("cubic_tilt_jitter", 7, tilt()),
     ] {
         let mut tracker = Tracker::new(Scale::MPU_6050, tilt);
-        let mut samples = 0_u32;
+        let (mut samples, mut time) = (0_u32, log::START);
         let mut run = || {
             let mut records = [0; RUN as usize].map(|_| {
                 samples += 1;
                 let phase = samples.wrapping_mul(0x9e37_79b9);
                 log::record(&Sample {
-                    t_us: samples * STEP + (phase & jitter),
+                    t_us: u64::from(samples * STEP + (phase & jitter)),
                     accel: [0, 0, 4_096],
                     gyro: rate(phase).map(|rate| (rate >> 8) as i16),
                 })
             });
-            let cycles = riscv::interrupt::free(|| replay::track(&mut tracker, &mut records));
+            let cycles =
+                riscv::interrupt::free(|| replay::track(&mut tracker, &mut time, &mut records));
             (cycles / u64::from(RUN)) as u32
         };
         // Runs without measurement until the time constant of the tilt correction has passed: until then its gain varies.

@@ -15,9 +15,11 @@ const FRAME: u32 = 16_667;
 /// gesture` gives them.
 pub fn gesture(report: Report) {
     measure(report, "blob", statistics, |statistics| statistics.blob());
-    let control = RefCell::new(Control::default());
+    let control = RefCell::new((Control::default(), 0));
     measure(report, "control", statistics, |statistics| {
-        control.borrow_mut().on_frame(FRAME, &statistics)
+        let (control, time) = &mut *control.borrow_mut();
+        *time += u64::from(FRAME);
+        control.on_frame(*time, &statistics)
     });
     let step = Step::new(FRAME);
     measure(report, "step", |phase| FRAME + (phase >> 28), Step::new);

@@ -177,7 +177,7 @@ fn saturation_costs_what_it_hides_and_no_more() {
             sample.gyro[0] = i16::MAX;
         }
         tracker.on_sample(&sample);
-        let t = f64::from(sample.t_us) * 1e-6;
+        let t = sample.t_us as f64 * 1e-6;
         let truth = Motion::Hand.attitude(t).expect("in closed form");
         let error = truth.inclination_to(tracker.attitude().into());
         match i {

@@ -15,10 +15,9 @@ pub const RUN_SEARCHING: u8 = 6;
 pub const RUN_MOVING: u8 = 4;
 /// The same in the smaller region around a hand at rest: the tips of fingers that are 5 pixels wide are to count.
 pub const RUN_RESTING: u8 = 3;
-/// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame.
+/// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame. It is also the
+/// longest time between two frames after which tracking goes on.
 pub const PATIENCE: u32 = 250_000;
-/// Longest time between two frames after which tracking goes on, in µs. It is that of [`PATIENCE`].
-pub const LONGEST_GAP: u32 = PATIENCE;
 /// Number of successive frames that must show a hand before it moves the camera.
 const FRAMES: u8 = 3;
 
@@ -192,6 +191,8 @@ impl Channel {
 pub struct Control {
     state: State,
     setting: Setting,
+    /// Time in µs at which the last frame ended.
+    ended: Option<u64>,
     /// What the last frame showed.
     seen: Result<Blob, Doubt>,
     /// Azimuth, polar angle and distance.
@@ -205,6 +206,7 @@ impl Default for Control {
         Self {
             state: State::Absent,
             setting: Setting::SEARCHING,
+            ended: None,
             seen: Err(Doubt::Missing),
             channels: start.map(Channel::at),
         }
@@ -246,8 +248,8 @@ impl Control {
         self.seen
     }
 
-    /// Takes the statistics of a new camera frame, and returns the hand that it shows. `gap` is the time since the frame before in µs;
-    /// the first frame may state any.
+    /// Takes the statistics of a new camera frame, and returns the hand that it shows. `time` is the time in µs at which the frame ended,
+    /// from any start; it does not go back. After a pause of more than [`PATIENCE`] the hand is searched for again.
     ///
     /// A hand appears when three frames in a row show one with enough confidence, of nearly the same area and place. The camera then
     /// moves to it within some tenths of a second, the shorter way around; the same holds when it comes back to its region.
@@ -255,13 +257,16 @@ impl Control {
     /// # Errors
     /// The frame does not show the hand; the camera stays.
     #[inline]
-    pub fn on_frame(&mut self, gap: u32, statistics: &Statistics) -> Result<Blob, Doubt> {
-        self.take(gap, statistics);
+    pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
+        let before = self.ended.replace(time);
+        // The first frame ends a pause without a hand.
+        let gap = before.and_then(|before| u32::try_from(time.saturating_sub(before)).ok());
+        self.take(gap.unwrap_or(u32::MAX), statistics);
         // A caller that drops this result has no copy of it.
         self.seen
     }
 
-    /// Does the work of [`on_frame`](Self::on_frame). Every frame with a hand runs all of this code, which the instruction cache has to
+    /// Takes a frame, `gap` µs after the frame before. Every frame with a hand runs all of this code, which the instruction cache has to
     /// load, so what runs rarely is in other functions.
     #[inline(never)]
     fn take(&mut self, gap: u32, statistics: &Statistics) {
@@ -270,7 +275,7 @@ impl Control {
         let (State::Tracked(last), Ok(blob)) = (self.state, self.seen) else {
             return self.seek(gap, size);
         };
-        if gap > LONGEST_GAP || !is_like(last.count, &blob) {
+        if gap > PATIENCE || !is_like(last.count, &blob) {
             return self.seek(gap, size);
         }
         self.state = State::Tracked(Last {

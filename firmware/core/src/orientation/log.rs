@@ -1,7 +1,8 @@
 //! The format of a log of sensor samples, which a board can replay: a header, then one record for each sample. A replay computes
 //! the attitude after each sample, and writes the attitude over the sample's record.
 //!
-//! All numbers are little-endian.
+//! All numbers are little-endian. A sample is less than 2^31 µs, 36 minutes, later than the one before it; other differences of the times
+//! mean an earlier one.
 //!
 //! | bytes | header |
 //! |---|---|
@@ -15,7 +16,7 @@
 //!
 //! | bytes | record | as an attitude |
 //! |---|---|---|
-//! | 0–3 | time stamp in µs, u32, which may wrap | w, s2.30 |
+//! | 0–3 | time in µs modulo 2^32, u32 | w, s2.30 |
 //! | 4–9 | accelerometer x, y, z, s16 ×3 | x (4–7), y (8–11) |
 //! | 10–15 | gyroscope x, y, z, s16 ×3 | z (12–15) |
 
@@ -289,13 +290,20 @@ pub fn to_bytes(record: Record) -> [u8; RECORD_BYTES] {
 pub fn record(sample: &Sample) -> Record {
     let pair = |low: i16, high: i16| u32::from(low as u16) | u32::from(high as u16) << 16;
     let ([ax, ay, az], [gx, gy, gz]) = (sample.accel, sample.gyro);
-    [sample.t_us, pair(ax, ay), pair(az, gx), pair(gy, gz)]
+    // The record has the low word of the time.
+    let time = sample.t_us as u32;
+    [time, pair(ax, ay), pair(az, gx), pair(gy, gz)]
 }
 
-/// Unpacks the sample that a record holds.
-pub const fn sample([t_us, ax_ay, az_gx, gy_gz]: Record) -> Sample {
+/// The time in µs before the first sample of a log, for [`sample`]: the first sample then has the time in its record.
+pub const START: u64 = 1 << 31;
+
+/// Unpacks the sample that a record holds. `last` is the time in µs of the sample before it, or [`START`].
+pub const fn sample([time, ax_ay, az_gx, gy_gz]: Record, last: u64) -> Sample {
+    let step = time.wrapping_sub(last as u32).cast_signed();
     Sample {
-        t_us,
+        // An earlier time than 0 becomes 0.
+        t_us: last.saturating_add_signed(step as i64),
         accel: [ax_ay as i16, (ax_ay >> 16) as i16, az_gx as i16],
         gyro: [(az_gx >> 16) as i16, gy_gz as i16, (gy_gz >> 16) as i16],
     }
@@ -319,8 +327,11 @@ pub fn attitude(record: Record) -> Option<Quaternion> {
 pub fn replay(bytes: &mut [u8]) -> Result<Counts, LogError> {
     let (setup, records) = open(bytes)?;
     let mut tracker = setup.tracker();
+    let mut time = START;
     for record in records {
-        tracker.on_sample(&sample(from_bytes(record)));
+        let sample = sample(from_bytes(record), time);
+        time = sample.t_us;
+        tracker.on_sample(&sample);
         *record = to_bytes(attitude_record(tracker.attitude()));
     }
     Ok(tracker.counts())

@@ -3,8 +3,8 @@
 /// One measurement of the sensor in raw counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sample {
-    /// Time in µs, modulo 2^32.
-    pub t_us: u32,
+    /// Time in µs, from any start.
+    pub t_us: u64,
     /// Specific force along each axis, in counts.
     pub accel: [i16; 3],
     /// Angular rate about each axis, in counts.

@@ -51,7 +51,7 @@ pub struct Tracker {
     bias: [i32; 3],
     resting: Option<RestBias>,
     /// Time of the last sample; `None` before the first.
-    last: Option<u32>,
+    last: Option<u64>,
     counts: Counts,
 }
 
@@ -111,9 +111,11 @@ impl Tracker {
             return self.begin(sample, rate);
         };
         let step = sample.t_us.wrapping_sub(last);
-        if step == 0 || step > LONGEST_STEP {
-            return self.hold(sample.t_us, step, rate);
+        // An earlier time gives a long step.
+        if step == 0 || step > u64::from(LONGEST_STEP) {
+            return self.hold(sample.t_us, last, rate);
         }
+        let step = step as u32;
         self.last = Some(sample.t_us);
         let mut half = self.integrator.half_angle::<4>(rate, step);
         for (half, correction) in core::iter::zip(&mut half, &mut self.correction) {
@@ -160,9 +162,8 @@ impl Tracker {
     /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap.
     #[cold]
     #[inline(never)]
-    fn hold(&mut self, t_us: u32, step: u32, rate: [i32; 3]) -> Outcome {
-        // Time stamps wrap modulo 2^32, so a difference of more than half this range means an earlier time.
-        if step == 0 || step > u32::MAX / 2 {
+    fn hold(&mut self, t_us: u64, last: u64, rate: [i32; 3]) -> Outcome {
+        if t_us <= last {
             self.counts.stale += 1;
             return Outcome::Stale;
         }

@@ -144,7 +144,7 @@ fn images() -> Vec<Vec<u8>> {
             let turns = (i as i16).wrapping_mul(1_821);
             let late = u32::from(i > 20) * 600_000;
             image.extend(to_bytes(record(&Sample {
-                t_us: (u32::MAX - 10_000).wrapping_add(2_000 * (i - i / 9) + late),
+                t_us: u64::from(u32::MAX - 10_000) + u64::from(2_000 * (i - i / 9) + late),
                 accel: [(i % 5) as i16, -40, 4_090],
                 gyro: if i % 40 < 20 {
                     [4, -1, 0]

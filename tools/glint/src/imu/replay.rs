@@ -27,31 +27,31 @@ pub struct Options {
     pub follow_bias: bool,
 }
 
-/// A log whose samples get the 32-bit time stamps of the firmware.
+/// A log whose samples get time stamps without long steps, of which a board's log has the low words.
 struct Stamps<'a> {
     entries: &'a [Entry],
     period: Option<u32>,
 }
 
 impl Stamps<'_> {
-    /// Returns the samples with 32-bit time stamps. Where the log's time goes back, the step is 0. A step longer than
+    /// Returns the samples with their time stamps. Where the log's time goes back, the step is 0. A step longer than
     /// `LONGEST_STEP`, over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
-        let mut stamp = 0_u32;
+        let mut stamp = 0_u64;
         let mut first = true;
         self.entries.iter().map(move |entry| {
             let step = match self.period {
-                Some(period) if !first => period,
+                Some(period) if !first => period.into(),
                 Some(_) => 0,
                 None => entry
                     .t_us
                     .saturating_sub(latest)
-                    .min(u64::from(LONGEST_STEP) + 1) as u32,
+                    .min(u64::from(LONGEST_STEP) + 1),
             };
             first = false;
             latest = latest.max(entry.t_us);
-            stamp = stamp.wrapping_add(step);
+            stamp += step;
             Sample {
                 t_us: stamp,
                 accel: entry.accel,
@@ -222,16 +222,8 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
 
 /// Calibrates with the samples in the first `still` µs of a log. Samples beyond the maximum number of a calibration are ignored.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
-    let mut elapsed = 0_u64;
-    let mut last = 0_u32;
-    let count = stamps
-        .samples()
-        .take_while(|sample| {
-            elapsed += u64::from(sample.t_us.wrapping_sub(last));
-            last = sample.t_us;
-            elapsed < still
-        })
-        .count();
+    let at_start = |sample: &Sample| sample.t_us < still;
+    let count = stamps.samples().take_while(at_start).count();
     let seconds = still as f64 / 1e6;
     let [fewest, most] = MOST_SAMPLES;
     if count < fewest as usize {

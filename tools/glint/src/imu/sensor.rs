@@ -63,7 +63,7 @@ pub fn stream<B: Board + ?Sized>(
     let command = format!("imu stream {samples}");
     console.send(&command)?;
     console.allow((samples as usize).saturating_mul(MAX_SAMPLE));
-    let mut clock = ExtendedTime::default();
+    let mut first = None;
     let mut malformed = None;
     console.lines(&command, &mut |line| {
         if line == HEADER {
@@ -72,7 +72,7 @@ pub fn stream<B: Board + ?Sized>(
         match sample(line) {
             Some((stamp, accel, gyro)) => on_sample(Entry {
                 line: 0,
-                t_us: clock.at(stamp),
+                t_us: stamp.saturating_sub(*first.get_or_insert(stamp)),
                 accel,
                 gyro,
                 temp: None,
@@ -83,22 +83,7 @@ pub fn stream<B: Board + ?Sized>(
     malformed.map_or(Ok(()), |line| Err(Error::Sample(line)))
 }
 
-/// Converts 32-bit time stamps, which wrap around, to a 64-bit time that counts from the first stamp.
-#[derive(Default)]
-struct ExtendedTime {
-    last: Option<u32>,
-    time: u64,
-}
-
-impl ExtendedTime {
-    fn at(&mut self, stamp: u32) -> u64 {
-        let last = self.last.replace(stamp).unwrap_or(stamp);
-        self.time += u64::from(stamp.wrapping_sub(last));
-        self.time
-    }
-}
-
-fn sample(line: &str) -> Option<(u32, [i16; 3], [i16; 3])> {
+fn sample(line: &str) -> Option<(u64, [i16; 3], [i16; 3])> {
     let (stamp, counts) = line.split_once(',')?;
     let counts: Vec<i16> = counts
         .split(',')
@@ -200,8 +185,8 @@ mod tests {
     #[test]
     fn only_samples_are_parsed() {
         assert_eq!(
-            sample("4294967295,1,-2,4096,0,32767,-32768"),
-            Some((u32::MAX, [1, -2, 4096], [0, i16::MAX, i16::MIN]))
+            sample("18446744073709551615,1,-2,4096,0,32767,-32768"),
+            Some((u64::MAX, [1, -2, 4096], [0, i16::MAX, i16::MIN]))
         );
         for line in [
             "",
@@ -212,12 +197,5 @@ mod tests {
         ] {
             assert_eq!(sample(line), None, "{line}");
         }
-    }
-
-    #[test]
-    fn time_stamps_continue_across_2_to_the_32() {
-        let mut clock = ExtendedTime::default();
-        let times = [u32::MAX - 1, u32::MAX, 1, 1_001].map(|stamp| clock.at(stamp));
-        assert_eq!(times, [0, 1, 3, 1_003]);
     }
 }

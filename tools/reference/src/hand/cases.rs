@@ -122,7 +122,6 @@ pub fn outcome(fault: Fault) -> Outcome {
         end: 0.0,
     };
     let mut is_back = false;
-    let mut shown_last = 0;
     for number in 0..(END * RATE) as u32 {
         let seconds = f64::from(number) / RATE;
         let is_over = seconds >= FAULT[1];
@@ -167,9 +166,8 @@ pub fn outcome(fault: Fault) -> Outcome {
             Fault::Stopped => None,
         };
         if let Some(statistics) = shown {
-            let gap = (f64::from(number - shown_last) * 1e6 / RATE).round() as u32;
-            shown_last = number;
-            let seen = control.on_frame(gap, &statistics);
+            let time = (seconds * 1e6).round() as u64;
+            let seen = control.on_frame(time, &statistics);
             if is_faulty {
                 outcome.doubt = seen.err();
             }

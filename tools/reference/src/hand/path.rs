@@ -78,13 +78,15 @@ pub fn record(path: Path, noise: &Noise, rate: f64, seconds: f64) -> Vec<Sample>
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let start = Drawn::new(Shape::Hand, [0.0; 2], AREA);
     let mut control = Control::default();
-    let gap = (1e6 / rate).round() as u32;
+    let gap = (1e6 / rate).round() as u64;
+    let mut now = 0;
     let mut frame = |time: f64| {
         let place = path.at(time);
         let statistics =
             Frame::draw(&[start.moved(place)], noise, &mut random).statistics(control.setting());
+        now += gap;
         let blob = control
-            .on_frame(gap, &statistics)
+            .on_frame(now, &statistics)
             .expect("the hand is in the frame");
         let [theta, phi, _] = target(&blob, SIZE);
         let pose = control.pose();

@@ -71,7 +71,7 @@ pub struct Estimator {
     /// Assumed bias, which is subtracted from the gyroscope's rates, in rad/s.
     bias: Vector,
     integrator: Integrator,
-    last: Option<u32>,
+    last: Option<u64>,
     /// Attitude at the first sample, for a filter that ignores the accelerometer.
     start: Quaternion,
     /// Time constant in use, in seconds. It grows from a small value to
@@ -137,17 +137,17 @@ impl Estimator {
             self.integrator = Integrator::new(self.integrator.method(), attitude, rate);
             return;
         };
-        let step = sample.t_us.wrapping_sub(last);
-        if step == 0 || step > u32::MAX / 2 {
+        let step = sample.t_us.saturating_sub(last);
+        if step == 0 {
             return;
         }
         self.last = Some(sample.t_us);
-        if step > LONGEST_STEP {
+        if step > u64::from(LONGEST_STEP) {
             self.integrator.restart(rate);
             self.age = self.age.min(f64::from(DOUBTFUL) * 1e-6);
             return;
         }
-        self.advance(rate, force, f64::from(step) * 1e-6);
+        self.advance(rate, force, step as f64 * 1e-6);
     }
 
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {

@@ -101,7 +101,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     let mut errors = Errors::default();
     for sample in sensor.samples(motion, (seconds * sensor.rate) as u64, 2) {
         tracker.on_sample(&sample);
-        let t = f64::from(sample.t_us) * 1e-6;
+        let t = sample.t_us as f64 * 1e-6;
         if t >= SETTLED {
             let truth = motion.attitude(t).expect("in closed form");
             errors.add(truth.inclination_to(tracker.attitude().into()));
@@ -124,7 +124,7 @@ pub fn filter_inclination(filter: Filter, sensor: Sensor, motion: Motion, second
     let mut errors = Errors::default();
     for sample in sensor.samples(motion, (seconds * sensor.rate) as u64, 2) {
         estimator.on_sample(&sample);
-        let t = f64::from(sample.t_us) * 1e-6;
+        let t = sample.t_us as f64 * 1e-6;
         if t >= SETTLED {
             let truth = motion.attitude(t).expect("in closed form");
             errors.add(truth.inclination_to(estimator.attitude()));

@@ -75,8 +75,7 @@ impl Sensor {
             let t = t_us * 1e-6;
             let (rate, force) = (motion.rate(t), motion.force(t));
             let sample = Sample {
-                // Time stamps wrap at 32 bits, as on the board.
-                t_us: t_us as u64 as u32,
+                t_us: t_us as u64,
                 gyro: [0, 1, 2].map(|k| {
                     let true_rate = rate[k].to_degrees() * (1.0 + self.scale_error);
                     let noise = scaled_noise(self.noise, &mut random);

@@ -70,7 +70,7 @@ struct Rate {
     samples: u32,
     /// Time of the first sample in µs.
     #[serde(default)]
-    start: u32,
+    start: u64,
 }
 
 /// The error of the attitude after a constant rate, against the closed form.
@@ -78,7 +78,7 @@ fn constant_rate(input: Rate) -> Result<Outcome> {
     let mut tracker = Tracker::new(Scale::MPU_6050, None);
     for i in 0..=input.samples {
         tracker.on_sample(&Sample {
-            t_us: input.start.wrapping_add(i.wrapping_mul(input.step)),
+            t_us: input.start + u64::from(i) * u64::from(input.step),
             accel: [0; 3],
             gyro: input.gyro,
         });
@@ -102,7 +102,7 @@ fn constant_rate(input: Rate) -> Result<Outcome> {
 }
 
 /// Takes samples, each of a time and the counts of accelerometer and gyroscope, and states their effects and the attitude.
-fn samples(samples: Vec<(u32, [i16; 3], [i16; 3])>) -> Result<Outcome> {
+fn samples(samples: Vec<(u64, [i16; 3], [i16; 3])>) -> Result<Outcome> {
     let tilt = Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT);
     let mut tracker = Tracker::new(Scale::MPU_6050, Some(tilt));
     let effects: Vec<_> = samples
@@ -144,7 +144,7 @@ fn calibration(input: Still) -> Result<Outcome> {
         let added = |x: i16, more: i16, when: bool| x.saturating_add(if when { more } else { 0 });
         let gyro = input.gyro[i as usize % 2];
         let sample = Sample {
-            t_us: 1_000 * i,
+            t_us: 1_000 * u64::from(i),
             accel: [0, 1, 2].map(|k| added([0, 0, 4096][k], input.push[k], is_last)),
             gyro: [0, 1, 2].map(|k| added(gyro[k], input.later[k], is_later)),
         };
@@ -177,7 +177,7 @@ fn log_image(input: Image) -> Result<Outcome> {
     let mut bytes = setup.header(input.samples).to_vec();
     for i in 0..input.samples {
         bytes.extend(to_bytes(record(&Sample {
-            t_us: 1_000 * i,
+            t_us: 1_000 * u64::from(i),
             accel: [0, 0, 4096],
             gyro: [0; 3],
         })));

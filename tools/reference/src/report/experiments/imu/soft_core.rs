@@ -78,7 +78,7 @@ pub fn replay(source: &Source, samples: u64) -> Result<Replay> {
     let entries: Vec<Entry> = counts
         .map(|sample| Entry {
             line: 0,
-            t_us: sample.t_us.into(),
+            t_us: sample.t_us,
             accel: sample.accel,
             gyro: sample.gyro,
             temp: None,

@@ -114,7 +114,7 @@ fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
     let mut moved = 0.0_f64;
-    for i in 0..1_000_000_u32 {
+    for i in 0..1_000_000_u64 {
         tracker.on_sample(&Sample {
             t_us: i * 1_000,
             accel: [713, -391, 4_011],
@@ -143,11 +143,11 @@ fn uneven() -> Vec<StiffCase> {
         for (i, mut sample) in sensor.samples(TUMBLE, 4_001, 5).enumerate() {
             end = sample.t_us;
             if !stamped {
-                sample.t_us = i as u32 * 5_000;
+                sample.t_us = i as u64 * 5_000;
             }
             tracker.on_sample(&sample);
         }
-        let truth = TUMBLE.attitude_after(f64::from(end) * 1e-6, 200.0);
+        let truth = TUMBLE.attitude_after(end as f64 * 1e-6, 200.0);
         truth.angle_to(tracker.attitude().into())
     };
     [
@@ -188,7 +188,7 @@ fn saturation() -> StiffCase {
             sample.gyro[0] = i16::MAX;
         }
         tracker.on_sample(&sample);
-        let Some(truth) = Motion::Hand.attitude(f64::from(sample.t_us) * 1e-6) else {
+        let Some(truth) = Motion::Hand.attitude(sample.t_us as f64 * 1e-6) else {
             continue;
         };
         let error = truth.inclination_to(tracker.attitude().into());

@@ -47,7 +47,7 @@ pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
         trackers[0].on_sample(&exact);
         trackers[1].on_sample(&noisy);
         reference.on_sample(&exact);
-        let seconds = f64::from(exact.t_us) * 1e-6;
+        let seconds = exact.t_us as f64 * 1e-6;
         if seconds < due {
             continue;
         }
