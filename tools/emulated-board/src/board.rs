@@ -51,6 +51,7 @@ impl EmulatedBoard {
     /// Runs at least `cycles` cycles: the last instruction may end later.
     pub fn run(&mut self, cycles: u64) {
         let end = self.cycles.saturating_add(cycles);
+        self.bus.devices.look();
         while self.cycles < end {
             let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
             let lines = self.bus.devices.interrupts();
@@ -58,9 +59,8 @@ impl EmulatedBoard {
             let (now, pause) = self.cpu.run(&mut self.bus, self.cycles, limit, lines);
             self.cycles = now;
             if pause == Pause::Asleep && now < limit {
-                // Nothing happens before the next event.
-                self.idle += limit - now;
-                self.cycles = limit;
+                self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);
+                self.idle += self.cycles - now;
             }
             if std::mem::take(&mut self.bus.devices.controller.reset) {
                 self.bus.devices.reset();

@@ -48,6 +48,10 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (digits::Digits::BASE, None),
 ];
 
+/// Numbers of the triangle engine and of the raymarcher in it.
+const TRIANGLE: usize = 9;
+const RAYMARCH: usize = 10;
+
 /// The blocks of the SoC.
 pub struct Devices {
     /// Reset and bus errors.
@@ -75,6 +79,8 @@ pub struct Devices {
     pub digits: Digits,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
+    /// Levels of the interrupt lines.
+    lines: u32,
 }
 
 impl Devices {
@@ -97,6 +103,7 @@ impl Devices {
             digits: Digits::default(),
             // Each block states its next event when it is asked for the first time.
             next: [0; BLOCKS.len()],
+            lines: 0,
         }
     }
 
@@ -125,8 +132,8 @@ impl Devices {
             6 => &mut self.switches,
             7 => &mut self.leds,
             8 => &mut self.scanout,
-            9 => &mut self.triangle,
-            10 => &mut self.triangle.raymarcher,
+            TRIANGLE => &mut self.triangle,
+            RAYMARCH => &mut self.triangle.raymarcher,
             11 => &mut self.gesture,
             _ => &mut self.digits,
         }
@@ -141,6 +148,10 @@ impl Devices {
 
     fn update(&mut self, number: usize, now: u64, ram: &mut MainMemory) {
         self.next[number] = self.device(number).advance(now, ram);
+        self.look_at(number);
+        if number == TRIANGLE {
+            self.look_at(RAYMARCH);
+        }
     }
 
     /// Reads the register at `offset` bytes from the first register of all.
@@ -174,14 +185,48 @@ impl Devices {
         self.next.into_iter().min().unwrap_or(u64::MAX)
     }
 
+    /// Processes events while the CPU sleeps: until an interrupt line changes, or up to the cycle `end`. Returns the cycle.
+    pub fn sleep(&mut self, end: u64, ram: &mut MainMemory) -> u64 {
+        let lines = self.lines;
+        loop {
+            let (mut number, mut now, mut others) = (0, u64::MAX, end);
+            for (at, &next) in self.next.iter().enumerate() {
+                others = others.min(next.max(now));
+                if next < now {
+                    (number, now) = (at, next);
+                }
+            }
+            if now >= end {
+                return end;
+            }
+            // The other blocks have no event before, so many events of this block follow each other.
+            while now <= others {
+                self.update(number, now, ram);
+                if self.lines != lines {
+                    return now;
+                }
+                now = self.next[number];
+            }
+        }
+    }
+
     /// Levels of the interrupt lines.
-    pub fn interrupts(&mut self) -> u32 {
-        BLOCKS
-            .iter()
-            .enumerate()
-            .filter_map(|(number, &(_, interrupt))| Some((number, interrupt?)))
-            .filter(|&(number, _)| self.device(number).interrupt())
-            .fold(0, |lines, (_, interrupt)| lines | 1 << interrupt as u32)
+    pub const fn interrupts(&self) -> u32 {
+        self.lines
+    }
+
+    /// Looks at all interrupt lines, because the host may have changed what is connected.
+    pub fn look(&mut self) {
+        for number in 0..BLOCKS.len() {
+            self.look_at(number);
+        }
+    }
+
+    fn look_at(&mut self, number: usize) {
+        if let Some(interrupt) = BLOCKS[number].1 {
+            let line = u32::from(self.device(number).interrupt()) << interrupt as u32;
+            self.lines = self.lines & !(1 << interrupt as u32) | line;
+        }
     }
 
     /// Counts an access to an unused address.

@@ -40,6 +40,16 @@ pub use virtual_mpu6050;
 
 /// The time in ns at the cycle `now` of the system clock.
 fn nanoseconds(now: u64) -> u64 {
-    let clock = u128::from(litex_pac::constants::CONFIG_CLOCK_FREQUENCY);
-    (u128::from(now) * 1_000_000_000 / clock) as u64
+    const SECOND: u64 = 1_000_000_000;
+    const CLOCK: u64 = litex_pac::constants::CONFIG_CLOCK_FREQUENCY as u64;
+    // In the lowest terms the product stays below 2^64 for years, and the division has 64 bits.
+    const COMMON: u64 = greatest_common_divisor(SECOND, CLOCK);
+    now * (SECOND / COMMON) / (CLOCK / COMMON)
+}
+
+const fn greatest_common_divisor(a: u64, b: u64) -> u64 {
+    match b {
+        0 => a,
+        _ => greatest_common_divisor(b, a % b),
+    }
 }
