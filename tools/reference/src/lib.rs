@@ -1,6 +1,7 @@
 //! References that Glint's computations are compared with, written from the specification and not from the model, and the
 //! measurements of the report.
 //!
+//! - [`emulated`]: the emulated board with the built firmware.
 //! - [`errors`]: RMS and maximum of a set of errors.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
@@ -16,6 +17,7 @@
 #![forbid(unsafe_code)]
 
 pub mod camera;
+pub mod emulated;
 pub mod errors;
 pub mod hand;
 pub mod imu;

@@ -1,15 +1,13 @@
 //! The console of the emulated board, which runs the real firmware.
 
-use std::sync::LazyLock;
-
-use anyhow::{Context, Result, bail};
-use glint::board::{self, EmulatedBoard, SimulatedBoard, built_firmware};
+use anyhow::{Context, Result};
 use glint::console::{Console, ConsoleError};
 use glint::transfer::{TransferError, upload};
 use glint_vectors::Model;
 use serde::Deserialize;
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
+use crate::emulated::{Emulated, cycles, start};
 use crate::stiff::kind::Kind;
 use crate::stiff::outcome::Outcome;
 
@@ -17,20 +15,9 @@ pub fn kinds() -> Vec<Kind> {
     vec![Kind::new("console", console), Kind::new("upload", uploaded)]
 }
 
-static FIRMWARE: LazyLock<Result<Vec<u8>, String>> =
-    LazyLock::new(|| built_firmware(None).map_err(|error| error.to_string()));
-
-/// A board that has just started.
-fn start() -> Result<SimulatedBoard<EmulatedBoard>> {
-    match &*FIRMWARE {
-        Ok(firmware) => Ok(board::emulated(firmware)?),
-        Err(error) => bail!("{error}: run `cargo xtask firmware`"),
-    }
-}
-
 /// The reply to a command, or the reason of the firmware's refusal. Of the reply count the lines whose first word is one of `counted`, or all
 /// lines if there is none.
-fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Result<Outcome> {
+pub fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Result<Outcome> {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
         counted.is_empty() || counted.iter().any(|counted| counted == word)
@@ -48,24 +35,20 @@ fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Resu
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Session {
-    commands: Vec<String>,
+pub struct Session {
+    pub commands: Vec<String>,
     /// Sensor on the pins; none by default.
-    sensor: Option<Sensor>,
+    pub sensor: Option<Sensor>,
     /// Time in ms that the board runs before the last command.
     #[serde(default)]
-    wait: u64,
+    pub wait: u64,
     /// First words of the lines of the last reply that count; by default all lines.
     #[serde(default)]
-    lines: Vec<String>,
+    pub lines: Vec<String>,
 }
 
 /// A board with this sensor that has taken these commands, and has run for this number of milliseconds since.
-fn board_after(
-    sensor: Option<Sensor>,
-    commands: &[String],
-    wait: u64,
-) -> Result<SimulatedBoard<EmulatedBoard>> {
+fn board_after(sensor: Option<Sensor>, commands: &[String], wait: u64) -> Result<Emulated> {
     let mut board = start()?;
     if let Some(sensor) = sensor {
         board.inner().plug(sensor.wires());
@@ -76,8 +59,8 @@ fn board_after(
         // A refusal may be what makes the next command hard.
         let _ = console.command(command);
     }
-    let cycles = u64::from(board.inner().clock_hz()) / 1000 * wait;
-    board.inner().run(cycles);
+    let wait = cycles(&mut board, wait);
+    board.inner().run(wait);
     Ok(board)
 }
 
@@ -92,7 +75,7 @@ fn console(session: Session) -> Result<Outcome> {
 /// A virtual MPU-6050 on the pins.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-enum Sensor {
+pub enum Sensor {
     /// At rest.
     Resting,
     /// Turns at 100.03 °/s.
@@ -112,7 +95,7 @@ enum Sensor {
 }
 
 impl Sensor {
-    fn wires(self) -> Wires {
+    pub fn wires(self) -> Wires {
         let rate = match self {
             Self::Turning => [100.03, 0.0, 0.0],
             Self::Saturated => [3000.0; 3],

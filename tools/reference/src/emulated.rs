@@ -1,0 +1,79 @@
+//! The emulated board with the built firmware, and its console.
+
+use std::sync::LazyLock;
+
+use anyhow::{Context, Result, bail};
+use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint_core::camera::View;
+use glint_core::console::Command;
+
+/// An emulated board with a console.
+pub type Emulated = SimulatedBoard<EmulatedBoard>;
+
+static FIRMWARE: LazyLock<Result<Vec<u8>, String>> =
+    LazyLock::new(|| built_firmware(None).map_err(|error| error.to_string()));
+
+/// The firmware that `cargo xtask firmware` has built.
+///
+/// # Errors
+/// It has not been built.
+pub fn firmware() -> Result<&'static [u8]> {
+    match &*FIRMWARE {
+        Ok(firmware) => Ok(firmware),
+        Err(error) => bail!("{error}: run `cargo xtask firmware`"),
+    }
+}
+
+/// A board that has just started.
+///
+/// # Errors
+/// The firmware has not been built.
+pub fn start() -> Result<Emulated> {
+    Ok(board::emulated(firmware()?)?)
+}
+
+/// Clock cycles of a number of milliseconds.
+pub fn cycles(board: &mut Emulated, milliseconds: u64) -> u64 {
+    u64::from(board.inner().clock_hz()) / 1000 * milliseconds
+}
+
+/// Sends a command to a board that waits for one, and returns the lines of its reply.
+///
+/// # Errors
+/// The firmware refuses the command, or does not answer.
+pub fn command(board: &mut Emulated, command: &str) -> Result<Vec<String>> {
+    let lines = Console::new(board).command(command);
+    lines.with_context(|| format!("the command {command:?}"))
+}
+
+/// The value of a key in the reply to a command.
+///
+/// # Errors
+/// The reply does not have the key, or its value another form.
+pub fn value<T: std::str::FromStr>(board: &mut Emulated, line: &str, key: &str) -> Result<T> {
+    let lines = command(board, line)?;
+    Ok(glint::console::value(line, &lines, key)?)
+}
+
+/// The camera of a board, bit for bit.
+///
+/// # Errors
+/// The board does not print it in the form that the console reads.
+pub fn view(board: &mut Emulated) -> Result<View> {
+    let lines = command(board, "view")?;
+    let line = lines.first().context("no camera")?;
+    match Command::parse(line) {
+        Ok(Some(Command::View { view: Some(view) })) => Ok(view),
+        _ => bail!("expected a camera, found {line:?}"),
+    }
+}
+
+/// Begins a command whose reply is read later.
+///
+/// # Errors
+/// The line is broken.
+pub fn begin(board: &mut Emulated, command: &str) -> Result<()> {
+    // As for the console, a zero byte drops an unfinished line.
+    Ok(board.write(format!("\0{command}\r").as_bytes())?)
+}
