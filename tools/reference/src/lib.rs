@@ -3,6 +3,7 @@
 //!
 //! - [`emulated`]: the emulated board with the built firmware.
 //! - [`errors`]: RMS and maximum of a set of errors.
+//! - [`basis`]: the errors of a camera's basis.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
 //! - [`hand`]: camera frames with a hand, and the errors of the camera's control by it.
@@ -16,6 +17,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod basis;
 pub mod camera;
 pub mod emulated;
 pub mod errors;

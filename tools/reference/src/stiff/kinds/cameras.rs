@@ -7,11 +7,12 @@ use glint_core::framing::Sphere;
 use glint_core::matrix::{Axis, Matrix};
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES};
-use glint_vectors::math::{dot, world};
+use glint_vectors::math::world;
 use glint_vectors::{Camera, Model};
 use serde::Deserialize;
 
 use super::frames::{mesh, number};
+use super::steering::distortion;
 use crate::stiff::kind::Kind;
 use crate::stiff::outcome::Outcome;
 
@@ -52,6 +53,7 @@ pub fn kinds() -> Vec<Kind> {
             Ok(Outcome::Error(worst, "of 2^-23"))
         }),
         Kind::new("camera-fit", fit),
+        Kind::new("orthographic-depth", orthographic_depth),
         Kind::new("camera-width", |width: f64| {
             let view = above().with_width(U8_28::from_num(width));
             Ok(Outcome::of(view, |view| {
@@ -79,17 +81,6 @@ fn sides(view: &View) -> String {
     let [ux, uy, uz] = view.u();
     let [vx, vy, vz] = view.v();
     format!("right ({ux}, {uy}, {uz}), down ({vx}, {vy}, {vz})")
-}
-
-/// The largest difference of a length of the basis from 1, or of a scalar product from 0, in units of 2^-23.
-fn distortion(view: &View) -> f64 {
-    let basis = [view.u(), view.v(), view.n()].map(|row| row.map(|x| x.to_num::<f64>()));
-    let mut worst: f64 = 0.0;
-    for i in 0..3 {
-        worst = worst.max((dot(basis[i], basis[i]).sqrt() - 1.0).abs());
-        worst = worst.max(dot(basis[i], basis[(i + 1) % 3]).abs());
-    }
-    worst * 2f64.powi(23)
 }
 
 #[derive(Deserialize)]
@@ -183,4 +174,43 @@ fn field_of_view_error(input: Seen) -> Result<Outcome> {
         }
     }
     Ok(Outcome::Error(worst, "of 1/256 pixel"))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Orthographic {
+    /// Width of the picture in world units.
+    width: f64,
+    near: f64,
+    /// Distance of the eye from the middle of a cube.
+    distance: f64,
+    /// Half the side of the cube in 2^-14.
+    half: i16,
+}
+
+/// The largest error of the depths that are read back for the corners of a cube, as a part of a code's step.
+fn orthographic_depth(input: Orthographic) -> Result<Outcome> {
+    let Orthographic {
+        width,
+        near,
+        distance,
+        half,
+    } = input;
+    let camera = Camera::looking([0.0, -distance, 0.0], [0.0; 3], 0.9, near);
+    let view = camera.rounded().with_width(U8_28::from_num(width))?;
+    let bytes = Model::cube(half).encoded();
+    let frame = MeshSetup::new(&view, 320, 180, mesh(&bytes).radius())?;
+    let step = 2f64.powi(frame.depth.exponent - 19);
+    let mut worst: f64 = 0.0;
+    for y in [-half, half] {
+        let Projected::Visible(found) = project(&frame, &transform(&frame, [half, y, half])) else {
+            return Ok(Outcome::exact("clipped"));
+        };
+        // Depths of vertices have 6 fraction bits more than codes.
+        let code = (found.w + (1 << 5)) >> 6;
+        let depth = frame.depth.distance(code).context("a surface")?;
+        let exact = distance + f64::from(y) / 16384.0;
+        worst = worst.max((depth.to_num::<f64>() - exact).abs() / step);
+    }
+    Ok(Outcome::Error(worst, "of a code's step"))
 }

@@ -1,8 +1,11 @@
 //! Counts of the gesture engine, and the arithmetic of the control by a hand.
 
-use glint_core::fixed::U16_16;
-use glint_core::hand::Step;
-use glint_core::hand::{Region, Statistics, low_pass_gain, quotient, root, towards};
+use anyhow::Result;
+use glint_core::fixed::{Q4_28, U16_16};
+use glint_core::hand::{
+    Backlash, Control, OneEuro, Region, Statistics, Step, Tuning, calibrate, low_pass_gain,
+    quotient, root, target, towards,
+};
 use serde::Deserialize;
 
 use crate::stiff::kind::Kind;
@@ -32,6 +35,51 @@ pub fn kinds() -> Vec<Kind> {
         Kind::new("hand-step", |Way { from, to, gain }| {
             Ok(Outcome::exact(towards(from, to, gain).to_string()))
         }),
+        Kind::new("hand-target", |counts: Counted| {
+            Ok(Outcome::of(counts.statistics().blob(), |blob| {
+                let [theta, phi, r] = target(&blob, counts.size);
+                format!("azimuth {theta} turns, polar angle {phi} turns, distance {r}")
+            }))
+        }),
+        Kind::new("hand-confidence", |counts: Counted| {
+            Ok(Outcome::of(counts.statistics().blob(), |blob| {
+                format!("{}/256", blob.confidence(counts.size))
+            }))
+        }),
+        Kind::new(
+            "hand-region",
+            |Grown {
+                 first,
+                 last,
+                 margin,
+             }| {
+                let region = Region { first, last }.grown(margin);
+                let (Region { first, last }, area) = (region, region.area());
+                Ok(Outcome::exact(format!(
+                    "{first:?} to {last:?}, {area} pixels"
+                )))
+            },
+        ),
+        Kind::new("hand-filter", filter),
+        Kind::new(
+            "hand-zone",
+            |Zone {
+                 start,
+                 zone,
+                 inputs,
+             }| {
+                let mut output = Backlash::new(Q4_28::from_bits(start));
+                let next = |input| {
+                    output
+                        .next(Q4_28::from_bits(input), Q4_28::from_bits(zone))
+                        .to_bits()
+                };
+                let outputs: Vec<_> = inputs.into_iter().map(next).collect();
+                Ok(Outcome::exact(format!("{outputs:?}")))
+            },
+        ),
+        Kind::new("hand-calibration", calibration),
+        Kind::new("hand-pauses", pauses),
     ]
 }
 
@@ -74,4 +122,109 @@ struct Way {
     to: i32,
     /// Part of the way, in 2^-16.
     gain: u32,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Grown {
+    first: [u16; 2],
+    last: [u16; 2],
+    margin: [u16; 2],
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OneEuroRun {
+    /// Input at the start, and the others, with 28 fraction bits.
+    start: i32,
+    inputs: Vec<i32>,
+    /// Number of times that the last input is repeated.
+    #[serde(default)]
+    repeats: usize,
+    /// Time between two inputs in µs.
+    step: u32,
+    /// Corner frequency at rest, slope, and corner frequency of the speed, with 16 fraction bits.
+    tuning: [u32; 3],
+}
+
+/// The last output of a 1€ filter.
+fn filter(run: OneEuroRun) -> Result<Outcome> {
+    let mut filter = OneEuro::new(Q4_28::from_bits(run.start));
+    let [cutoff, slope, speed_cutoff] = run.tuning.map(U16_16::from_bits);
+    let tuning = Tuning {
+        cutoff,
+        slope,
+        speed_cutoff,
+    };
+    let mut output = Q4_28::from_bits(run.start);
+    let last = run.inputs.last().copied().unwrap_or(run.start);
+    let repeats = std::iter::repeat_n(last, run.repeats);
+    for input in run.inputs.into_iter().chain(repeats) {
+        output = filter.next(Q4_28::from_bits(input), &tuning, Step::new(run.step));
+    }
+    Ok(Outcome::exact(output.to_bits().to_string()))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Zone {
+    start: i32,
+    zone: i32,
+    inputs: Vec<i32>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Shown {
+    columns: u16,
+    rows: u16,
+    /// Cr and Cb of the samples in the middle, again and again in this order, and of the others.
+    middle: Vec<[u8; 2]>,
+    rest: [u8; 2],
+    /// Number of samples; all of the picture by default.
+    samples: Option<usize>,
+}
+
+/// The windows of the hand's colour from a small picture.
+fn calibration(shown: Shown) -> Result<Outcome> {
+    let (columns, rows) = (usize::from(shown.columns), usize::from(shown.rows));
+    let within = |number: usize, length: usize| (length * 3 / 8..length * 5 / 8).contains(&number);
+    let sample = |place: usize| {
+        let (x, y) = (place % columns, place / columns);
+        match within(x, columns) && within(y, rows) {
+            true => shown.middle[(x + y * columns) % shown.middle.len()],
+            false => shown.rest,
+        }
+    };
+    let samples = (0..shown.samples.unwrap_or(columns * rows)).map(sample);
+    Ok(Outcome::of(
+        calibrate(shown.columns, shown.rows, samples),
+        |found| {
+            let [cr, cb] = found.windows.map(|window| [window.lower, window.upper]);
+            let (inside, outside) = (found.inside, found.outside);
+            format!("Cr {cr:?}, Cb {cb:?}, {inside} % inside, {outside} % outside")
+        },
+    ))
+}
+
+/// The presence of a hand that does not move, after each frame; frames come these numbers of µs after each other.
+fn pauses(gaps: Vec<u64>) -> Result<Outcome> {
+    let hand = Statistics {
+        size: [320, 240],
+        count: 1_681,
+        sums: [160 * 1_681, 120 * 1_681],
+        bounds: Region {
+            first: [140, 100],
+            last: [180, 140],
+        },
+        is_whole: true,
+    };
+    let mut control = Control::default();
+    let mut time = 0;
+    let presences = gaps.into_iter().map(|gap| {
+        time += gap;
+        let _ = control.on_frame(time, &hand);
+        control.presence().to_string()
+    });
+    Ok(Outcome::exact(presences.collect::<Vec<_>>().join(", ")))
 }

@@ -125,15 +125,17 @@ fn gain_error(
 struct Code {
     mantissa: u32,
     exponent: i32,
+    /// In orthographic projection, the depth of the code 2^18, 37 fraction bits.
+    origin: Option<i64>,
     code: u32,
 }
 
-/// The depth that a code stands for in perspective.
+/// The depth that a code stands for.
 fn depth(input: Code) -> Result<Outcome> {
     let scale = DepthScale {
         mantissa: input.mantissa,
         exponent: input.exponent,
-        origin: None,
+        origin: input.origin,
     };
     Ok(Outcome::exact(scale.distance(input.code).map_or_else(
         || "no surface".to_owned(),

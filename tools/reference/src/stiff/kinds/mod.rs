@@ -11,8 +11,13 @@ mod hands;
 mod kernels;
 mod lines;
 mod matrices;
+mod memory;
+mod motions;
 mod objects;
+mod panel;
+mod steering;
 mod texts;
+mod transfers;
 mod triangles;
 mod volume;
 mod wireframes;
@@ -32,8 +37,13 @@ pub fn all() -> Vec<Kind> {
         kernels::kinds(),
         lines::kinds(),
         matrices::kinds(),
+        memory::kinds(),
+        motions::kinds(),
         objects::kinds(),
+        panel::kinds(),
+        steering::kinds(),
         texts::kinds(),
+        transfers::kinds(),
         triangles::kinds(),
         volume::kinds(),
         wireframes::kinds(),

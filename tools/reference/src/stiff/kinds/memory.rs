@@ -1,0 +1,52 @@
+//! The memory of uploads: regions at the ends of its length, its number of regions, and its gaps.
+
+use anyhow::Result;
+use glint_core::regions::{Region, Regions};
+use serde::Deserialize;
+
+use crate::stiff::kind::Kind;
+use crate::stiff::outcome::Outcome;
+
+pub fn kinds() -> Vec<Kind> {
+    vec![Kind::new("regions", regions)]
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Memory {
+    length: usize,
+    steps: Vec<Step>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Step {
+    /// Keeps this number of bytes.
+    Keep(usize),
+    /// Releases the region of a step before, by the number of regions kept until then.
+    Release(usize),
+    /// Moves all regions together.
+    CloseGaps,
+}
+
+/// A memory of at most four regions: what each step gives, and the gaps at the end.
+fn regions(Memory { length, steps }: Memory) -> Result<Outcome> {
+    let mut memory = Regions::<4>::new(length);
+    let mut kept: Vec<Region> = Vec::new();
+    let mut said = Vec::new();
+    for step in steps {
+        match step {
+            Step::Keep(length) => match memory.keep(length) {
+                Some(region) => {
+                    said.push(format!("kept {:?}", memory.range(region)));
+                    kept.push(region);
+                }
+                None => said.push("no room".to_owned()),
+            },
+            Step::Release(number) => memory.release(kept[number]),
+            Step::CloseGaps => memory.close_gaps(|from, to| said.push(format!("{from:?} to {to}"))),
+        }
+    }
+    said.push(format!("gap {:?}, free {}", memory.gap(), memory.free()));
+    Ok(Outcome::exact(said.join("; ")))
+}

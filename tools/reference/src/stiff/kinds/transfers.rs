@@ -1,0 +1,57 @@
+//! The receiver of a transfer on a line that falls silent.
+
+use anyhow::{Result, ensure};
+use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing};
+use serde::Deserialize;
+
+use crate::stiff::kind::Kind;
+use crate::stiff::outcome::Outcome;
+
+pub fn kinds() -> Vec<Kind> {
+    vec![
+        Kind::new("transfer-silence", silence),
+        Kind::new("transfer-blocks", |length: u32| {
+            let manifest = Manifest { length, crc32: 0 };
+            Ok(Outcome::exact(format!("{} blocks", manifest.blocks())))
+        }),
+    ]
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    /// Time in ms at which the transfer begins.
+    start: u64,
+    /// Silences in ms, each of which ends with the sender's first frame again.
+    silences: Vec<u64>,
+    /// Bytes that the receiver has room for.
+    room: usize,
+}
+
+/// The state of a receiver after silences of the line.
+fn silence(line: Line) -> Result<Outcome> {
+    let data = [7; 100];
+    let mut room = vec![0; line.room];
+    let mut now = line.start;
+    let manifest = Some(Manifest::of(&data));
+    let mut receiver = Receiver::new(&mut room, manifest, Timing::CONSOLE, now);
+    let (mut frame, mut answer) = ([0; MAX_FRAME], [0; MAX_FRAME]);
+    let length = Sender::new(&data, 1, Timing::CONSOLE, now).poll(now, &mut frame);
+    ensure!(length > 0, "a sender begins with a frame");
+    for silence in line.silences {
+        now += silence;
+        receiver.poll(now, &mut answer);
+        receiver.on_bytes(now, &frame[..length]);
+        receiver.poll(now, &mut answer);
+    }
+    // A failed transfer sends its last message three times, and then waits for a quiet line ten times as long as one that is done.
+    for _ in 0..6 {
+        now += 10 * Timing::CONSOLE.quiet_ms;
+        receiver.poll(now, &mut answer);
+    }
+    Ok(Outcome::exact(match receiver.state() {
+        State::Running => "running".to_owned(),
+        State::Done => "done".to_owned(),
+        State::Failed(failure) => failure.to_string(),
+    }))
+}
