@@ -10,6 +10,7 @@ mod generated;
 mod modules;
 mod pac;
 mod paths;
+mod report;
 mod resources;
 mod run;
 mod rust_tests;
@@ -122,10 +123,16 @@ enum Task {
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `stiff`; or `pages`: rebuild all pages from their tables
-        page: String,
-        /// Options of the page; `cargo xtask report PAGE -- --help` lists them
-        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of independent jobs]
+        page: Option<String>,
+        /// Measure samples, into target/report
+        #[arg(long)]
+        quick: bool,
+        /// Jobs at a time, without a page
+        #[arg(long, value_name = "N", default_value_t = 2)]
+        workers: u32,
+        /// Options of the page, which `cargo xtask report PAGE -- --help` lists; without a page, targets and options of Snakemake
+        #[arg(last = true, allow_hyphen_values = true)]
         arguments: Vec<String>,
     },
 }
@@ -187,6 +194,22 @@ fn main() -> Result<()> {
             json,
             write,
         }),
-        Task::Report { page, arguments } => demo::report(&page, &arguments),
+        Task::Report {
+            page: Some(page),
+            quick,
+            mut arguments,
+            ..
+        } => {
+            if quick {
+                arguments.insert(0, "--quick".to_owned());
+            }
+            report::page(&page, &arguments)
+        }
+        Task::Report {
+            page: None,
+            quick,
+            workers,
+            arguments,
+        } => report::whole(quick, workers, &arguments),
     }
 }

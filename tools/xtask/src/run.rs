@@ -124,6 +124,24 @@ pub fn build_program(package: &str, program: &str) -> Result<()> {
     )
 }
 
+/// Builds a program of the workspace as a step, then runs it on this terminal.
+///
+/// # Errors
+/// The build or the program fails.
+pub fn program(package: &str, program: &str, subcommand: &str, arguments: &[String]) -> Result<()> {
+    let select = ["--package", package, "--bin", program];
+    build_program(package, program)?;
+    foreground(
+        &format!("{program} {subcommand}"),
+        Command::new("cargo")
+            .args(["run", "--quiet"])
+            .args(select)
+            .args(["--", subcommand])
+            .args(arguments)
+            .current_dir(paths::root()),
+    )
+}
+
 /// Runs `command` without showing its output; returns whether it succeeds.
 pub fn succeeds(command: &mut Command) -> bool {
     command

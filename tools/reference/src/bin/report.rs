@@ -52,7 +52,7 @@ enum Page {
         /// Measure only errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
-        /// Measure only one study: fraction, cap, threshold, norm, end, prepass or normal
+        /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass or normal
         #[arg(long, value_name = "NAME", conflicts_with_all = ["quick", "json"])]
         study: Option<String>,
         #[command(flatten)]
@@ -128,6 +128,9 @@ struct Output {
     /// Folder of CSV files, page and diagrams [default: docs/report, or target/report with --quick]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Write the CSV files alone, without page and diagrams
+    #[arg(long)]
+    tables: bool,
 }
 
 impl Output {
@@ -142,6 +145,14 @@ impl Output {
         std::fs::create_dir_all(&folder)
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         Ok(folder)
+    }
+
+    /// Rebuilds a page from the CSV files in a folder, unless only these are wanted.
+    fn rebuild(&self, name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
+        if self.tables {
+            return Ok(());
+        }
+        written(name, folder, rebuild)
     }
 
     /// Prints rows as JSON or as a table. `table` formats the rows as a table.
@@ -166,14 +177,9 @@ fn main() -> Result<()> {
         } => measure_triangle(quick, study.as_deref(), only.as_deref(), &output),
         Page::Raymarch {
             quick,
-            study: None,
+            study,
             output,
-        } => measure_raymarch(quick, &output),
-        Page::Raymarch {
-            study: Some(study),
-            output,
-            ..
-        } => measure_studies(Some(&study), &output),
+        } => measure_raymarch(quick, study.as_deref(), &output),
         Page::Gouraud {
             quick,
             earlier,
@@ -211,7 +217,7 @@ fn measure_sine(quick: bool, bench: &Bench) -> Result<()> {
     let folder = output.folder(quick)?;
     write_csv(&rows, &folder.join("sine.csv"))?;
     write_csv(&[reference], &folder.join("sine-reference.csv"))?;
-    written("sine", &folder, pages::sine::rebuild)
+    output.rebuild("sine", &folder, pages::sine::rebuild)
 }
 
 /// Measures the engine and the soft core, or only the one that `study` names.
@@ -232,30 +238,28 @@ fn measure_triangle(
         output.print(&rows, pages::triangle::cpu_table)?;
         write_csv(&rows, &folder.join("triangle-cpu.csv"))?;
     }
-    written("triangle", &folder, pages::triangle::rebuild)
+    output.rebuild("triangle", &folder, pages::triangle::rebuild)
 }
 
-fn measure_raymarch(quick: bool, output: &Output) -> Result<()> {
+/// Measures the pictures, the rates and all studies of the raymarcher, or only what `study` names. Each table is written as soon as it is
+/// complete, because the next one takes minutes to measure.
+fn measure_raymarch(quick: bool, study: Option<&str>, output: &Output) -> Result<()> {
     let folder = output.folder(quick)?;
-    let rows = raymarch::pictures::measure(quick);
-    output.print(&rows, pages::raymarch::table)?;
-    // Each table is written as soon as it is complete, because the next one takes minutes to measure.
-    write_csv(&rows, &folder.join("raymarch.csv"))?;
-    if !quick {
+    if study.is_none_or(|study| study == "pictures") {
+        let rows = raymarch::pictures::measure(quick);
+        output.print(&rows, pages::raymarch::table)?;
+        write_csv(&rows, &folder.join("raymarch.csv"))?;
+    }
+    if study.map_or(!quick, |study| study == "rates") {
         let rates = raymarch::rates::measure()?;
         write_csv(&rates, &folder.join("raymarch-rates.csv"))?;
-        return measure_studies(None, output);
     }
-    written("raymarch", &folder, pages::raymarch::rebuild)
-}
-
-/// Measures all studies of the raymarcher, or one, and rebuilds the page.
-fn measure_studies(only: Option<&str>, output: &Output) -> Result<()> {
-    let folder = output.folder(false)?;
-    raymarch::studies::measure(only, |name, trials| {
-        write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
-    })?;
-    written("raymarch", &folder, pages::raymarch::rebuild)
+    if study.map_or(!quick, |study| !["pictures", "rates"].contains(&study)) {
+        raymarch::studies::measure(study, |name, trials| {
+            write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
+        })?;
+    }
+    output.rebuild("raymarch", &folder, pages::raymarch::rebuild)
 }
 
 fn measure_gouraud(quick: bool, earlier: bool, output: &Output) -> Result<()> {
@@ -280,7 +284,7 @@ fn measure_gouraud(quick: bool, earlier: bool, output: &Output) -> Result<()> {
         });
         write_csv(&costs, &file)?;
     }
-    written("gouraud", &folder, pages::gouraud::rebuild)
+    output.rebuild("gouraud", &folder, pages::gouraud::rebuild)
 }
 
 fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
@@ -290,7 +294,7 @@ fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
     output.print(&rows, pages::kernels::table)?;
     let folder = output.folder(quick)?;
     write_csv(&rows, &folder.join("kernels.csv"))?;
-    written("kernels", &folder, pages::kernels::rebuild)
+    output.rebuild("kernels", &folder, pages::kernels::rebuild)
 }
 
 fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
@@ -314,7 +318,7 @@ fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
     }
     let folder = output.folder(false)?;
     write_csv(&rows, &folder.join("stiff.csv"))?;
-    written("stiff", &folder, pages::stiff::rebuild)
+    output.rebuild("stiff", &folder, pages::stiff::rebuild)
 }
 
 fn measure_geometry(bench: &Bench) -> Result<()> {
@@ -326,7 +330,7 @@ fn measure_geometry(bench: &Bench) -> Result<()> {
     write_csv(&kernels, &folder.join("geometry-precision.csv"))?;
     let drift = geometry::drift::measure();
     write_csv(&drift, &folder.join("geometry-drift.csv"))?;
-    written("geometry", &folder, pages::geometry::rebuild)
+    output.rebuild("geometry", &folder, pages::geometry::rebuild)
 }
 
 fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
@@ -350,7 +354,7 @@ fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
     eprintln!("error over time …");
     write_csv(&imu::time::measure(190.0 * part), &file("imu-time.csv"))?;
     output.print(&targets, pages::imu::table)?;
-    written("imu", &folder, pages::imu::rebuild)
+    output.rebuild("imu", &folder, pages::imu::rebuild)
 }
 
 fn measure_gesture(bench: &Bench) -> Result<()> {
@@ -367,5 +371,5 @@ fn measure_gesture(bench: &Bench) -> Result<()> {
     write_csv(&targets, &file("gesture.csv"))?;
     write_csv(&centres, &file("gesture-centre.csv"))?;
     write_csv(&gesture::stiff(), &file("gesture-stiff.csv"))?;
-    written("gesture", &folder, pages::gesture::rebuild)
+    output.rebuild("gesture", &folder, pages::gesture::rebuild)
 }

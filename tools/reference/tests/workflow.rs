@@ -1,0 +1,133 @@
+//! Tests of the report's workflow, which Snakemake runs.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread;
+use std::time::SystemTime;
+
+use glint_reference::report::workspace;
+
+/// Cycles of the kernels that the jobs of these tests measure, as the console prints them.
+const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
+
+/// A run of the workflow in a folder of its own, with jobs that need no board.
+struct Run {
+    folder: PathBuf,
+}
+
+impl Run {
+    fn new(name: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+        if folder.exists() {
+            fs::remove_dir_all(&folder).expect("an old folder can be removed");
+        }
+        fs::create_dir_all(&folder).expect("the folder can be made");
+        fs::write(folder.join("transcript"), TRANSCRIPT).expect("writable");
+        let run = Self { folder };
+        run.stamp("the first inputs");
+        run
+    }
+
+    /// Sets the checksums of all that the jobs run.
+    fn stamp(&self, text: &str) {
+        fs::write(self.folder.join("inputs"), text).expect("writable");
+    }
+
+    /// Snakemake with some workers, for a target.
+    fn snakemake(&self, workers: u32, target: &str) -> Command {
+        let cycles = format!(
+            "cycles=--transcript {}",
+            self.folder.join("transcript").display()
+        );
+        let mut command = Command::new(workspace::path(".venv/bin/snakemake"));
+        command
+            .arg("--snakefile")
+            .arg(workspace::path("tools/reference/workflow/Snakefile"))
+            .arg("--directory")
+            .arg(&self.folder)
+            .args(["--cores", &workers.to_string(), "--nolock"])
+            .args(["--rerun-incomplete", target, "--config", "quick=1"])
+            .args(["pages=sine raymarch-pictures", &cycles])
+            .args([
+                format!("root={}", workspace::path("").display()),
+                format!("report={}", env!("CARGO_BIN_EXE_report")),
+                "stamp=inputs".to_owned(),
+            ]);
+        command
+    }
+
+    fn succeed(&self, workers: u32, target: &str) {
+        let output = self.snakemake(workers, target).output();
+        let output = output.expect("Snakemake starts");
+        assert!(
+            output.status.success(),
+            "{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+
+    /// The contents of the report's files, by their names.
+    fn pages(&self) -> BTreeMap<String, Vec<u8>> {
+        let files = fs::read_dir(self.folder.join("pages")).expect("the pages are made");
+        files
+            .map(|file| {
+                let file = file.expect("readable");
+                let name = file.file_name().into_string().expect("names are text");
+                (name, fs::read(file.path()).expect("readable"))
+            })
+            .collect()
+    }
+
+    /// When a table was written.
+    fn written(&self, table: &str) -> SystemTime {
+        let table = fs::metadata(self.folder.join("tables").join(table));
+        let time = table.and_then(|table| table.modified());
+        time.expect("the job has ended")
+    }
+}
+
+#[test]
+fn one_and_two_workers_write_the_same_report() {
+    let [one, two] = ["workflow-one", "workflow-two"].map(Run::new);
+    one.succeed(1, "report");
+    two.succeed(2, "report");
+    let pages = one.pages();
+    assert!(pages.contains_key("README.md") && pages.contains_key("sine.svg"));
+    assert!(pages == two.pages(), "the files differ");
+    let sine = String::from_utf8_lossy(&pages["sine.csv"]);
+    let committed = fs::read_to_string(workspace::path("docs/report/sine.csv")).expect("readable");
+    assert!(sine != committed, "the table is that of the quick run");
+}
+
+#[test]
+fn a_run_goes_on_where_another_one_was_killed() {
+    let run = Run::new("workflow-killed");
+    run.succeed(1, "tables/sine");
+    let first = run.written("sine/sine.csv");
+    let mut command = run.snakemake(2, "report");
+    let mut killed = command.process_group(0).spawn().expect("Snakemake starts");
+    let begun = run.folder.join("tables/raymarch-pictures");
+    while !begun.exists() {
+        let ended = killed.try_wait().expect("Snakemake can be awaited");
+        assert_eq!(ended, None, "Snakemake ends before its job");
+        thread::yield_now();
+    }
+    let group = format!("-{}", killed.id());
+    let kill = Command::new("kill").args(["-9", "--", &group]).status();
+    assert!(kill.expect("kill starts").success());
+    killed.wait().expect("Snakemake can be awaited");
+
+    run.succeed(2, "report");
+    let table = fs::read_to_string(run.folder.join("pages/raymarch.csv")).expect("readable");
+    assert!(table.ends_with('\n'), "the table is whole");
+    assert_eq!(run.written("sine/sine.csv"), first, "the job ran again");
+    run.stamp("the first inputs");
+    run.succeed(2, "report");
+    assert_eq!(run.written("sine/sine.csv"), first, "the same inputs");
+    run.stamp("other inputs");
+    run.succeed(2, "tables/sine");
+    assert!(run.written("sine/sine.csv") > first, "other inputs");
+}

@@ -1,0 +1,158 @@
+//! `cargo xtask report`: builds what a page of the report needs and measures it, or the whole report as a workflow of independent jobs.
+
+use std::fs::{self, File};
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result, ensure};
+
+use crate::gateware::{self, Board, Library};
+use crate::{bootstrap, firmware, paths, run};
+
+/// Folder of the workflow's description.
+const WORKFLOW: &str = "tools/reference/workflow/Snakefile";
+
+/// File with the checksums of all that the jobs run.
+const STAMP: &str = "inputs.sha256";
+
+/// Builds everything, makes the measurements of the report's page `name`, and writes the page. With `pages` as name it writes all pages
+/// from the tables of earlier measurements, and with `--help` as an argument it lists the options of the page. For these it builds only
+/// the report program.
+///
+/// # Errors
+/// A build or a measurement fails.
+pub fn page(name: &str, arguments: &[String]) -> Result<()> {
+    let asks_for_help = || arguments.iter().any(|argument| argument == "--help");
+    if name == "pages" || asks_for_help() {
+        return run::program("glint-reference", "report", name, arguments);
+    }
+    bootstrap::bootstrap()?;
+    if name == "stiff" {
+        firmware::build(Board::Virtual, &[])?;
+        return run::program("glint-reference", "report", name, arguments);
+    }
+    gateware::build(Board::Virtual)?;
+    build_parts(name)?;
+    firmware::build(Board::Virtual, &["peers"])?;
+    run::program("glint-reference", "report", name, arguments)
+}
+
+/// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoC whose raymarcher evaluates the field
+/// four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer.
+fn build_parts(name: &str) -> Result<()> {
+    match name {
+        "raymarch" => {
+            let sponge = "sponge";
+            gateware::build_beside(sponge, &["--fields", sponge], Library::Profiled)?;
+            model("raymarcher")
+        }
+        "gouraud" => model("triangle_raster"),
+        _ => Ok(()),
+    }
+}
+
+/// Builds the verilated models of a module, without a SoC.
+fn model(module: &str) -> Result<()> {
+    run::step(
+        &format!("models of {module}"),
+        Command::new(paths::venv_program("python"))
+            .args(["gateware/tests/run.py", "--models", module])
+            .current_dir(paths::root()),
+    )
+}
+
+/// Builds everything and runs the whole report with `workers` jobs at a time: into docs/report, or with `quick`, which measures samples,
+/// into target/report/quick/pages. Jobs that an interrupted run has finished are not run again, unless what they run has changed.
+/// `arguments` go to Snakemake, among them targets other than the report.
+///
+/// # Errors
+/// A build or a job fails, or another report runs.
+pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
+    bootstrap::bootstrap()?;
+    gateware::build(Board::Virtual)?;
+    build_parts("raymarch")?;
+    build_parts("gouraud")?;
+    firmware::build(Board::Virtual, &[])?;
+    firmware::build(Board::Virtual, &["peers"])?;
+    run::build_program("glint-reference", "report")?;
+    if arguments.iter().any(|argument| argument == "fuzz") {
+        run::step(
+            "build fuzz",
+            Command::new("cargo")
+                .args(["build", "--package", "glint", "--example", "fuzz"])
+                .current_dir(paths::root()),
+        )?;
+    }
+    let folder = paths::target().join("report");
+    let folder = folder.join(if quick { "quick" } else { "whole" });
+    fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
+    // Snakemake's own lock stays when it is killed.
+    let lock = File::create(folder.join("lock")).context("creating the lock of the report")?;
+    ensure!(
+        lock.try_lock().is_ok(),
+        "{}: expected one report at a time, found another one that runs",
+        folder.display()
+    );
+    write_stamp(&folder)?;
+    let programs = paths::target().join("debug");
+    run::foreground(
+        "the report",
+        Command::new(paths::venv_program("snakemake"))
+            .arg("--snakefile")
+            .arg(paths::root().join(WORKFLOW))
+            .arg("--directory")
+            .arg(&folder)
+            .args(["--cores", &workers.to_string()])
+            .args(["--nolock", "--rerun-incomplete", "--quiet", "rules"])
+            .args(arguments)
+            .arg("--config")
+            .args([
+                format!("root={}", paths::root().display()),
+                format!("report={}", programs.join("report").display()),
+                format!("fuzz={}", programs.join("examples/fuzz").display()),
+                format!("python={}", paths::venv_program("python").display()),
+                format!("stamp={STAMP}"),
+                format!("quick={}", u8::from(quick)),
+            ]),
+    )?;
+    let pages = folder.join("pages");
+    if quick || !arguments.is_empty() {
+        run::print_progress(&format!("wrote {}", folder.display()));
+        return Ok(());
+    }
+    let committed = paths::root().join("docs/report");
+    for file in fs::read_dir(&pages).with_context(|| format!("reading {}", pages.display()))? {
+        let file = file?;
+        fs::copy(file.path(), committed.join(file.file_name()))
+            .with_context(|| format!("copying {}", file.path().display()))?;
+    }
+    run::print_progress("wrote docs/report");
+    Ok(())
+}
+
+/// Writes the checksums of all that the jobs run to a file that is their input.
+fn write_stamp(folder: &Path) -> Result<()> {
+    let target = paths::target();
+    let files = [
+        "debug/report",
+        "firmware/glint.bin",
+        "firmware/glint-peers.bin",
+        "gateware/virtual/libglint_soc.so",
+        "gateware/virtual-sponge/libglint_soc.so",
+        "gateware/models/raymarcher.so",
+        "gateware/models/triangle_raster.so",
+        "gateware/models/triangle_raster_smooth.so",
+    ];
+    let files = files.map(|file| target.join(file));
+    let output = Command::new("sha256sum").args(&files).output()?;
+    ensure!(
+        output.status.success(),
+        "sha256sum: {}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let stamp = folder.join(STAMP);
+    if fs::read(&stamp).is_ok_and(|earlier| earlier == output.stdout) {
+        return Ok(());
+    }
+    fs::write(&stamp, output.stdout).with_context(|| format!("writing {}", stamp.display()))
+}
