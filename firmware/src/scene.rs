@@ -9,6 +9,7 @@ use glint_core::feature::{CPU, FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
 use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::picture::{Backend, Edges, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{Motion, Step};
 use glint_hal::frequency::Frequency;
@@ -103,6 +104,7 @@ pub struct Scene {
     with_mesh: bool,
     stereo: Option<Stereo>,
     appearance: Appearance,
+    quality: Quality,
     prepass: bool,
     edges: Option<Edges>,
     view: View,
@@ -131,6 +133,7 @@ impl Scene {
             with_mesh: false,
             stereo: None,
             appearance: Appearance::default(),
+            quality: Quality::default(),
             prepass: false,
             edges: None,
             view: sphere.view()?,
@@ -168,6 +171,7 @@ impl Scene {
                 let field = FieldSubject {
                     field,
                     appearance: &self.appearance,
+                    quality: self.quality,
                     prepass: self.prepass,
                 };
                 if self.with_mesh {
@@ -287,6 +291,17 @@ impl Scene {
         is_possible
     }
 
+    /// The quality that was set last. The size may be another one.
+    pub const fn quality(&self) -> Quality {
+        self.quality
+    }
+
+    /// Sets the precision of a field's rays to that of a quality.
+    pub fn set_quality(&mut self, quality: Quality) {
+        self.changed |= self.field.is_some() && self.quality != quality;
+        self.quality = quality;
+    }
+
     /// Sets whether a prepass marches cones before the rays of a field.
     pub fn set_prepass(&mut self, prepass: bool) {
         self.changed |= self.field.is_some() && self.prepass != prepass;
@@ -326,6 +341,7 @@ impl Scene {
         self.with_mesh = false;
         self.stereo = None;
         self.appearance = Appearance::default();
+        self.quality = Quality::default();
         self.prepass = false;
         self.edges = None;
         self.size = Size::default();

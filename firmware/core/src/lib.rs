@@ -40,6 +40,7 @@ pub mod object;
 pub mod orientation;
 pub mod picture;
 pub mod polar;
+pub mod quality;
 pub mod regions;
 pub mod scene;
 pub mod shape;

@@ -13,6 +13,7 @@ use glint_core::field::Field;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::shape::Shape;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wireframe::{CUBE, Motion, Program};
@@ -124,6 +125,7 @@ impl TestPicture {
             draw(Subject::Field(FieldSubject {
                 field: &field,
                 appearance: &Appearance::default(),
+                quality: Quality::default(),
                 prepass: false,
             }));
         }

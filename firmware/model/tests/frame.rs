@@ -6,6 +6,7 @@ use glint_core::colour::{Rgb565, Shading};
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_model::triangle::descriptor::{
     Descriptor, Full, LENGTHS, ListCounts, ListWriter, band_rows, list_shift, list_word, words,
 };
@@ -39,6 +40,7 @@ fn a_frame_is_drawn_from_constants_that_served_another_one() {
     let field = FieldSubject {
         field: &Field::parse("box:0.25,2,0.25").unwrap(),
         appearance: &Appearance::default(),
+        quality: Quality::default(),
         prepass: true,
     };
     let mut constants = FrameConstants::default();

@@ -8,6 +8,7 @@ use glint_core::fixed::{Q8_24, Turns, U8_28};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_model::triangle::raster::draw;
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::shade::Lit;
@@ -323,6 +324,7 @@ fn refused_frames() {
     let field = FieldSubject {
         field: &field,
         appearance: &appearance,
+        quality: Quality::default(),
         prepass: false,
     };
     let view = along_y(4.0, 3.2);

@@ -5,6 +5,7 @@ use glint_core::colour::{Shading, Winding};
 use glint_core::console::FrameCommands;
 use glint_core::fixed::U8_28;
 use glint_core::picture::{Backend, Edges, Size};
+use glint_core::quality::Quality;
 use glint_model::Clip;
 use litex_pac::cpu;
 
@@ -15,6 +16,22 @@ use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
 
 impl<'l> FrameCommands<'l> for Machine {
+    fn quality(&mut self, quality: Option<Quality>) -> Outcome<'l> {
+        let Some(quality) = quality else {
+            let quality = self.scene.quality();
+            self.terminal.print_entry("quality", &quality);
+            return Ok(Reply::Done);
+        };
+        // The largest size of this board up to that of the quality.
+        let sizes = Size::ALL.into_iter().rev();
+        let mut sizes = sizes.skip_while(|size| *size != quality.size());
+        if let Some(size) = sizes.find(|size| self.renderer.has_size(*size)) {
+            self.scene.set_size(size);
+        }
+        self.scene.set_quality(quality);
+        Ok(Reply::Done)
+    }
+
     fn size(&mut self, size: Size) -> Outcome<'l> {
         if !self.renderer.has_size(size) {
             return Err(CommandError::Size(size));

@@ -12,7 +12,7 @@ pub static SCENES: [BuiltIn; 10] = [
         "cubes",
         &[feature::FIELD, feature::FOG],
         "\
-size 640 360
+quality balanced
 lookat 1 -1 1 -1 1.2 -1.5
 fov 66
 background sky
@@ -31,7 +31,7 @@ field cubes:2,0.4
         "holoforge",
         &[feature::GESTURE, feature::MESH],
         "\
-size 320 180
+quality fast
 camera 2.5 40 65
 scene torus
 gesture on
@@ -42,7 +42,7 @@ gesture on
         "menger",
         &[feature::FIELD, feature::PREPASS],
         "\
-size 640 360
+quality balanced
 camera 4 30 60
 prepass on
 field menger:4
@@ -53,7 +53,7 @@ field menger:4
         "mesh-in-field",
         &[feature::FIELD, feature::LIGHT, feature::MESH, feature::MESH_IN_FIELD],
         "\
-size 640 360
+quality balanced
 camera 2 30 60
 material jade
 light 1,-2,3
@@ -68,7 +68,7 @@ field box:0.35,0.35,0.35
         "objects",
         &[feature::LIGHT, feature::MESH, feature::OBJECT],
         "\
-size 640 360
+quality balanced
 camera 2.2 20 70
 shading smooth
 light 3,-1,2,fff0d8
@@ -85,7 +85,7 @@ object add torus scale 0.45,-0.45,0.7 rotate y 75 rotate z 40 move 0.5,0.65,-0.1
         "poor-mans-vr",
         &[feature::FIELD, feature::IMU, feature::STEREO],
         "\
-size 640 360
+quality balanced
 lookat 0.9 -1.6 0.9 -0.47 0.75 -0.47
 fov 74
 material ivory
@@ -99,7 +99,7 @@ imu look
         "simplegpu",
         &[feature::CPU, feature::LIGHT, feature::MESH],
         "\
-size 640 360
+quality balanced
 lookat 0 -1.2 0.3 0.1 1 -0.1
 fov 150
 clip 3
@@ -114,7 +114,7 @@ scene polygons
         "spheres",
         &[feature::FIELD, feature::SPHERES],
         "\
-size 640 360
+quality balanced
 camera 2.6 40 62
 background sky
 field spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35;-0.85,-0.35,-0.1,0.4;0.3,-0.85,-0.3,0.3;-0.2,0.9,-0.25,0.35;0.45,0.35,0.65,0.25;-0.5,0.25,0.6,0.2;0.1,-0.5,0.6,0.22
@@ -125,7 +125,7 @@ field spheres:0,0,0,0.6;0.9,0.1,-0.2,0.35;-0.85,-0.35,-0.1,0.4;0.3,-0.85,-0.3,0.
         "wireframe",
         &[feature::WIREFRAME],
         "\
-size 640 360
+quality balanced
 program
 ",
     ),

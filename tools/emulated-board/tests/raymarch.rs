@@ -11,6 +11,7 @@ use glint_core::field::{Field, Primitive};
 use glint_core::light::{Background, Material};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_hal::raymarch::{Raymarcher, ray_counts};
 use glint_hal::triangle::{
@@ -193,6 +194,7 @@ fn every_kind_of_field() {
             let subject = FieldSubject {
                 field: &field,
                 appearance: &appearance,
+                quality: Quality::default(),
                 prepass,
             };
             check(&mut bench, subject, None, Size::W320);
@@ -213,6 +215,7 @@ fn two_eyes_and_large_pictures() {
         let subject = FieldSubject {
             field: &field,
             appearance: &appearance,
+            quality: Quality::default(),
             prepass: stereo.is_some(),
         };
         let stereo = stereo.map(|text| Stereo::parse(text).unwrap());
@@ -234,6 +237,7 @@ fn random_fields() {
         let subject = FieldSubject {
             field: &field,
             appearance: &Appearance::default(),
+            quality: Quality::default(),
             prepass: state & 1 == 1,
         };
         check(&mut bench, subject, None, Size::W320);
@@ -250,6 +254,7 @@ fn a_mesh_in_a_field() {
     let subject = FieldSubject {
         field: &field,
         appearance: &Appearance::default(),
+        quality: Quality::default(),
         prepass: false,
     };
     let frame = Frame {

@@ -13,6 +13,7 @@ use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::Mesh;
 use glint_core::object::Place;
 use glint_core::picture::{Edges, Size};
+use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
 use glint_core::stereo::Stereo;
 use glint_core::wireframe::{CUBE, Motion, Program};
@@ -32,7 +33,9 @@ fn refuse(reason: impl Display) -> FormatError {
 pub struct Changes {
     /// Shading of meshes.
     pub shading: Option<Shading>,
-    /// Size of the picture.
+    /// Quality of the picture, with its size.
+    pub quality: Option<Quality>,
+    /// Size of the picture, in place of that of the quality.
     pub size: Option<Size>,
 }
 
@@ -65,6 +68,7 @@ struct State<'s> {
     field: Option<Field>,
     stereo: Option<Stereo>,
     appearance: Appearance,
+    quality: Quality,
     prepass: bool,
     edges: Option<Edges>,
     view: View,
@@ -82,6 +86,7 @@ impl<'s> State<'s> {
             field: None,
             stereo: None,
             appearance: Appearance::default(),
+            quality: Quality::default(),
             prepass: false,
             edges: None,
             // Every scene states its camera; this one has the default field of view and near plane.
@@ -108,6 +113,11 @@ impl<'s> State<'s> {
             Command::Stereo { eyes } => self.stereo = eyes.flatten(),
             Command::Prepass { on } => self.prepass = on,
             Command::Edges { edges } => self.edges = edges.flatten(),
+            Command::Quality {
+                quality: Some(quality),
+            } => {
+                (self.quality, self.size) = (quality, quality.size());
+            }
             Command::Size { size } => self.size = size,
             Command::Camera { r, theta, phi } => {
                 let view = View::spherical(r, theta, phi).map_err(refuse)?;
@@ -176,6 +186,9 @@ pub fn draw<T>(
     let in_scene = |error: FormatError| error.in_file(scene.name());
     let mut state = State::of(scene).map_err(in_scene)?;
     state.options.shading = changes.shading.unwrap_or(state.options.shading);
+    if let Some(quality) = changes.quality {
+        (state.quality, state.size) = (quality, quality.size());
+    }
     let options = state.options;
     let names = meshes(scene);
     let meshes = names.iter().map(|name| mesh(name));
@@ -198,6 +211,7 @@ pub fn draw<T>(
     let field = state.field.as_ref().map(|field| FieldSubject {
         field,
         appearance: &state.appearance,
+        quality: state.quality,
         prepass: state.prepass,
     });
     let model = state.model.map(mesh).transpose()?;

@@ -51,7 +51,8 @@ const FIELD: &[&str] = &["field"];
 const LIT: &[&str] = &["model", "object", "field"];
 
 /// The keys that are console commands, in the order of the commands. What takes the longest to draw comes last.
-pub const COMMANDS: [Key; 24] = [
+pub const COMMANDS: [Key; 25] = [
+    key("quality"),
     key("size"),
     key("backend"),
     key("view").with(LIT).without(&["camera", "lookat"]),

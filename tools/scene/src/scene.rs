@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX};
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source, quote};
@@ -82,6 +83,11 @@ impl Scene {
             return Ok(scene);
         }
         check_subject(&file)?;
+        if !file.has("quality") && !file.has("size") {
+            scene
+                .settings
+                .push(format!("quality {}", Quality::default()));
+        }
         for key in &COMMANDS {
             let Some(value) = file.get(key.name) else {
                 continue;
@@ -160,10 +166,13 @@ impl Scene {
     /// The size of the picture; that at start if the scene sets none.
     pub fn size(&self) -> Size {
         let size = |command| match command {
+            Command::Quality {
+                quality: Some(quality),
+            } => Some(quality.size()),
             Command::Size { size } => Some(size),
             _ => None,
         };
-        self.commands().find_map(size).unwrap_or_default()
+        self.commands().filter_map(size).last().unwrap_or_default()
     }
 
     /// Frequency of the system clock in MHz; `None` for that of the board.

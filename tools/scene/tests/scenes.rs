@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use glint_core::block::Block;
+use glint_core::picture::Size;
 use glint_core::scene::commands;
 use glint_scene::{NAMES, Needs, Scene, Steer, built_in, keys};
 
@@ -96,6 +97,28 @@ fn keys_are_console_commands() {
     assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
 }
 
+/// A scene with neither quality nor size is balanced; a size replaces that of the quality.
+#[test]
+fn a_scene_has_a_quality() {
+    for (text, lines, size) in [
+        ("", "quality balanced", Size::W640),
+        ("quality = \"fast\"", "quality fast", Size::W320),
+        ("size = \"1280 720\"", "size 1280 720", Size::W1280),
+        (
+            "size = \"320 180\"\nquality = \"exact\"",
+            "quality exact, size 320 180",
+            Size::W320,
+        ),
+    ] {
+        for subject in ["model = \"cube\"", "field = \"menger:2\""] {
+            let scene = with_camera(&format!("{subject}\n{text}"));
+            let found: Vec<_> = scene.lines().collect();
+            assert!(found.join(", ").starts_with(&format!("{lines}, camera ")));
+            assert_eq!(scene.size(), size, "{text}");
+        }
+    }
+}
+
 #[test]
 fn refused_files() {
     const MODEL: &str = "title = \"a\"\nmodel = \"cube\"\ncamera = \"3 30 60\"\n";
@@ -125,6 +148,16 @@ fn refused_files() {
             "line 4: `sise`: expected a key, one of title, steer",
         ),
         (MODEL, "model = \"cube\"", "line 4: duplicate key"),
+        (
+            MODEL,
+            "quality = \"best\"",
+            "line 4: quality = `best`: quality: fast|balanced|exact is \"best\" (column 9): expected fast or balanced or exact",
+        ),
+        (
+            MODEL,
+            "quality = 1",
+            "quality = `1`: quality: fast|balanced|exact is \"1\"",
+        ),
         (
             MODEL,
             "size = \"640 480\"",

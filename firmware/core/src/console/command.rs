@@ -17,6 +17,7 @@ use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
 use crate::light::{Background, Light, Material, Rgb};
 use crate::picture::{Backend, Edges};
+use crate::quality::Quality;
 use crate::stereo::Stereo;
 use crate::wireframe::Key;
 use crate::words::Words;
@@ -100,6 +101,7 @@ commands! {
 
     /// Commands for drawing frames.
     FrameCommands {
+        quality Quality(quality: Option<Quality>): "show or set the quality: the picture size, and the precision of a field's rays";
         size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720";
         backend Backend(backend: Option<Backend>): "show or set the backend that draws frames";
         shading Shading(shading: Option<Shading>) in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)";

@@ -72,6 +72,7 @@ impl<'a> Command<'a> {
                         | GestureAction::Unmark,
                     ),
             }
+            | Self::Quality { quality: Some(_) }
             | Self::Size { .. }
             | Self::Backend { backend: Some(_) }
             | Self::Shading { shading: Some(_) }

@@ -11,6 +11,7 @@ use glint_core::light::{Background, Light, Material};
 use glint_core::matrix::{Axis, Matrix};
 use glint_core::object::Place;
 use glint_core::picture::{Backend, Edges, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
@@ -27,7 +28,7 @@ proptest! {
 
     #[test]
     fn no_arguments_upset_the_parser(
-        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "zoom", "fit", "orbit", "size", "load", "object", "leds", "help"][..]),
+        name in proptest::sample::select(&["field", "stereo", "material", "light", "ambient", "fog", "camera", "view", "look", "lookat", "fov", "orthographic", "zoom", "fit", "orbit", "quality", "size", "load", "object", "leds", "help"][..]),
         words in proptest::collection::vec("(box:)?[-+]?[0-9a-fx_.,e]{0,12}", 0..16),
     ) {
         let line = format!("{name} {}", words.join(" "));
@@ -310,6 +311,15 @@ fn every_command_is_understood() {
     assert_parses("sensitivity 2.5", Command::Sensitivity { gain: Some(640) });
     assert_parses("orbit", Command::Orbit { frames: None });
     assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
+    assert_parses("quality", Command::Quality { quality: None });
+    for quality in Quality::ALL {
+        assert_parses(
+            &format!("quality {quality}"),
+            Command::Quality {
+                quality: Some(quality),
+            },
+        );
+    }
     assert_parses("size 320 180", Command::Size { size: Size::W320 });
     assert_parses("size 640 360", Command::Size { size: Size::W640 });
     assert_parses("size 1280 720", Command::Size { size: Size::W1280 });

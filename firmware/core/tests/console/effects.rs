@@ -12,7 +12,7 @@ fn parse(line: &str) -> Command<'_> {
 fn commands_that_show_something_leave_the_picture() {
     let shown = "help info selftest buttons scene models field mesh stereo object material light \
         ambient background fog occlusion undecided view imu mounting sensitivity replay gesture \
-        backend shading edges overlay render frame stats bench demo";
+        quality backend shading edges overlay render frame stats bench demo";
     for line in shown.split(' ') {
         assert_eq!(parse(line).effect(), Effect::None, "{line}");
     }
@@ -50,6 +50,7 @@ fn uploads_are_apart_from_settings() {
         "fov 60",
         "zoom 2",
         "fit",
+        "quality fast",
         "size 320 180",
         "backend cpu",
     ] {

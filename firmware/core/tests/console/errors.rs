@@ -45,6 +45,10 @@ fn mistakes_are_named_with_their_place() {
         "camera: R is \"nan\" (column 8): expected a number",
     );
     assert_refused(
+        "quality best",
+        "quality: fast|balanced|exact is \"best\" (column 9): expected fast or balanced or exact",
+    );
+    assert_refused(
         "size 1 2",
         "size: 1 x 2: expected 320 180, 640 360 or 1280 720",
     );

@@ -37,12 +37,13 @@ fn the_help_lists_every_command_and_how_it_is_used() {
             assert!(Command::parse(name).is_ok(), "{name}");
         }
     }
-    assert_eq!(list.lines().count(), 53);
+    assert_eq!(list.lines().count(), 54);
     for (command, usage) in [
         ("object", "object [ACTION [OBJECT [PLACE]]]\n"),
         ("imu", "imu [ACTION [SAMPLES]]\n"),
         ("replay", "replay [BYTES CRC32]\n"),
         ("gesture", "gesture [ACTION]\n"),
+        ("quality", "quality [fast|balanced|exact]\n"),
         ("size", "size W H\n"),
         ("stats", "stats [json]\n"),
         ("light", "light [default|LIGHT]\n"),

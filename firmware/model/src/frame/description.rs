@@ -10,6 +10,7 @@ use glint_core::light::MeshLighting;
 use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Edges, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 
 use crate::raymarch::FieldOptions;
@@ -86,6 +87,8 @@ pub struct FieldSubject<'a> {
     pub field: &'a Field,
     /// Material, lights, background, fog and occlusion.
     pub appearance: &'a Appearance,
+    /// Quality, which determines the precision of the rays. The frame has the picture's size.
+    pub quality: Quality,
     /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats.md, "Cones").
     pub prepass: bool,
 }
@@ -221,7 +224,7 @@ impl FieldSubject<'_> {
     pub(super) fn options(&self, view: &View, stereo: Option<Stereo>) -> FieldOptions {
         FieldOptions {
             prepass: self.prepass,
-            ..FieldOptions::new(self.field, self.appearance, stereo, view)
+            ..FieldOptions::new(self.field, self.appearance, self.quality, stereo, view)
         }
     }
 }

@@ -5,6 +5,7 @@ use glint_core::camera::View;
 use glint_core::field::{FRACTION, Field};
 use glint_core::fixed::U4_28;
 use glint_core::light::{Background, Lighting, Material};
+use glint_core::quality::{Quality, Threshold};
 use glint_core::stereo::Stereo;
 
 use super::palette::Palette;
@@ -35,27 +36,28 @@ pub struct Tuning {
 /// thresholds need more evaluations: if the constant part or the growing part were smaller, the slowest view of the
 /// report would take more than 14.4 evaluations per ray. A smaller constant part with a larger growing part shows more
 /// wrong faces for the same number of evaluations.
-pub const DEFAULT_TUNING: Tuning = Tuning {
-    threshold: 28,
-    footprint: 14,
-    cap: 255,
-    far: FARTHEST,
-};
+pub const DEFAULT_TUNING: Tuning = Tuning::with(Quality::Balanced.preset().faces);
 
-/// Tuning for round fields and oblique faces, where silhouettes and the normals of spheres show the position of a hit.
-pub const ROUND_TUNING: Tuning = Tuning {
-    threshold: 4,
-    footprint: 15,
-    ..DEFAULT_TUNING
-};
+/// Default tuning for round fields and oblique faces, where silhouettes and the normals of spheres show the position of a hit.
+pub const ROUND_TUNING: Tuning = Tuning::with(Quality::Balanced.preset().round);
 
 impl Tuning {
-    /// Default tuning of a field.
-    const fn of(field: &Field) -> Self {
+    const fn with(Threshold { base, footprint }: Threshold) -> Self {
+        Self {
+            threshold: base,
+            footprint,
+            cap: 255,
+            far: FARTHEST,
+        }
+    }
+
+    /// Tuning of a field in pictures of a quality.
+    pub const fn of(field: &Field, quality: Quality) -> Self {
+        let preset = quality.preset();
         if field.is_round() || field.has_octants() {
-            ROUND_TUNING
+            Self::with(preset.round)
         } else {
-            DEFAULT_TUNING
+            Self::with(preset.faces)
         }
     }
 }
@@ -82,16 +84,17 @@ impl FieldOptions {
     /// Default options, with the default tuning of the field.
     pub fn of(field: &Field) -> Self {
         Self {
-            tuning: Tuning::of(field),
+            tuning: Tuning::of(field, Quality::default()),
             palette: Palette::of(field, Material::Normal, &Lighting::PLAIN, Background::White),
             ..Self::default()
         }
     }
 
-    /// Options for a field with an appearance that a camera sees, with one eye or two, and the default tuning.
+    /// Options for a field with an appearance that a camera sees, with one eye or two, in a picture of a quality.
     pub fn new(
         field: &Field,
         appearance: &Appearance,
+        quality: Quality,
         stereo: Option<Stereo>,
         view: &View,
     ) -> Self {
@@ -114,7 +117,7 @@ impl FieldOptions {
             stereo,
             palette,
             fog,
-            tuning: Tuning::of(field),
+            tuning: Tuning::of(field, quality),
             ..Self::default()
         }
     }

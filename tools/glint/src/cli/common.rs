@@ -9,7 +9,9 @@ use glint::board::{
 };
 use glint::console::Console;
 use glint::error::{FormatError, InputError, quote};
+use glint::scene::Changes;
 use glint_core::picture::{Backend, Size};
+use glint_core::quality::Quality;
 use std::path::PathBuf;
 
 /// Arguments that state what a scene states, so that they are refused beside one.
@@ -26,6 +28,39 @@ pub const STATED: [&str; 11] = [
     "undecided",
     "prepass",
 ];
+
+/// Quality and size of pictures.
+#[derive(clap::Args)]
+pub struct SizeArguments {
+    /// Quality: `fast` (320x180), `balanced` (640x360) or `exact` (1280x720). It sets the picture's size, and the precision of the rays of a
+    /// field [default: the scene's; without a scene, 320x180 with the precision of `balanced`].
+    #[arg(long, value_parser = named(Quality::ALL, Quality::name))]
+    quality: Option<Quality>,
+    /// Size of the picture: 320x180, 640x360 or 1280x720, in place of that of the quality.
+    #[arg(long, value_name = "WxH")]
+    size: Option<String>,
+}
+
+impl SizeArguments {
+    /// What the options change in a scene.
+    pub fn changes(&self) -> anyhow::Result<Changes> {
+        Ok(Changes {
+            quality: self.quality,
+            size: self.size.as_deref().map(size).transpose()?,
+            ..Changes::default()
+        })
+    }
+
+    /// Quality and size of a picture without a scene.
+    pub fn of_subject(&self) -> anyhow::Result<(Quality, Size)> {
+        let size = self.changes()?.size;
+        let preset = self.quality.map(Quality::size);
+        Ok((
+            self.quality.unwrap_or_default(),
+            size.or(preset).unwrap_or_default(),
+        ))
+    }
+}
 
 /// The speed of a serial port.
 #[derive(clap::Args)]

@@ -23,6 +23,7 @@ use glint_core::field::{Field, Menger, Primitive};
 use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -249,6 +250,7 @@ impl DemoArguments {
         let subject = FieldSubject {
             field: &SPONGE,
             appearance: &Appearance::default(),
+            quality: Quality::default(),
             prepass: false,
         };
         let console = renderer.console();
@@ -330,6 +332,7 @@ fn show_scene(
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(SIZE),
+        ..Changes::default()
     };
     let expected = scene::draw(&scene, &changes, render::on_model)??;
     anyhow::ensure!(

@@ -1,7 +1,7 @@
 //! `glint orbit`.
 
 use super::camera::{CameraArguments, Shown, turn};
-use super::common::{STATED, TransferArguments, bad_value, named, size};
+use super::common::{STATED, SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -16,7 +16,7 @@ use glint::picture::{Animation, Image};
 use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
 };
-use glint::scene::{self, Changes};
+use glint::scene;
 use glint_core::camera::View;
 use glint_core::colour::Shading;
 use glint_core::matrix::Matrix;
@@ -37,7 +37,7 @@ pub struct OrbitArguments {
     /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
-    /// states camera and size, which the options of the camera and --size replace.
+    /// states camera, quality and size, which the options of the camera, --quality and --size replace.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
     scene: Option<String>,
     #[command(flatten)]
@@ -60,9 +60,8 @@ pub struct OrbitArguments {
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
-    /// Size of the pictures: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
+    #[command(flatten)]
+    size: SizeArguments,
     /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
     #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
     shading: Shading,
@@ -101,11 +100,7 @@ impl OrbitArguments {
 
     fn run_scene(&self, scene: &Scene) -> anyhow::Result<()> {
         let out = self.open(Some(scene))?;
-        let changes = Changes {
-            size: self.size.as_deref().map(size).transpose()?,
-            ..Changes::default()
-        };
-        scene::draw(scene, &changes, |frame| {
+        scene::draw(scene, &self.size.changes()?, |frame| {
             if let Subject::Wireframe(_) = frame.subject {
                 let expected = "a scene with a camera";
                 return Err(bad_value("--scene", expected, "a wireframe program").into());
@@ -117,12 +112,13 @@ impl OrbitArguments {
 
     fn run_subject(&self) -> anyhow::Result<()> {
         let out = self.open(None)?;
-        let size = self.size.as_deref().map(size).transpose()?;
+        let (quality, size) = self.size.of_subject()?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let field = field.as_ref().map(|field| FieldSubject {
             field,
             appearance: &appearance,
+            quality,
             prepass: self.field.prepass(),
         });
         let model = self.model.as_deref().map(|name| load(name, false));
@@ -151,7 +147,6 @@ impl OrbitArguments {
             self.frames,
         )?;
         let first = views.first().context("expected a frame")?;
-        let size = size.unwrap_or_default();
         let frame = Frame {
             stereo: self.field.stereo()?,
             ..Frame::in_appearance(subject, *first, size, &appearance)

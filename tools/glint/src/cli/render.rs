@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{STATED, TransferArguments, bad_value, named, size};
+use super::common::{STATED, SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -18,7 +18,7 @@ use glint::render::{
     BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
     Renderer, Route, Stats, Subject, remarks,
 };
-use glint::scene::{self, Changes};
+use glint::scene;
 use glint::transfer::Progress;
 use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::U8_28;
@@ -36,7 +36,7 @@ pub struct RenderArguments {
     /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
-    /// states camera and size, which the options of the camera and --size replace.
+    /// states camera, quality and size, which the options of the camera, --quality and --size replace.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
     scene: Option<String>,
     /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
@@ -54,9 +54,8 @@ pub struct RenderArguments {
     /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
-    /// Size of the picture: 320x180, 640x360 or 1280x720 [default: 320x180, or the scene's].
-    #[arg(long, value_name = "WxH")]
-    size: Option<String>,
+    #[command(flatten)]
+    size: SizeArguments,
     /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
@@ -132,19 +131,14 @@ struct Totals<'a> {
 impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         self.transfer.check(&self.board, self.backend)?;
-        let size = self.size.as_deref().map(size).transpose()?;
         if let Some(name) = &self.scene {
             let scene = glint_scene::read(name)?;
-            let changes = Changes {
-                size,
-                ..Changes::default()
-            };
-            return scene::draw(&scene, &changes, |frame| {
+            return scene::draw(&scene, &self.size.changes()?, |frame| {
                 let view = self.camera.of_scene(frame.view)?;
                 self.write(&Frame { view, ..*frame }, Some(&scene))
             })?;
         }
-        let size = size.unwrap_or_default();
+        let (quality, size) = self.size.of_subject()?;
         let field = self.field.field()?;
         let appearance = self.field.appearance()?;
         let stereo = self.field.stereo()?;
@@ -161,6 +155,7 @@ impl RenderArguments {
         let field = field.as_ref().map(|field| FieldSubject {
             field,
             appearance: &appearance,
+            quality,
             prepass: self.field.prepass(),
         });
         let mesh = mesh.transpose()?;

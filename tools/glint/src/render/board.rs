@@ -2,7 +2,7 @@
 
 use super::commands::{
     background_command, edges_command, field_commands, lighting_commands, mesh_commands,
-    object_command, size_command, stereo_command, view_command,
+    object_command, quality_commands, size_command, stereo_command, view_command,
 };
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
@@ -97,7 +97,9 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             self.scene = Some(scene);
             return stats;
         }
-        self.console.command(&size_command(frame.size))?;
+        for command in quality_commands(frame) {
+            self.console.command(&command)?;
+        }
         self.console.command(&view_command(&frame.view))?;
         self.console.command(&stereo_command(frame.stereo))?;
         let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
@@ -129,7 +131,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// Shows a scene with camera and size of `frame`, without what moves the camera. Meshes that boards have not built in are uploaded.
+    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Meshes that boards have not built in are uploaded.
     fn show_scene(
         &mut self,
         scene: &Scene,
@@ -148,9 +150,9 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             self.console.command(line)?;
         }
         let backend = self.backend.map(|backend| format!("backend {backend}"));
-        let (size, view) = (size_command(frame.size), view_command(&frame.view));
-        let last = backend.iter().chain([&size, &view]);
-        self.render_after(&last.map(String::as_str).collect::<Vec<_>>())
+        let last = backend.into_iter().chain(quality_commands(frame));
+        let last: Vec<_> = last.chain([view_command(&frame.view)]).collect();
+        self.render_after(&last.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
     /// Shows a program of the wireframe simulator on the board in a picture of this size, plays a script of keys, one step a frame, and

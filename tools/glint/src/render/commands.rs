@@ -7,7 +7,14 @@ use glint_core::light::{Background, Hexadecimal, MeshLighting};
 use glint_core::object::Place;
 use glint_core::picture::{Edges, Size};
 use glint_core::stereo::Stereo;
-use glint_model::{Clip, FieldSubject, MeshSubject, Object};
+use glint_model::{Clip, FieldSubject, Frame, MeshSubject, Object};
+
+/// The console commands that set the quality of a field's rays, if the frame has a field, and the size.
+pub fn quality_commands(frame: &Frame) -> impl Iterator<Item = String> {
+    let field = frame.subject.field_part();
+    let quality = field.map(|field| format!("quality {}", field.quality));
+    quality.into_iter().chain([size_command(frame.size)])
+}
 
 /// The console command that sets the picture's size.
 pub fn size_command(size: Size) -> String {

@@ -12,6 +12,7 @@ use glint_core::appearance::Appearance;
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_model::{Object, Placement};
 use virtual_board::virtual_image_sensor::{Place, Scene};
@@ -52,6 +53,7 @@ fn both_boards_draw_the_same() {
     let field = FieldSubject {
         field: &Field::parse("box:0.3,1,0.3").unwrap(),
         appearance: &Appearance::default(),
+        quality: Quality::default(),
         prepass: false,
     };
     let both = Subject::MeshInField(plain(&sphere), field);

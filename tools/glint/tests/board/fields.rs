@@ -11,6 +11,7 @@ use glint_core::field::Field;
 use glint_core::light::Material;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
+use glint_core::quality::Quality;
 
 #[test]
 fn a_field_is_the_models() {
@@ -37,6 +38,7 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             material: Material::Jade,
             ..Appearance::default()
         },
+        quality: Quality::default(),
         prepass: false,
     };
     let triangles = MeshSubject::new(Mesh::new_checked(&mesh).unwrap());
@@ -116,6 +118,7 @@ fn a_field_by(backend: Backend, name: &str) {
     let subject = FieldSubject {
         field: &Field::parse("box:0.5,0.5,0.25").unwrap(),
         appearance: &Appearance::default(),
+        quality: Quality::default(),
         prepass: false,
     };
     let view = view::parse(eye.as_bytes()).unwrap();

@@ -16,6 +16,7 @@ mod interrupted;
 mod meshes;
 mod objects;
 mod power_up;
+mod quality;
 mod scenes;
 mod scripts;
 mod sensor;

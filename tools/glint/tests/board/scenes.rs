@@ -16,6 +16,7 @@ fn scenes_are_the_models() {
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(Size::W320),
+        ..Changes::default()
     };
     // The list `demo` has the lines of `holoforge`.
     for name in NAMES.into_iter().filter(|name| *name != "demo") {

@@ -13,6 +13,7 @@ use glint_core::colour::{Rgb565, Shading, luminance};
 use glint_core::field::Field;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Edges, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_model::{Object, Placement};
 
@@ -70,6 +71,7 @@ fn two_eyes_are_the_models() {
     let field = FieldSubject {
         field: &field,
         appearance: &appearance,
+        quality: Quality::default(),
         prepass: true,
     };
     let smooth = MeshSubject {

@@ -131,7 +131,7 @@ fn fields_and_scenes() {
     );
     assert_eq!(
         said,
-        "{\"scene\":\"lamp.toml\",\"board\":\"model\",\"size\":[320,180],\"frames\":2}\n"
+        "{\"scene\":\"lamp.toml\",\"board\":\"model\",\"size\":[640,360],\"frames\":2}\n"
     );
     for (arguments, error) in [
         (

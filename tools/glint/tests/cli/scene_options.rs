@@ -121,9 +121,69 @@ fn two_eyes() {
             (picture(&folder.join("a.png")), depth)
         };
         let scene = render(&["--scene", &name]);
-        let eyes = ["--camera", "3,30,60", "--stereo", "0.2,2.5,red-cyan"];
+        let eyes = [
+            "--camera",
+            "3,30,60",
+            "--stereo",
+            "0.2,2.5,red-cyan",
+            "--quality",
+            "balanced",
+        ];
         assert!(scene == render(&[options, &eyes].concat()), "{keys}");
         let one = render(&["--scene", "one.toml"]);
         assert!(scene.0 != one.0 && scene.1 != one.1, "{keys}");
     }
+}
+
+/// The quality of a scene is its key or the option; a size replaces that of either.
+#[test]
+fn quality_of_a_scene() {
+    let folder = folder("scene-quality");
+    const SPONGE: &str = "title = \"A\"\nfield = \"menger:3\"\ncamera = \"3 25 70\"\n";
+    for (name, keys) in [
+        ("balanced.toml", ""),
+        ("fast.toml", "quality = \"fast\"\n"),
+        ("large.toml", "quality = \"fast\"\nsize = \"640 360\"\n"),
+    ] {
+        std::fs::write(folder.join(name), format!("{SPONGE}{keys}")).unwrap();
+    }
+    let render = |arguments: &[&str]| {
+        succeed(
+            &folder,
+            &[&["render", "--out", "a.png"], arguments].concat(),
+        );
+        picture(&folder.join("a.png"))
+    };
+    let of_scene = |arguments: &[&str]| render(&[&["--scene"], arguments].concat());
+    let of_field = |arguments: &[&str]| {
+        let field = ["--field", "menger:3", "--camera", "3,25,70"];
+        render(&[&field[..], arguments].concat())
+    };
+    let balanced = of_scene(&["balanced.toml"]);
+    assert_eq!(balanced.len(), 3 * 640 * 360);
+    assert!(balanced == of_scene(&["fast.toml", "--quality", "balanced"]));
+    assert!(balanced == of_field(&["--quality", "balanced"]));
+    assert!(balanced == of_field(&["--size", "640x360"]));
+    let fast = of_scene(&["fast.toml"]);
+    assert_eq!(fast.len(), 3 * 320 * 180);
+    assert!(fast == of_scene(&["balanced.toml", "--quality", "fast"]));
+    assert!(fast == of_field(&["--quality", "fast"]));
+    assert!(fast != of_field(&[]));
+    let large = of_scene(&["large.toml"]);
+    assert!(large.len() == balanced.len() && large != balanced);
+    assert!(large == of_scene(&["balanced.toml", "--quality", "fast", "--size", "640x360"]));
+    assert!(large == of_field(&["--size", "640x360", "--quality", "fast"]));
+    let best = [
+        "render",
+        "--field",
+        "menger:3",
+        "--quality",
+        "best",
+        "--out",
+        "b.png",
+    ];
+    let output = glint(&folder, &best);
+    let error = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{error}");
+    assert!(error.contains("fast, balanced, exact"), "{error}");
 }

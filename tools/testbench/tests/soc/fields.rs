@@ -13,6 +13,7 @@ use glint_core::fixed::{Q32_32, U4_28};
 use glint_core::light::{Background, Light, Material};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_core::wire::Manifest;
 
@@ -187,6 +188,7 @@ fn the_soc_draws_every_field() {
                         let subject = FieldSubject {
                             field: &field,
                             appearance: &Appearance::default(),
+                            quality: Quality::default(),
                             prepass,
                         };
                         let frame = Frame {
@@ -214,6 +216,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     let sponge = FieldSubject {
         field: &Field::from(Menger { depth: 4 }),
         appearance: &Appearance::default(),
+        quality: Quality::default(),
         prepass: true,
     };
     let [view, ..] = views();
@@ -271,6 +274,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     let field = FieldSubject {
         field: &Field::parse("box:0.75,0.75,0.75").unwrap(),
         appearance: &appearance,
+        quality: Quality::default(),
         prepass: true,
     };
     let both = |view, size, cull| {

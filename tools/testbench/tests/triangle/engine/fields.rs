@@ -6,6 +6,7 @@ use glint_core::appearance::Appearance;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
 use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_model::raymarch::Rays;
 use glint_model::triangle::descriptor::band_rows;
@@ -31,6 +32,7 @@ impl Picture {
         let subject = FieldSubject {
             field: &Field::parse(text).unwrap(),
             appearance: &Appearance::default(),
+            quality: Quality::default(),
             prepass: false,
         };
         let view = Camera::looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1).rounded();

@@ -7,6 +7,7 @@ use glint::render::{self, BoardRenderer, FieldSubject, Frame, Route, Subject};
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
 use glint_core::picture::{Backend, Size};
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
@@ -248,6 +249,7 @@ fn draw(
         let subject = FieldSubject {
             field: &field,
             appearance: &Appearance::default(),
+            quality: Quality::default(),
             prepass: case.prepass,
         };
         let pose = camera.turned(angles).view().map_err(anyhow::Error::msg)?;

@@ -1,0 +1,127 @@
+//! Qualities: each is the size and the precision that it states, on the model and on a board.
+
+use crate::common::{console, emulator, info, renderer};
+use glint::render::{self, FieldSubject, Frame, Parts, Renderer, Route, Subject};
+use glint::view;
+use glint_core::appearance::Appearance;
+use glint_core::field::Field;
+use glint_core::picture::Size;
+use glint_core::quality::Quality;
+use glint_model::FrameBuffer;
+use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Tuning, render_field};
+
+/// Size, threshold and footprint of faces, and threshold and footprint of round fields.
+const STATED: [(Quality, Size, [u32; 2], [u32; 2]); 3] = [
+    (Quality::Fast, Size::W320, [160, 12], [28, 14]),
+    (Quality::Balanced, Size::W640, [28, 14], [4, 15]),
+    (Quality::Exact, Size::W1280, [6, 15], [2, 15]),
+];
+
+const FIELDS: [&str; 2] = ["menger:3", "union:box:1,1,0.2+sphere:0.7"];
+
+fn frame<'a>(field: &'a Field, appearance: &'a Appearance, quality: Quality) -> Frame<'a> {
+    let subject = Subject::Field(FieldSubject {
+        field,
+        appearance,
+        quality,
+        prepass: false,
+    });
+    let view = view::spherical("3,25,70").unwrap();
+    Frame::new(subject, view, quality.size())
+}
+
+#[test]
+fn a_quality_is_a_size_and_a_threshold() {
+    let appearance = Appearance::default();
+    for (quality, size, faces, round) in STATED {
+        for (text, [threshold, footprint]) in FIELDS.into_iter().zip([faces, round]) {
+            let field = Field::parse(text).unwrap();
+            let frame = frame(&field, &appearance, quality);
+            let found = render::on_model(&frame).unwrap();
+            let tuning = Tuning {
+                threshold,
+                footprint,
+                ..DEFAULT_TUNING
+            };
+            let options = FieldOptions {
+                tuning,
+                ..FieldOptions::of(&field)
+            };
+            let setup =
+                FieldSetup::new(&field, &frame.view, size.pixels().into(), &options).unwrap();
+            let (mut colour, mut depth) =
+                (vec![0; size.pixel_count()], vec![0; size.pixel_count()]);
+            let mut target = FrameBuffer {
+                width: size.width(),
+                height: size.height(),
+                colour: &mut colour,
+                depth: &mut depth,
+            };
+            let stats = render_field(&setup, &options.palette, &mut target, &mut |_, _, _, _| {});
+            let evaluations = stats.unwrap().evaluations;
+            assert_eq!(found.stats.rays.unwrap().evaluations, evaluations, "{text}");
+            assert!(found.image.colour == colour, "{quality}, {text}");
+        }
+    }
+}
+
+#[test]
+fn a_board_has_the_qualities_of_the_model() {
+    let mut board = emulator();
+    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let appearance = Appearance::default();
+    let parts = Parts {
+        colour: true,
+        depth: false,
+    };
+    let mut evaluations = Vec::new();
+    for quality in Quality::ALL {
+        for text in FIELDS {
+            let field = Field::parse(text).unwrap();
+            // The quality with its own size, and with another one.
+            let own = frame(&field, &appearance, quality);
+            let small = Frame {
+                size: Size::W320,
+                ..own
+            };
+            let own = (text == FIELDS[0]).then_some(own);
+            for frame in own.iter().chain([&small]) {
+                let found = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
+                let expected = render::on_model(frame).unwrap();
+                assert!(
+                    found.image.colour == expected.image.colour,
+                    "{quality}, {text}"
+                );
+                let [found, expected] =
+                    [found, expected].map(|rendered| rendered.stats.rays.unwrap().evaluations);
+                assert_eq!(found, expected, "{quality}, {text}");
+                evaluations.push(found);
+            }
+        }
+    }
+    // The small pictures of the sponge: more evaluations with each quality.
+    let [fast, balanced, exact] = [1, 4, 7].map(|place| evaluations[place]);
+    assert!(fast < balanced && balanced < exact, "{evaluations:?}");
+}
+
+#[test]
+fn a_later_size_replaces_that_of_the_quality() {
+    let mut board = emulator();
+    let mut console = console(&mut board);
+    let mut state = |lines: &[&str]| {
+        for line in lines {
+            console.command(line).unwrap();
+        }
+        let quality = console.command("quality").unwrap();
+        (quality.concat(), info::<u32>(&mut console, "size"))
+    };
+    let is = |name: &str, width| (format!("quality {name}"), width);
+    assert_eq!(state(&[]), is("balanced", 320));
+    for (quality, size, ..) in STATED {
+        let line = format!("quality {quality}");
+        assert_eq!(state(&[&line]), is(quality.name(), size.width()));
+        assert_eq!(state(&["size 320 180"]), is(quality.name(), 320));
+    }
+    assert_eq!(state(&["scene cubes"]), is("balanced", 640));
+    assert_eq!(state(&["scene default"]), is("balanced", 320));
+}
