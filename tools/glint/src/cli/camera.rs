@@ -8,6 +8,7 @@ use glint_core::camera::View;
 use glint_core::fixed::Turns;
 use glint_core::framing::Sphere;
 use glint_core::matrix::Axis;
+use glint_core::stereo::Stereo;
 use glint_model::{MAX_EYE, RenderError};
 use std::path::{Path, PathBuf};
 
@@ -74,6 +75,8 @@ pub struct Shown<'a> {
     pub has_mesh: bool,
     /// Whether a field needs perspective.
     pub has_field: bool,
+    /// The two eyes.
+    pub stereo: Option<Stereo>,
 }
 
 impl CameraArguments {
@@ -144,6 +147,7 @@ impl CameraArguments {
             model: None,
             has_mesh: false,
             has_field: false,
+            stereo: None,
         };
         match self.is_given() {
             true => self.view(&shown),
@@ -236,10 +240,12 @@ impl LensArguments {
     }
 }
 
-/// Refuses a camera, given by `source`, that is too far away for a mesh.
+/// Refuses a camera, given by `source`, of which an eye is too far away for a mesh.
 fn check_eye(view: &View, shown: &Shown, source: &str) -> anyhow::Result<()> {
-    if shown.has_mesh && !view.is_within(MAX_EYE) {
-        let found = RenderError::Eye(view.eye()).to_string();
+    let eyes = shown.stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
+    let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));
+    if let Some(eye) = far.filter(|_| shown.has_mesh) {
+        let found = RenderError::Eye(eye.eye()).to_string();
         return Err(bad_value(source, "a camera", found).into());
     }
     Ok(())

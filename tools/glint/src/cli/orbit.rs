@@ -137,18 +137,20 @@ impl OrbitArguments {
         });
         let subject = subject(mesh, field, objects.as_slice());
         let subject = subject.ok_or_else(|| nothing("--field or --scene"))?;
+        let stereo = self.field.stereo()?;
         let views = self.camera.turn(
             &Shown {
                 sphere: subject.sphere(),
                 model: self.model.as_deref(),
                 has_mesh: self.model.is_some(),
                 has_field: field.is_some(),
+                stereo,
             },
             self.frames,
         )?;
         let first = views.first().context("expected a frame")?;
         let frame = Frame {
-            stereo: self.field.stereo()?,
+            stereo,
             ..Frame::in_appearance(subject, *first, size, &appearance)
         };
         self.write(out, &frame, &views, None)

@@ -189,6 +189,7 @@ impl RenderArguments {
             model: self.model.as_deref(),
             has_mesh: self.model.is_some(),
             has_field: field.is_some(),
+            stereo,
         };
         let view = self.camera.view(&shown)?;
         let frame = Frame {

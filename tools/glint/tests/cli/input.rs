@@ -258,7 +258,7 @@ fn bad_names_and_numbers() {
                 "--out",
                 "out.png",
             ],
-            "error: eye (7.99, -1, 0): expected within 8 of the origin for a mesh",
+            "error: --look-at: expected a camera, found eye (7.99, -1, 0): expected within 8 of the origin for a mesh",
         ),
         (
             &["render", "cube", "--out", "out.png", "--fog", "1"],
