@@ -9,6 +9,7 @@
 //! - [`hand`]: camera frames with a hand, and the errors of the camera's control by it.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
 //! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
+//! - [`picture`]: whole pictures of frames in f64, and the errors of the model's as a monitor shows them.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //! - [`stiff`]: the catalogue of stiff and extreme cases.
@@ -24,6 +25,7 @@ pub mod errors;
 pub mod hand;
 pub mod imu;
 pub mod line;
+pub mod picture;
 pub mod raymarch;
 pub mod report;
 pub mod sine;

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use clap::{Args, Parser, Subcommand};
+use glint_core::picture::Size;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, kernels, raymarch, sine, stiff, triangle,
+    geometry, gesture, gouraud, imu, kernels, quality, raymarch, sine, stiff, triangle,
 };
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
@@ -94,6 +95,20 @@ enum Page {
         quick: bool,
         #[command(flatten)]
         bench: Bench,
+    },
+    /// Qualities of pictures: errors and frames a second of each scene in each size
+    Quality {
+        /// Measure only errors of pictures of 320x180
+        #[arg(long)]
+        quick: bool,
+        /// Measure only one table: errors or cycles
+        #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["errors", "cycles"])]
+        study: Option<String>,
+        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+        #[command(flatten)]
+        output: Output,
     },
     /// Stiff and extreme cases: runs the catalogue tools/reference/stiff, and fails where an outcome differs
     Stiff {
@@ -189,6 +204,12 @@ fn main() -> Result<()> {
         Page::Imu { quick, bench } => measure_imu(quick, &bench),
         Page::Gesture { bench } => measure_gesture(&bench),
         Page::Kernels { quick, bench } => measure_kernels(quick, &bench),
+        Page::Quality {
+            quick,
+            study,
+            only,
+            output,
+        } => measure_quality(quick, study.as_deref(), only.as_deref(), &output),
         Page::Stiff { only, output } => measure_stiff(only.as_deref(), &output),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
@@ -295,6 +316,28 @@ fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
     let folder = output.folder(quick)?;
     write_csv(&rows, &folder.join("kernels.csv"))?;
     output.rebuild("kernels", &folder, pages::kernels::rebuild)
+}
+
+/// Measures errors and cycles, or only the table that `study` names.
+fn measure_quality(
+    quick: bool,
+    study: Option<&str>,
+    only: Option<&str>,
+    output: &Output,
+) -> Result<()> {
+    let folder = output.folder(quick || only.is_some())?;
+    let only = only.unwrap_or_default();
+    if study != Some("cycles") {
+        let sizes = if quick { &Size::ALL[..1] } else { &Size::ALL };
+        let rows = quality::errors(only, sizes)?;
+        output.print(&rows, pages::quality::table)?;
+        write_csv(&rows, &folder.join("quality.csv"))?;
+    }
+    if study != Some("errors") && !quick {
+        let rows = quality::cycles(only)?;
+        write_csv(&rows, &folder.join("quality-cycles.csv"))?;
+    }
+    written("quality", &folder, pages::quality::rebuild)
 }
 
 fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {

@@ -7,6 +7,7 @@ pub mod gouraud;
 pub mod imu;
 mod index;
 pub mod kernels;
+pub mod quality;
 pub mod raymarch;
 pub mod sine;
 pub mod stiff;
@@ -21,7 +22,7 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 10] = [
+pub const PAGES: [(&str, Rebuild); 11] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
@@ -30,6 +31,7 @@ pub const PAGES: [(&str, Rebuild); 10] = [
     ("geometry", geometry::rebuild),
     ("gesture", gesture::rebuild),
     ("kernels", kernels::rebuild),
+    ("quality", quality::rebuild),
     ("stiff", stiff::rebuild),
     // The index is made from the tables of all other pages.
     ("README", index::rebuild),

@@ -1,0 +1,448 @@
+//! A frame in f64.
+
+use anyhow::{Context, Result, bail, ensure};
+use glint_core::appearance::Appearance;
+use glint_core::colour::{Rgb565, Shading, Winding};
+use glint_core::light::{Light, Lighting, Material, Rgb};
+use glint_core::matrix::Matrix;
+use glint_core::mesh::{Chunk, Triangle};
+use glint_core::stereo::Tint;
+use glint_model::raymarch::FieldSetup;
+use glint_model::wireframe::LINE_COLOUR;
+use glint_model::{Clip, FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
+
+use super::seen::{Eyes, SHOWN, Seen};
+use crate::camera::{
+    Camera, Ray, Side, Size, Stereo, Vector, add_scaled, cross, dot, length, normalised, subtract,
+};
+use crate::line::{ExactSegment, Rectangle};
+use crate::raymarch::raymarched::depth;
+use crate::raymarch::{Face, Field};
+use crate::triangle::exact::SnappedVertex;
+use crate::triangle::surface::{Class, ProjectedTriangle};
+
+/// A picture of 1280×720 in f64, row by row.
+pub struct Exact {
+    /// What each pixel shows.
+    pub seen: Vec<Eyes>,
+    /// Red, green and blue, from 0 to 255.
+    pub colours: Vec<Vector>,
+}
+
+/// A pixel of one eye.
+#[derive(Clone, Copy)]
+struct Pixel {
+    seen: Seen,
+    colour: Vector,
+    /// 1/z of the surface, where z is its depth in world units; 0 for the background.
+    nearness: f64,
+}
+
+impl Exact {
+    /// Draws a frame in f64, in the size in which a monitor shows it, whatever the frame's size is.
+    ///
+    /// # Errors
+    /// The model cannot draw the frame, or it is none of those that scenes show: it has meshes for two eyes, edges of a mesh, an
+    /// orthographic camera, occlusion, or a union.
+    pub fn new(frame: &Frame) -> Result<Self> {
+        let frame = &Frame {
+            size: SHOWN,
+            ..*frame
+        };
+        let picture = match frame.stereo {
+            None => one_eye(frame, None)?
+                .into_iter()
+                .map(|pixel| ([pixel.seen; 2], pixel.colour))
+                .collect(),
+            Some(stereo) => {
+                ensure!(
+                    matches!(frame.subject, Subject::Field(_)),
+                    "expected a field for two eyes"
+                );
+                ensure!(
+                    stereo.tint == Tint::RedCyan,
+                    "expected red and cyan glasses"
+                );
+                let [left, right] =
+                    [Side::Left, Side::Right].map(|side| one_eye(frame, Some(side)));
+                let pairs = left?.into_iter().zip(right?);
+                pairs
+                    .map(|(left, right)| {
+                        let [l, r] = [left, right].map(|pixel| luminance(pixel.colour));
+                        ([left.seen, right.seen], [l, r, r])
+                    })
+                    .collect::<Vec<_>>()
+            }
+        };
+        let (seen, colours) = picture.into_iter().unzip();
+        Ok(Self { seen, colours })
+    }
+}
+
+/// Luminance of a colour, with the weights of docs/formats.md.
+fn luminance(colour: Vector) -> f64 {
+    dot(colour, [77.0, 150.0, 29.0]) / 256.0
+}
+
+fn size() -> Size {
+    let [width, height] = SHOWN.pixels();
+    Size { width, height }
+}
+
+fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
+    let camera = Camera::from(&frame.view);
+    let background = Pixel {
+        seen: Seen::Background,
+        colour: full(frame.clear),
+        nearness: 0.0,
+    };
+    let mut pixels = vec![background; SHOWN.pixel_count()];
+    if let Subject::Wireframe(subject) = &frame.subject {
+        draw_lines(subject, &mut pixels)?;
+        return Ok(pixels);
+    }
+    if let Some(subject) = frame.subject.field_part() {
+        draw_field(frame, subject, &camera, side, &mut pixels)?;
+    }
+    let lighting = frame.mesh_lighting();
+    let light = Lit {
+        ambient: share(lighting.ambient),
+        lights: vec![lit(&lighting.light, &camera)],
+    };
+    let placed = |subject, matrix, object, colour| Placed {
+        subject,
+        matrix,
+        object,
+        colour,
+        camera: &camera,
+        light: &light,
+    };
+    match &frame.subject {
+        Subject::Mesh(subject) | Subject::MeshInField(subject, _) => {
+            placed(subject, &Matrix::IDENTITY, 0, None).draw(&mut pixels);
+        }
+        Subject::Objects(objects) => {
+            for (number, object) in objects.iter().enumerate() {
+                let matrix = object.placement.matrix();
+                placed(&object.subject, matrix, number, object.colour).draw(&mut pixels);
+            }
+        }
+        Subject::Field(_) => {}
+        Subject::Edges(..) | Subject::Wireframe(_) => bail!("expected a mesh, objects or a field"),
+    }
+    Ok(pixels)
+}
+
+/// Light in f64: 1 is full.
+struct Lit {
+    ambient: Vector,
+    /// Directions to the lights, and their colours.
+    lights: Vec<(Vector, Vector)>,
+}
+
+impl Lit {
+    /// Light on a surface with this outward normal: at most 1 of each channel.
+    fn on(&self, normal: Vector) -> Vector {
+        let mut sum = self.ambient;
+        for (towards, colour) in &self.lights {
+            sum = add_scaled(sum, *colour, dot(normal, *towards).clamp(0.0, 1.0));
+        }
+        sum.map(|part| part.min(1.0))
+    }
+}
+
+fn share(colour: Rgb) -> Vector {
+    colour.map(|part| f64::from(part) / 255.0)
+}
+
+fn lit(light: &Light, camera: &Camera) -> (Vector, Vector) {
+    let towards = match light.is_at_camera() {
+        true => camera.n.map(|part| -part),
+        false => light.direction().map(|part| f64::from(part) / 16384.0),
+    };
+    (normalised(towards), share(light.colour()))
+}
+
+/// A colour of a mesh, from 0 to 255.
+fn full(colour: Rgb565) -> Vector {
+    let [r, g, b] = colour.channels().map(f64::from);
+    [r / 31.0, g / 63.0, b / 31.0].map(|part| 255.0 * part)
+}
+
+fn product(a: Vector, b: Vector) -> Vector {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+/// A mesh of a frame.
+struct Placed<'a> {
+    subject: &'a MeshSubject<'a>,
+    matrix: &'a Matrix,
+    /// Number of the object.
+    object: usize,
+    /// Colour in place of those of the mesh.
+    colour: Option<Rgb565>,
+    camera: &'a Camera,
+    light: &'a Lit,
+}
+
+impl Placed<'_> {
+    fn draw(&self, pixels: &mut [Pixel]) {
+        let mut index = 0;
+        for chunk in self.subject.mesh.chunks() {
+            for triangle in chunk.triangles() {
+                self.draw_triangle(&chunk, &triangle, index, pixels);
+                index += 1;
+            }
+        }
+    }
+
+    fn draw_triangle(
+        &self,
+        chunk: &Chunk,
+        triangle: &Triangle,
+        index: usize,
+        pixels: &mut [Pixel],
+    ) {
+        let subject = self.subject;
+        let vertices = triangle
+            .indices
+            .map(|i| chunk.vertex(i.into()).unwrap_or_default());
+        let corners = vertices.map(|vertex| self.point(vertex.position));
+        let projected = ProjectedTriangle::new(self.camera, size(), corners);
+        let is_front =
+            subject.winding == Winding::Screen || projected.front != self.matrix.mirrors();
+        if subject.culls() && !is_front {
+            return;
+        }
+        let shade = |normal, colour| self.shade(normal, colour, is_front);
+        let flat = shade(triangle.normal, triangle.colour);
+        let smooth = vertices.map(|vertex| shade(vertex.normal, vertex.colour));
+        let farthest = match subject.clip {
+            Clip::Guard => f64::INFINITY,
+            Clip::View { far } => far.to_num(),
+        };
+        let [columns, rows] = projected.bounds(size());
+        for row in rows {
+            for column in columns.clone() {
+                let pixel = &mut pixels[(row * SHOWN.width() + column) as usize];
+                let nearness = projected.inverse_depth(column, row);
+                let is_nearest = nearness >= pixel.nearness && nearness * farthest >= 1.0;
+                if !is_nearest || projected.classify(column, row, 0.0) != Class::Full {
+                    continue;
+                }
+                let colour = match subject.shading {
+                    Shading::Flat => flat,
+                    Shading::Smooth => {
+                        let ray = self.camera.ray([column, row].map(f64::from), size());
+                        let parts = barycentric(corners, ray.at(1.0 / nearness));
+                        let colours = smooth.into_iter().zip(parts);
+                        colours.fold([0.0; 3], |sum, (colour, part)| {
+                            add_scaled(sum, colour, part)
+                        })
+                    }
+                };
+                *pixel = Pixel {
+                    seen: Seen::Triangle {
+                        object: self.object,
+                        index,
+                    },
+                    colour,
+                    nearness,
+                };
+            }
+        }
+    }
+
+    fn point(&self, position: [i16; 3]) -> Vector {
+        let units = self.matrix.apply(position);
+        units.map(|part| part as f64 / 38f64.exp2())
+    }
+
+    /// A colour of the mesh in the light on its front or back face.
+    fn shade(&self, normal: [i16; 3], colour: Rgb565, is_front: bool) -> Vector {
+        let normal = self.normal(normal);
+        let normal = match is_front {
+            true => normal,
+            false => normal.map(|part| -part),
+        };
+        product(full(self.colour.unwrap_or(colour)), self.light.on(normal))
+    }
+
+    /// A normal of the mesh in the world, by the inverse transpose of the matrix, with the length that it has in the mesh.
+    fn normal(&self, normal: [i16; 3]) -> Vector {
+        let normal = normal.map(|part| f64::from(part) / 16384.0);
+        let rows = self.matrix.linear();
+        let [a, b, c] = rows.map(|row| row.map(|part| part.to_num::<f64>()));
+        let sign = if self.matrix.mirrors() { -1.0 } else { 1.0 };
+        let turned = [cross(b, c), cross(c, a), cross(a, b)].map(|row| sign * dot(row, normal));
+        match length(turned) {
+            0.0 => turned,
+            whole => turned.map(|part| part / whole * length(normal)),
+        }
+    }
+}
+
+/// The weights of a triangle's corners at a point in its plane, whose sum is 1.
+fn barycentric([a, b, c]: [Vector; 3], point: Vector) -> Vector {
+    let normal = cross(subtract(b, a), subtract(c, a));
+    let part = |from: Vector, to: Vector| {
+        dot(cross(subtract(to, from), subtract(point, from)), normal) / dot(normal, normal)
+    };
+    [part(b, c), part(c, a), part(a, b)]
+}
+
+/// A field, its light and its colours in f64.
+struct Appeared {
+    faces: Lit,
+    spheres: Lit,
+    sky: [Vector; 2],
+    density: f64,
+    is_round: bool,
+}
+
+fn draw_field(
+    frame: &Frame,
+    subject: &FieldSubject,
+    camera: &Camera,
+    side: Option<Side>,
+    pixels: &mut [Pixel],
+) -> Result<()> {
+    let constants = frame.constants()?;
+    let setup: &FieldSetup = &constants.field().context("expected a field")?.setup;
+    let appearance: &Appearance = subject.appearance;
+    ensure!(!appearance.occlusion, "expected no occlusion");
+    let field = Field::of(subject.field);
+    ensure!(
+        !matches!(field, Field::Union(..) | Field::SmoothUnion { .. }),
+        "expected no union"
+    );
+    let lighting = appearance.lighting();
+    let day = Lighting::day();
+    // Spheres of the material `normal` are in daylight where no light is set.
+    let of_spheres = match appearance.material {
+        Material::Normal if lighting.lights.is_empty() => &day,
+        _ => &lighting,
+    };
+    let lit_by = |Lighting { ambient, lights }: &Lighting| Lit {
+        ambient: share(*ambient),
+        lights: lights.iter().map(|light| lit(light, camera)).collect(),
+    };
+    let appeared = Appeared {
+        faces: lit_by(&lighting),
+        spheres: lit_by(of_spheres),
+        sky: appearance
+            .field_background()
+            .colours()
+            .map(|colour| colour.map(f64::from)),
+        density: appearance.fog.to_num(),
+        is_round: subject.field.is_round(),
+    };
+    let stereo = frame.stereo.map(|stereo| Stereo {
+        offset: stereo.half_separation.to_num(),
+        zero: stereo.zero_parallax.to_num(),
+    });
+    let eye = usize::from(side == Some(Side::Right));
+    for (place, pixel) in pixels.iter_mut().enumerate() {
+        let [x, y] = [place as u32 % SHOWN.width(), place as u32 / SHOWN.width()];
+        let centre = [x, y].map(f64::from);
+        let ray = match side.zip(stereo) {
+            Some((side, stereo)) => camera.stereo_ray(side, stereo, centre, size()),
+            None => camera.ray(centre, size()),
+        };
+        // As far as the model's rays go.
+        let farthest = depth(setup, &setup.ray(eye, x, y), setup.tuning.far);
+        *pixel = field_pixel(&field, appearance, &appeared, &ray, (camera.near, farthest));
+    }
+    Ok(())
+}
+
+fn field_pixel(
+    field: &Field,
+    appearance: &Appearance,
+    appeared: &Appeared,
+    ray: &Ray,
+    (near, far): (f64, f64),
+) -> Pixel {
+    let [zenith, horizon] = appeared.sky;
+    let mix = |from: Vector, part: f64| add_scaled(from, subtract(horizon, from), part);
+    let Some(hit) = field.hit(ray.origin, ray.direction, near, far) else {
+        let whole = match appeared.is_round {
+            true => length(ray.direction),
+            false => ray
+                .direction
+                .iter()
+                .fold(0.0, |most: f64, part| most.max(part.abs())),
+        };
+        let up = (ray.direction[2] / whole).max(0.0);
+        return Pixel {
+            seen: Seen::Background,
+            colour: mix(zenith, 1.0 - up),
+            nearness: 0.0,
+        };
+    };
+    let material = appearance.material;
+    let sphere = if let Field::Spheres(_) = field {
+        hit.member
+    } else {
+        0
+    };
+    let (colour, light) = match hit.face {
+        Face::Axis { axis, positive } => {
+            let face = 2 * axis + usize::from(positive);
+            (material.faces()[face], &appeared.faces)
+        }
+        Face::Diagonal { positive } => {
+            let face = (0..3).map(|i| usize::from(positive[i]) << i).sum::<usize>();
+            (material.octants()[face], &appeared.faces)
+        }
+        Face::Round | Face::Inside => (material.spheres()[sphere], &appeared.spheres),
+    };
+    let lit = product(colour.map(f64::from), light.on(hit.normal));
+    Pixel {
+        seen: Seen::Surface {
+            face: hit.face,
+            sphere,
+        },
+        colour: mix(lit, 1.0 - (-appeared.density * hit.t).exp()),
+        nearness: 1.0 / hit.t,
+    }
+}
+
+/// Draws the lines of a wireframe: end points in f64, snapped to the grid of the screen, and the exact pixels between them.
+fn draw_lines(subject: &WireframeSubject, pixels: &mut [Pixel]) -> Result<()> {
+    let viewing = subject.program.viewing();
+    let eye = viewing.eye.map(f64::from);
+    let plane = f64::from(viewing.plane);
+    let [low, high] = [viewing.window.low, viewing.window.high].map(|corner| corner.map(f64::from));
+    let [width, height] = SHOWN.pixels();
+    let picture = Rectangle {
+        from: [0, 0],
+        to: [i64::from(width), i64::from(height)],
+    };
+    for segment in subject.program.segments() {
+        let ends = subject
+            .pose
+            .segment(segment)
+            .map(|end| end.map(|part| part.to_num::<f64>()));
+        ensure!(
+            ends.iter().all(|end| end[2] <= plane),
+            "expected lines behind the view plane"
+        );
+        let snapped = ends.map(|[x, y, z]| {
+            let part = (eye[2] - plane) / (eye[2] - z);
+            let [x, y] = [(eye[0], x), (eye[1], y)].map(|(eye, x)| eye - part * (eye - x));
+            let right = (x - low[0]) / (high[0] - low[0]) * f64::from(width);
+            let down = (high[1] - y) / (high[1] - low[1]) * f64::from(height);
+            let [x, y] = [right, down].map(|pixels| (256.0 * pixels).round() as i64);
+            SnappedVertex { x, y, w: 0 }
+        });
+        ExactSegment::new(snapped).for_each_pixel(picture, &mut |[x, y]| {
+            pixels[(y * i64::from(width) + x) as usize] = Pixel {
+                seen: Seen::Line,
+                colour: full(LINE_COLOUR),
+                nearness: 1.0,
+            };
+        });
+    }
+    Ok(())
+}

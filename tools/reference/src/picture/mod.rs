@@ -1,0 +1,56 @@
+//! Whole pictures: a frame in f64, and the errors of the model's picture of it as a monitor shows it.
+//!
+//! - [`exact`]: the frame in f64, from triangles, exact hits of rays and exact segments, with light, fog and sky in f64.
+//! - [`drawn`]: what each pixel of the model's picture shows.
+
+pub mod drawn;
+pub mod exact;
+mod seen;
+
+pub use seen::{Eyes, SHOWN, Seen};
+
+use anyhow::Result;
+use glint::picture::Image;
+use glint::render;
+use glint_core::colour::Rgb565;
+use glint_model::Frame;
+
+use self::exact::Exact;
+use crate::errors::Errors;
+
+/// Errors of a picture as a monitor shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measured {
+    /// Share of the pixels at which an eye sees something else than in the reference: another triangle or face, another object or sphere, or a
+    /// surface instead of the background.
+    pub wrong: f64,
+    /// RMS of the errors of red, green and blue, in steps of 1/255.
+    pub colour: f64,
+}
+
+/// Draws a frame by the model, and compares the picture as a monitor shows it with `exact`, the same frame in f64. A pixel of a smaller
+/// picture is a square of the monitor's pixels.
+///
+/// # Errors
+/// The model cannot draw the frame.
+pub fn measure(frame: &Frame, exact: &Exact) -> Result<Measured> {
+    let Image { width, colour, .. } = render::on_model(frame)?.image;
+    let seen = drawn::seen(frame)?;
+    let scale = SHOWN.width() / width;
+    let mut errors = Errors::default();
+    let mut wrong = 0_u64;
+    let [columns, rows] = SHOWN.pixels();
+    let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x / scale, y / scale)));
+    for ((x, y), (expected, exact)) in places.zip(exact.seen.iter().zip(&exact.colours)) {
+        let place = (y * width + x) as usize;
+        wrong += u64::from(seen[place] != *expected);
+        let found = Rgb565(colour[place]).to_rgb888();
+        for (found, exact) in found.into_iter().zip(exact) {
+            errors.add(f64::from(found) - exact);
+        }
+    }
+    Ok(Measured {
+        wrong: wrong as f64 / SHOWN.pixel_count() as f64,
+        colour: errors.rms(),
+    })
+}

@@ -1,0 +1,204 @@
+//! Experiment: pictures of the built-in scenes as a monitor shows them, against the same frames in f64, by size and by precision of the
+//! rays, and the cycles of these frames on the whole SoC.
+
+use anyhow::{Context, Result, ensure};
+use glint::board::{SimulatedBoard, built_firmware};
+use glint::console::Console;
+use glint::render::{self, BoardRenderer, Route};
+use glint::scene::{self, Changes};
+use glint_core::block::Block;
+use glint_core::picture::Size;
+use glint_core::quality::Quality;
+use glint_model::Frame;
+use glint_scene::{NAMES, Scene, built_in};
+use serde::{Deserialize, Serialize};
+use virtual_board::{Start, VirtualBoard};
+
+use crate::picture::exact::Exact;
+use crate::picture::{self, Measured};
+use crate::report::progress;
+use crate::report::provenance::Provenance;
+use crate::report::soc;
+use crate::report::workspace;
+
+/// Errors of a frame: a line of `quality.csv`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Width of the frame in pixels.
+    pub width: u32,
+    /// Name of the quality with the thresholds of the rays; `None` without a field.
+    pub rays: Option<String>,
+    /// Name of the quality, if the frame is that of a quality.
+    pub quality: Option<String>,
+    /// Share of wrong pixels ([`Measured::wrong`]).
+    pub wrong: f64,
+    /// RMS of the errors of a channel ([`Measured::colour`]).
+    pub colour: f64,
+    /// Commit with which the frame was measured.
+    pub commit: String,
+    /// Versions of the tools with which the frame was measured.
+    pub tools: String,
+}
+
+/// Cycles of a frame: a line of `quality-cycles.csv`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Cycles {
+    /// Name of the scene.
+    pub scene: String,
+    /// Width of the frame in pixels.
+    pub width: u32,
+    /// Name of the quality with the thresholds of the rays; `None` without a field.
+    pub rays: Option<String>,
+    /// Cycles of the frame on the whole SoC, drawn alone.
+    pub cycles: u64,
+    /// Commit with which the frame was measured.
+    pub commit: String,
+}
+
+/// A frame to measure: a size, and the quality with the thresholds of the rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Variant {
+    /// Size of the picture.
+    pub size: Size,
+    /// The quality with the thresholds of the rays; `None` without a field.
+    pub rays: Option<Quality>,
+}
+
+impl Variant {
+    /// The frames of a scene: each size, with a field with each precision of the rays.
+    fn all(scene: &Scene) -> Vec<Self> {
+        let has_field = scene.needs().blocks.contains(&Block::Raymarch);
+        let rays: Vec<Option<Quality>> = match has_field {
+            true => Quality::ALL.map(Some).into(),
+            false => vec![None],
+        };
+        let of_size = |size| rays.iter().map(move |&rays| Self { size, rays });
+        Size::ALL.into_iter().flat_map(of_size).collect()
+    }
+
+    /// The quality that has this size and this precision.
+    fn quality(self) -> Option<Quality> {
+        let mut qualities = Quality::ALL.into_iter();
+        qualities.find(|quality| {
+            quality.size() == self.size && self.rays.is_none_or(|rays| rays == *quality)
+        })
+    }
+
+    fn changes(self) -> Changes {
+        Changes {
+            quality: self.rays,
+            size: Some(self.size),
+            ..Changes::default()
+        }
+    }
+
+    fn rays_name(self) -> Option<String> {
+        self.rays.map(|rays| rays.name().to_owned())
+    }
+}
+
+/// The built-in scenes with a picture of their own whose names contain `only`.
+fn scenes(only: &str) -> impl Iterator<Item = Scene> {
+    let scenes = NAMES.into_iter().filter_map(built_in);
+    scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
+}
+
+/// Measures the errors of the scenes whose names contain `only`, in frames of these sizes.
+///
+/// # Errors
+/// A scene cannot be drawn.
+pub fn errors(only: &str, sizes: &[Size]) -> Result<Vec<Row>> {
+    let Provenance { commit, tools } = Provenance::find();
+    let mut rows = Vec::new();
+    for scene in scenes(only) {
+        let exact = scene::draw(&scene, &Changes::default(), Exact::new)??;
+        for variant in Variant::all(&scene) {
+            if !sizes.contains(&variant.size) {
+                continue;
+            }
+            let measure = |frame: &Frame| picture::measure(frame, &exact);
+            let Measured { wrong, colour } = scene::draw(&scene, &variant.changes(), measure)??;
+            rows.push(Row {
+                scene: scene.name().to_owned(),
+                width: variant.size.width(),
+                rays: variant.rays_name(),
+                quality: variant.quality().map(|quality| quality.name().to_owned()),
+                wrong,
+                colour,
+                commit: commit.clone(),
+                tools: tools.clone(),
+            });
+        }
+    }
+    Ok(rows)
+}
+
+/// Measures the cycles of the frames of the scenes whose names contain `only`, on two virtual boards at a time.
+///
+/// # Errors
+/// A board is not built, or a frame differs from the model's.
+pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
+    let firmware = built_firmware(None)?;
+    let commit = Provenance::find().commit;
+    let scenes: Vec<Scene> = scenes(only).collect();
+    let frames = scenes.iter().map(|scene| Variant::all(scene).len() as u64);
+    let bar = progress::bar(frames.sum())?;
+    let rows = soc::two_at_a_time(&scenes, |scene| {
+        bar.set_message(format!("{} on the SoC", scene.name()));
+        let mut rows = Vec::new();
+        let mut variants = Variant::all(scene);
+        // The frames of the qualities come first, because large frames of others take minutes on a virtual board.
+        variants.sort_by_key(|variant| variant.quality().is_none());
+        for variant in variants {
+            let cycles = frame_cycles(&firmware, scene, variant);
+            let cycles = cycles.with_context(|| format!("{}, {variant:?}", scene.name()))?;
+            bar.suspend(|| eprintln!("{}, {variant:?}: {cycles} cycles", scene.name()));
+            bar.inc(1);
+            rows.push(Cycles {
+                scene: scene.name().to_owned(),
+                width: variant.size.width(),
+                rays: variant.rays_name(),
+                cycles,
+                commit: commit.clone(),
+            });
+        }
+        Ok(rows)
+    })?;
+    bar.finish_and_clear();
+    Ok(rows.into_iter().flatten().collect())
+}
+
+/// Draws a frame of a scene on a virtual board that has just started, and returns its cycles.
+fn frame_cycles(firmware: &[u8], scene: &Scene, variant: Variant) -> Result<u64> {
+    let folder = match scene.needs().smooth {
+        true => "virtual-smooth",
+        false => "virtual",
+    };
+    let library = format!("target/gateware/{folder}/libglint_soc.so");
+    let board = VirtualBoard::builder()
+        .library(workspace::path(&library))
+        .start(Start::Fast { firmware })
+        .build()?;
+    let mut board = SimulatedBoard::new(board);
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = BoardRenderer::new(console);
+    let quality = variant.rays.map(|rays| format!("quality {rays}"));
+    let size = render::size_command(variant.size);
+    let lines = scene.settings().iter().map(String::as_str);
+    let lines: Vec<&str> = lines.chain(quality.as_deref()).chain([&*size]).collect();
+    let stats = renderer.render_after(&lines)?;
+    ensure!(
+        stats.backend.as_deref() == Some("gateware"),
+        "expected a frame of the gateware, found the soft core's"
+    );
+    let found = renderer.colour(variant.size, Route::Memory, &mut |_, _| {})?;
+    let expected = scene::draw(scene, &variant.changes(), render::on_model)??;
+    ensure!(
+        found == expected.image.colour,
+        "the frame is not the model's"
+    );
+    stats.cycles.context("no cycles in the reply")
+}

@@ -1,0 +1,124 @@
+//! Whole pictures in f64, and the committed errors and cycles of the qualities.
+
+use glint::scene::{self, Changes};
+use glint_core::picture::Size;
+use glint_core::quality::Quality;
+use glint_model::Frame;
+use glint_reference::picture::exact::Exact;
+use glint_reference::picture::{Measured, SHOWN, measure};
+use glint_reference::report::experiments::quality::{Cycles, Row, errors};
+use glint_reference::report::pages::quality::{frames, is_on_front};
+use glint_reference::report::table::read_csv;
+use glint_reference::report::workspace;
+use glint_scene::{NAMES, Scene, built_in};
+use serde::de::DeserializeOwned;
+
+fn scenes() -> impl Iterator<Item = Scene> {
+    let scenes = NAMES.into_iter().filter_map(built_in);
+    scenes.filter(|scene| scene.scenes().is_empty())
+}
+
+/// The model's picture of a scene against the reference of the same scene with `fov` degrees in place of its own field of view.
+fn against(scene: &Scene, fov: Option<&str>) -> Measured {
+    let changes = Changes {
+        quality: Some(Quality::Exact),
+        ..Changes::default()
+    };
+    let draw = |frame: &Frame| {
+        let view = match fov {
+            Some(angle) => frame
+                .view
+                .with_field_of_view(glint_core::fixed::Turns::from_degrees(
+                    angle.parse().expect("a number"),
+                )),
+            None => Ok(frame.view),
+        };
+        let view = view.expect("a field of view");
+        let exact = Exact::new(&Frame { view, ..*frame }).expect("a frame of scenes");
+        assert_eq!(exact.seen.len(), SHOWN.pixel_count());
+        measure(frame, &exact).expect("a frame of scenes")
+    };
+    scene::draw(scene, &changes, draw).expect("a built-in scene")
+}
+
+/// In its own size the model's picture differs from the reference along edges alone, and by the rounding of colours; that of another
+/// lens differs far more.
+#[test]
+fn the_models_picture_is_the_reference_but_for_rounding() {
+    for scene in scenes() {
+        let Measured { wrong, colour } = against(&scene, None);
+        println!("{}: {wrong:.5}, {colour:.2}", scene.name());
+        assert!(wrong < 0.01, "{}: {wrong}", scene.name());
+        assert!(colour < 6.0, "{}: {colour}", scene.name());
+        if scene.name() != "wireframe" {
+            let other = against(&scene, Some("75"));
+            assert!(
+                other.wrong > 10.0 * wrong && other.colour > 2.0 * colour,
+                "{}",
+                scene.name()
+            );
+        }
+    }
+}
+
+fn committed<T: DeserializeOwned>(name: &str) -> Vec<T> {
+    read_csv(&workspace::path("docs/report").join(name)).expect("a committed table")
+}
+
+/// The committed errors of the small pictures are those of today's code.
+#[test]
+fn committed_errors_are_todays() {
+    let rows: Vec<Row> = committed("quality.csv");
+    let now = errors("", &[Size::W320]).expect("built-in scenes");
+    assert!(now.len() > scenes().count());
+    for now in now {
+        let same =
+            |row: &&Row| (&row.scene, row.width, &row.rays) == (&now.scene, now.width, &now.rays);
+        let row = rows.iter().find(same).expect("a committed row");
+        for (committed, now) in [(row.wrong, now.wrong), (row.colour, now.colour)] {
+            assert!((committed - now).abs() <= 1e-6 * now, "{row:?}: {now}");
+        }
+    }
+}
+
+/// Scenes without the cycles of all three qualities: their large frames take long on a virtual board.
+const INCOMPLETE: [&str; 2] = ["objects", "spheres"];
+
+/// For each scene, the qualities differ in errors and cycles, are ordered, and no measured frame beats one of them.
+#[test]
+fn qualities_lie_on_the_front() {
+    let (rows, cycles): (Vec<Row>, Vec<Cycles>) =
+        (committed("quality.csv"), committed("quality-cycles.csv"));
+    let measured = frames(&rows, &cycles);
+    assert_eq!(measured.len(), scenes().count());
+    for scene in measured {
+        let levels = Quality::ALL.map(|quality| {
+            let is_it = |name: &String| name == quality.name();
+            let mut frames = scene.iter();
+            let frame = frames.find(|frame| frame.row.quality.as_ref().is_some_and(is_it));
+            *frame.expect("a frame of each quality")
+        });
+        let is_complete = levels.iter().all(|frame| frame.cycles.is_some());
+        let is_listed = INCOMPLETE.contains(&levels[0].row.scene.as_str());
+        assert_eq!(is_complete, !is_listed, "{:?}", levels[0].row.scene);
+        for frame in &levels {
+            assert!(is_on_front(frame, &scene), "{:?} is beaten", frame.row);
+        }
+        for pair in levels.windows(2) {
+            let (low, high) = (pair[0], pair[1]);
+            let cycles = low.cycles.zip(high.cycles);
+            assert!(
+                cycles.is_none_or(|(low, high)| low < high),
+                "{:?}, {:?}",
+                low.row,
+                high.row
+            );
+            assert!(
+                low.row.wrong > high.row.wrong && low.row.colour > high.row.colour,
+                "{:?}, {:?}",
+                low.row,
+                high.row
+            );
+        }
+    }
+}
