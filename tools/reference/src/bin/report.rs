@@ -337,7 +337,7 @@ fn measure_quality(
         let rows = quality::cycles(only)?;
         write_csv(&rows, &folder.join("quality-cycles.csv"))?;
     }
-    written("quality", &folder, pages::quality::rebuild)
+    output.rebuild("quality", &folder, pages::quality::rebuild)
 }
 
 fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
