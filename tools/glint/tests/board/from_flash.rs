@@ -295,19 +295,21 @@ fn the_console_answers_beside_an_error() {
 fn a_board_with_mutated_contents_answers() {
     let inputs = Inputs::new(Target::Flash, 0xa10e);
     let mut alone = 0;
+    // An error of the demo may come before the reply, with a prompt of its own.
+    let reply = |board: &mut EmulatedBoard, line: &str| {
+        board.uart_write(format!("{line}\r").as_bytes());
+        board.read_until("ok\r\nglint> ", LIMIT).unwrap()
+    };
     for number in 0..60 {
         let mut flash = vec![0xff; CONTENTS];
         flash.extend(inputs.input(number));
         let (mut board, _) = powered_up(flash, |_| ());
-        alone += usize::from(command(&mut board, "demo").contains("demo on\r\n"));
+        alone += usize::from(reply(&mut board, "demo").contains("demo on\r\n"));
         for _ in 0..3 {
             press(&mut board, 0);
         }
-        let answer = command(&mut board, "info uptime_ms");
-        assert!(
-            answer.contains("uptime_ms ") && answer.ends_with("ok\r\nglint> "),
-            "input {number}: {answer}"
-        );
+        let answer = reply(&mut board, "info uptime_ms");
+        assert!(answer.contains("uptime_ms "), "input {number}: {answer}");
     }
     assert!((30..57).contains(&alone), "{alone} boards run alone");
 }
