@@ -1,9 +1,11 @@
 //! Prints how many bytes of its stack a firmware uses for commands: `cargo run -p emulated-board --example stack FIRMWARE LOW HIGH COMMAND…`.
 //!
 //! The stack begins at the address HIGH and grows down, to LOW at most. Memory is 0 at the start of the board, so the lowest byte that is
-//! not 0 shows how far the stack has grown.
+//! not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor without a hand are plugged in.
 
 use emulated_board::EmulatedBoard;
+use virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
+use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
 /// Time-out of a command in cycles.
 const LIMIT: u64 = 1_000_000_000;
@@ -18,6 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [low, high]: [u32; 2] = [low.parse()?, high.parse()?];
     let length = high.checked_sub(low).ok_or("LOW is above HIGH")?;
     let mut board = EmulatedBoard::fast(&std::fs::read(firmware)?)?;
+    let motion = Source::Motion(Box::new(|_| State::default()));
+    board.plug(Wires::new(Chip::new(motion, Imperfections::NONE, 1)));
+    let nothing = Scene::new([320, 240], |_| Vec::new());
+    board.plug_image_sensor(ImageSensor::new(Model::Ov7670, nothing, Timing::SHORT));
     board.read_until(PROMPT, LIMIT)?;
     for command in commands {
         board.uart_write(format!("{command}\r").as_bytes());
