@@ -133,7 +133,8 @@ fn frame(scene: &Scene) -> Result<Frame> {
     run::step(
         &format!("frame of {name}"),
         Command::new(paths::target().join("debug/glint"))
-            .args(["render", "--board", "virtual", "--scene", name, "--stats"])
+            .args(["render", "--force", "--board", "virtual", "--scene", name])
+            .arg("--stats")
             .arg(&stats)
             .arg("--out")
             .arg(stats.with_extension("png"))
