@@ -82,7 +82,7 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
 
     // A field that is chosen is shown.
     command(browser, page, &["imu off", "gesture off"]);
-    let scene = ["scene cube", CAMERA];
+    let scene = ["scene cube", "quality fast", CAMERA];
     command_both(browser, page, &mut board, &scene);
     browser.evaluate(
         page,
