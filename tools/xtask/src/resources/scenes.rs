@@ -92,7 +92,9 @@ pub fn resources(write: bool) -> Result<()> {
 fn firmware(scenes: &[Scene], scene: Option<&Scene>) -> Result<Firmware> {
     let built = scene.map_or(scenes, slice::from_ref);
     let image = firmware::build_for(Board::Urbana, built, &[])?;
-    let stack = scene.map(|scene| stack(scene, &image)).transpose()?;
+    // The emulated board has no smooth shading.
+    let flat = scene.filter(|scene| !scene.needs().smooth);
+    let stack = flat.map(|scene| stack(scene, &image)).transpose()?;
     Ok(Firmware { image, stack })
 }
 

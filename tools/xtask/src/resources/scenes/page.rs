@@ -146,7 +146,7 @@ What the builds for each [scene](scenes.md) take, and that for `{ALL}` scenes.
 - Gateware: the cells of the Urbana's SoC, by Yosys as in [resources.md](resources.md); slices are the lower bound. The last column has the
   options of `cargo xtask gateware`.
 - Firmware: bytes. `of full` is the share of the image with all parts, at most half for a single scene. Variables are not in the image.
-  The stack is what the self-test and the scene's picture use of it on the emulated board.
+  The stack is what the self-test and the scene's picture use of it on the emulated board, which has no smooth shading.
 - Frames: those of the scene in its size, on the virtual board with all blocks and two lanes, which has no smooth shading; `objects` on its
   own build. The engines and the soft core do not work at the same time. A list has the frame of its first scene. Frames a second are as
   many as can be drawn one after the other. The last column has what the engines then move in main memory, and scan-out at 60 Hz, without

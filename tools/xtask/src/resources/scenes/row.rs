@@ -41,7 +41,7 @@ pub struct Frame {
 /// What the firmware for a scene takes, in bytes.
 pub struct Firmware {
     pub image: Image,
-    /// The stack that the self-test and the scene's picture use; `None` for the firmware for all scenes.
+    /// The stack that the self-test and the scene's picture use; `None` for the firmware for all scenes, and with smooth shading.
     pub stack: Option<u64>,
 }
 
