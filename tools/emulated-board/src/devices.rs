@@ -199,7 +199,7 @@ impl Devices {
             if now >= end {
                 return end;
             }
-            // The other blocks have no event before, so many events of this block follow each other.
+            // No other block has an event before the cycle `others`: all events of this block up to it come first.
             while now <= others {
                 self.update(number, now, ram);
                 if self.lines != lines {
@@ -215,7 +215,7 @@ impl Devices {
         self.lines
     }
 
-    /// Looks at all interrupt lines, because the host may have changed what is connected.
+    /// Updates all interrupt lines. The host may have connected or removed a device.
     pub fn look(&mut self) {
         for number in 0..BLOCKS.len() {
             self.look_at(number);

@@ -5,7 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use glint_core::block::Block;
+use glint_core::field::FRACTION;
 use glint_core::picture::Size;
+use glint_core::quality::{Preset, Quality, Threshold};
 use glint_core::scene::commands;
 use glint_scene::{NAMES, Needs, Scene, Steer, built_in, keys};
 
@@ -56,6 +58,19 @@ fn every_key_is_documented() {
             page.contains(&format!("`{key}`")),
             "docs/scenes.md has no key `{key}`"
         );
+    }
+}
+
+#[test]
+fn the_page_has_what_each_quality_sets() {
+    let page = fs::read_to_string(root().join("docs/scenes.md")).unwrap();
+    for quality in Quality::ALL {
+        let Preset { size, faces, round } = quality.preset();
+        let [faces, round] = [faces, round]
+            .map(|Threshold { base, footprint }| format!("{base}·2^-{FRACTION} + t/2^{footprint}"));
+        let (width, height) = (size.width(), size.height());
+        let row = format!("| `{quality}` | {width}×{height} | {faces} | {round} |\n");
+        assert!(page.contains(&row), "docs/scenes.md has no row {row}");
     }
 }
 

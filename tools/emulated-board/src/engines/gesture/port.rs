@@ -7,7 +7,7 @@ use virtual_image_sensor::{ImageSensor, Levels};
 /// Frequency of the system clock in Hz.
 const CLOCK: u64 = CONFIG_CLOCK_FREQUENCY as u64;
 
-/// A time or a length of time: a number of cycles, and what is left of it, in parts of `2 * clock`.
+/// A time or a duration: whole cycles, and the fraction of a cycle in units of 1 / (2 · clock).
 #[derive(Clone, Copy, Debug, Default)]
 struct Time {
     cycle: u64,
