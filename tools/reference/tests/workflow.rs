@@ -8,6 +8,10 @@ use std::process::Command;
 use std::thread;
 use std::time::SystemTime;
 
+use clap::ValueEnum;
+use glint::fuzz::Target;
+use glint_reference::report::experiments::raymarch::studies;
+use glint_reference::report::pages::PAGES;
 use glint_reference::report::workspace;
 
 /// Cycles of the kernels that the jobs of these tests measure, as the console prints them.
@@ -86,6 +90,35 @@ impl Run {
         let table = fs::metadata(self.folder.join("tables").join(table));
         let time = table.and_then(|table| table.modified());
         time.expect("the job has ended")
+    }
+}
+
+/// The names in a list of the workflow's description, which stands on one line.
+fn list(name: &str) -> Vec<String> {
+    let path = workspace::path("tools/reference/workflow/Snakefile");
+    let text = fs::read_to_string(path).expect("readable");
+    let start = format!("{name} = ");
+    let line = text.lines().find_map(|line| line.strip_prefix(&start));
+    serde_json::from_str(line.expect("a list")).expect("a list of names")
+}
+
+#[test]
+fn the_workflow_has_every_study_and_fuzz_target() {
+    assert_eq!(list("STUDIES"), studies::names().collect::<Vec<_>>());
+    let targets = Target::ALL
+        .into_iter()
+        .filter(|target| *target != Target::Firmware);
+    let names = targets.map(|target| target.to_possible_value().expect("a name"));
+    let names: Vec<_> = names.map(|name| name.get_name().to_owned()).collect();
+    assert_eq!(list("TARGETS"), names);
+}
+
+#[test]
+fn every_page_has_a_job() {
+    let path = workspace::path("tools/reference/workflow/Snakefile");
+    let text = fs::read_to_string(path).expect("readable");
+    for (page, _) in PAGES.into_iter().filter(|(page, _)| *page != "README") {
+        assert!(text.contains(&format!("(\"{page}")), "{page}");
     }
 }
 

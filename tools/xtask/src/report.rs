@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run};
 
-/// Folder of the workflow's description.
+/// The description of the workflow.
 const WORKFLOW: &str = "tools/reference/workflow/Snakefile";
 
 /// File with the checksums of all that the jobs run.
@@ -79,7 +79,10 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     firmware::build(Board::Virtual, &[])?;
     firmware::build(Board::Virtual, &["peers"])?;
     run::build_program("glint-reference", "report")?;
-    if arguments.iter().any(|argument| argument == "fuzz") {
+    if arguments
+        .iter()
+        .any(|argument| argument.starts_with("fuzz"))
+    {
         run::step(
             "build fuzz",
             Command::new("cargo")
@@ -107,9 +110,9 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
             .arg("--directory")
             .arg(&folder)
             .args(["--cores", &workers.to_string()])
-            .args(["--nolock", "--rerun-incomplete", "--quiet", "rules"])
+            .args(["--nolock", "--rerun-incomplete"])
             .args(arguments)
-            .arg("--config")
+            .args(["--quiet", "rules", "--config"])
             .args([
                 format!("root={}", paths::root().display()),
                 format!("report={}", programs.join("report").display()),

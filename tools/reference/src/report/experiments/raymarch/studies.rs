@@ -26,6 +26,11 @@ const STUDIES: [(&str, Study); 7] = [
     ("normal", normals),
 ];
 
+/// Names of the studies.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    STUDIES.into_iter().map(|(name, _)| name)
+}
+
 /// Runs all studies, or only the one with the name `only`. As soon as a study is complete, `finished` is called with its name and
 /// trials.
 ///
