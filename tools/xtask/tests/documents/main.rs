@@ -1,0 +1,114 @@
+//! Checks README.md and the pages of docs: figures of accuracy, speed and cost are linked to the report, and links have targets.
+
+mod claim;
+mod page;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use page::Page;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// The pages in a folder, by their paths from the root.
+fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {
+    let files = fs::read_dir(root().join(folder)).expect("the folder is there");
+    let paths = files.map(|file| Path::new(folder).join(file.expect("readable").file_name()));
+    let mut paths: Vec<_> = paths
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    paths.sort();
+    let read = |path: PathBuf| {
+        let text = fs::read_to_string(root().join(&path)).expect("readable");
+        (path, Page::parse(&text))
+    };
+    paths.into_iter().map(read).collect()
+}
+
+/// Path from the root of the file to which a link in `page` leads, and the link's anchor; `None` for a link to another site.
+fn target<'a>(page: &Path, link: &'a str) -> Option<(PathBuf, Option<&'a str>)> {
+    if link.contains("://") || link.starts_with("mailto:") {
+        return None;
+    }
+    let (file, anchor) = match link.split_once('#') {
+        Some((file, anchor)) => (file, Some(anchor)),
+        None => (link, None),
+    };
+    if file.is_empty() {
+        return Some((page.to_owned(), anchor));
+    }
+    let folder = page.parent().unwrap_or(Path::new(""));
+    let mut path = PathBuf::new();
+    for part in folder.join(file).components() {
+        match part {
+            Component::ParentDir => {
+                path.pop();
+            }
+            part => path.push(part),
+        }
+    }
+    Some((path, anchor))
+}
+
+/// Whether figures are generated on the page at this path: a page of the report, or of the resources.
+fn is_report(path: &Path) -> bool {
+    let generated = ["docs/resources.md", "docs/scene-builds.md"];
+    path.starts_with("docs/report") || generated.iter().any(|page| path == Path::new(page))
+}
+
+#[test]
+fn every_claim_is_linked_to_the_report() {
+    let mut claims = Vec::new();
+    for (path, page) in [pages_in(""), pages_in("docs")].concat() {
+        // The log of changes states what a change gained when it was made.
+        if is_report(&path) || path == Path::new("CHANGELOG.md") {
+            continue;
+        }
+        for block in &page.blocks {
+            let is_linked = block
+                .links
+                .iter()
+                .any(|link| target(&path, link).is_some_and(|(target, _)| is_report(&target)));
+            if !is_linked && let Some(claim) = claim::find(&block.text) {
+                claims.push(format!("{}:{}: {claim:?}", path.display(), block.line));
+            }
+        }
+    }
+    assert!(
+        claims.is_empty(),
+        "figures without a link to the report, in the same paragraph, item or row, or before the table: state them in docs/report and \
+         link them, or leave them out:\n{}",
+        claims.join("\n")
+    );
+}
+
+#[test]
+fn every_link_has_its_file_and_anchor() {
+    let mut broken = Vec::new();
+    let pages = [pages_in(""), pages_in("docs"), pages_in("docs/report")].concat();
+    let pages: BTreeMap<PathBuf, Page> = pages.into_iter().collect();
+    for (path, page) in &pages {
+        for (line, link) in &page.links {
+            let Some((target, anchor)) = target(path, link) else {
+                continue;
+            };
+            let is_there = match anchor {
+                None => root().join(&target).exists(),
+                Some(anchor) => pages
+                    .get(&target)
+                    .is_some_and(|page| page.anchors.iter().any(|found| found == anchor)),
+            };
+            if !is_there {
+                broken.push(format!("{}:{line}: {link}", path.display()));
+            }
+        }
+    }
+    assert!(
+        broken.is_empty(),
+        "links without a target:\n{}",
+        broken.join("\n")
+    );
+}
