@@ -119,6 +119,8 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
         paths.iter().filter(matches).collect::<Vec<_>>()
     };
     for table in of("csv") {
+        let repeated = table.with_extension("json");
+        assert!(repeated.exists(), "no {}", repeated.display());
         let name = table.file_name().expect("a name");
         fs::copy(table, folder.join(name)).expect("the build's own folder is writable");
     }
@@ -126,7 +128,9 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
         rebuild(&folder).unwrap_or_else(|error| panic!("{name}: {error:#}"));
     }
     let made = PAGES.map(|(name, _)| committed.join(name).with_extension("md"));
-    let made = made.iter().chain([of("svg"), of("csv"), of("json")].concat());
+    let made = made
+        .iter()
+        .chain([of("svg"), of("csv"), of("json")].concat());
     for page in made {
         let name = page.file_name().expect("a name");
         let rebuilt = fs::read_to_string(folder.join(name)).expect("a rebuilt file");
@@ -135,6 +139,38 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
             "{}: run `cargo xtask report pages`",
             page.display()
         );
+    }
+}
+
+/// Headings that every page has. The index has none of them.
+const SECTIONS: [&str; 4] = [
+    "What",
+    "Reference",
+    "Stiff cases",
+    "What a user should know",
+];
+
+#[test]
+fn every_page_has_the_same_sections() {
+    let files = fs::read_dir(workspace::path("docs/report")).expect("docs/report is there");
+    let paths = files.map(|file| file.expect("an entry").path());
+    let is_page = |path: &PathBuf| {
+        path.extension().is_some_and(|found| found == "md") && !path.ends_with("README.md")
+    };
+    for path in paths.filter(is_page) {
+        let page = fs::read_to_string(&path).expect("readable");
+        let headings: Vec<_> = page
+            .lines()
+            .filter_map(|line| line.strip_prefix("## "))
+            .collect();
+        for section in SECTIONS {
+            assert!(
+                headings.contains(&section),
+                "{}: expected the section {section:?}, found {headings:?}",
+                path.display()
+            );
+        }
+        assert!(page.contains("\n|---"), "{}: no table", path.display());
     }
 }
 

@@ -6,15 +6,23 @@ use anyhow::Result;
 
 use super::template::{fill, made, write};
 use crate::report::experiments::geometry::{drift, precision};
-use crate::report::table::{Table, bold, read_csv};
+use crate::report::plot::{self, Diagram, Point};
+use crate::report::table::{Table, bold, read_table};
 
-/// Rebuilds the page from the CSV files in `folder`.
+const DIAGRAM: Diagram = Diagram {
+    title: "Matrices, normals and projection: cycles against error",
+    across: "largest error, in the unit of the kernel's table",
+    up: "median cycles of a call on the SoC",
+};
+
+/// Rebuilds the page and its diagram from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let kernels: Vec<precision::Row> = read_csv(&folder.join("geometry-precision.csv"))?;
-    let rows: Vec<drift::Row> = read_csv(&folder.join("geometry-drift.csv"))?;
+    let kernels: Vec<precision::Row> = read_table(&folder.join("geometry-precision.csv"))?;
+    let rows: Vec<drift::Row> = read_table(&folder.join("geometry-drift.csv"))?;
+    plot::write(&DIAGRAM, &points(&kernels), &folder.join("geometry.svg"))?;
     let of = |family: &str| {
         let rows = kernels.iter().filter(|row| row.family == family);
         kernel_table(rows)
@@ -33,6 +41,17 @@ pub fn rebuild(folder: &Path) -> Result<()> {
         ],
     )?;
     write(&page, &folder.join("geometry.md"))
+}
+
+fn points(kernels: &[precision::Row]) -> Vec<Point> {
+    let point = |row: &precision::Row| Point {
+        family: row.family.clone(),
+        label: row.config.clone(),
+        error: row.max_err,
+        cost: row.cycles_median.map(|cycles| cycles as f64),
+        shipped: row.shipped,
+    };
+    kernels.iter().map(point).collect()
 }
 
 /// Formats the errors and cycles of kernels as Markdown.

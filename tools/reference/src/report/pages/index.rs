@@ -5,14 +5,14 @@ mod resources;
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde::Serialize;
 
 use self::entries::{Choice, Entry};
 use self::resources::Blocks;
 use super::template::{fill, write};
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, write_csv};
+use crate::report::table::{Table, write_csv, write_json};
 use crate::report::workspace;
 
 const OVERVIEW: Diagram = Diagram {
@@ -45,8 +45,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     let blocks = Blocks::read(&workspace::path("docs/resources.md"))?;
     let rows: Vec<Row> = entries.iter().flat_map(rows).collect();
     write_csv(&rows, &folder.join("index.csv"))?;
-    let json = serde_json::to_string_pretty(&rows).context("index.json")?;
-    write(&(json + "\n"), &folder.join("index.json"))?;
+    write_json(&rows, &folder.join("index.json"))?;
     plot::write(&OVERVIEW, &points(&entries), &folder.join("overview.svg"))?;
     let page = fill(
         include_str!("index.md"),

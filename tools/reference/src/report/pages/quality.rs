@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde::Serialize;
 
 use super::template::{fill, made, write};
 use crate::report::experiments::quality::{Cycles, Row};
 use crate::report::plot::{self, Diagram, Point};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, bold, read_csv, read_optional_csv};
+use crate::report::table::{Table, bold, read_csv, read_optional_table, write_json};
 
 const WRONG: Diagram = Diagram {
     title: "Frames of the scenes: cycles against wrong pixels",
@@ -88,13 +88,12 @@ pub fn is_on_front(frame: &Measured, scene: &[Measured]) -> bool {
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
     let rows: Vec<Row> = read_csv(&folder.join("quality.csv"))?;
-    let cycles: Vec<Cycles> = read_optional_csv(&folder.join("quality-cycles.csv"))?;
+    let cycles: Vec<Cycles> = read_optional_table(&folder.join("quality-cycles.csv"))?;
     let scenes = frames(&rows, &cycles);
     let made = rows
         .first()
         .map_or_else(String::new, |row| made(&row.commit, &row.tools));
-    let json = serde_json::to_string_pretty(&objects(&scenes)).context("quality.json")?;
-    write(&(json + "\n"), &folder.join("quality.json"))?;
+    write_json(&objects(&scenes), &folder.join("quality.json"))?;
     let draw = |diagram: &Diagram, error: fn(&Row) -> f64, name: &str| {
         plot::write(diagram, &points(&scenes, error), &folder.join(name))
     };

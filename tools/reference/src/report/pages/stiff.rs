@@ -2,20 +2,18 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 
 use super::template::{fill, write};
 use crate::report::experiments::stiff::Row;
-use crate::report::table::{Table, read_csv};
+use crate::report::table::{Table, read_table};
 
 /// Rebuilds the page and the JSON file from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_csv(&folder.join("stiff.csv"))?;
-    let json = serde_json::to_string_pretty(&rows).context("stiff.json")?;
-    write(&(json + "\n"), &folder.join("stiff.json"))?;
+    let rows: Vec<Row> = read_table(&folder.join("stiff.csv"))?;
     let page = fill(
         include_str!("stiff.md"),
         &[

@@ -6,16 +6,24 @@ use anyhow::Result;
 
 use super::template::{fill, made, write};
 use crate::report::experiments::triangle::{CpuRow, Row};
+use crate::report::plot::{self, Diagram, Point};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, bold, optional, read_csv, read_optional_csv};
+use crate::report::table::{Table, bold, optional, read_optional_table, read_table};
 
-/// Rebuilds the page from the CSV files in `folder`.
+const DIAGRAM: Diagram = Diagram {
+    title: "Frames of the triangle engine and of the soft core",
+    across: "triangles of the mesh",
+    up: "cycles of a frame on the SoC",
+};
+
+/// Rebuilds the page and its diagram from the CSV files in `folder`.
 ///
 /// # Errors
 /// When the table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_csv(&folder.join("triangle.csv"))?;
-    let cpu: Vec<CpuRow> = read_optional_csv(&folder.join("triangle-cpu.csv"))?;
+    let rows: Vec<Row> = read_table(&folder.join("triangle.csv"))?;
+    let cpu: Vec<CpuRow> = read_optional_table(&folder.join("triangle-cpu.csv"))?;
+    plot::write(&DIAGRAM, &points(&rows, &cpu), &folder.join("triangle.svg"))?;
     let made = rows
         .first()
         .map_or_else(String::new, |row| made(&row.commit, &row.tools));
@@ -30,6 +38,30 @@ pub fn rebuild(folder: &Path) -> Result<()> {
         ],
     )?;
     write(&page, &folder.join("triangle.md"))
+}
+
+/// The frames by their triangles, a family for each size of the picture and each way to draw. The points of frames back to back have rings
+/// and names.
+fn points(rows: &[Row], cpu: &[CpuRow]) -> Vec<Point> {
+    let point = |way: &str, row: &Row, cycles: f64| Point {
+        family: format!("{}×{}, {way}", row.width, row.height),
+        label: String::new(),
+        error: f64::from(row.triangles),
+        cost: Some(cycles),
+        shipped: false,
+    };
+    let mut points = Vec::new();
+    for row in rows {
+        points.push(Point {
+            label: row.scene.clone(),
+            shipped: true,
+            ..point("gateware, back to back", row, row.cycles_frame)
+        });
+        points.push(point("gateware, alone", row, row.cycles_alone as f64));
+        let soft_core = cpu.iter().find(|cpu| cpu.scene == row.scene);
+        points.extend(soft_core.map(|cpu| point("soft core", row, cpu.cycles as f64)));
+    }
+    points
 }
 
 /// Formats the tables of the engine as Markdown: requirements, cycles, and how the time of the passes is spent.
