@@ -38,7 +38,8 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 }
 
 /// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoC whose raymarcher evaluates the field
-/// four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` the SoC with smooth shading.
+/// four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC with smooth
+/// shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
@@ -47,7 +48,9 @@ fn build_parts(name: &str) -> Result<()> {
             model("raymarcher")
         }
         "gouraud" => model("triangle_raster"),
-        "quality" => gateware::build_beside("smooth", &["--smooth"], Library::Quick).map(|_| ()),
+        "quality" | "timeline" => {
+            gateware::build_beside("smooth", &["--smooth"], Library::Quick).map(|_| ())
+        }
         _ => Ok(()),
     }
 }

@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand};
 use glint_core::picture::Size;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, kernels, quality, raymarch, sine, stiff, triangle,
+    geometry, gesture, gouraud, imu, kernels, quality, raymarch, sine, stiff, timeline, triangle,
 };
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
@@ -104,6 +104,14 @@ enum Page {
         /// Measure only one table: errors or cycles
         #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["errors", "cycles"])]
         study: Option<String>,
+        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
+        #[arg(long, value_name = "TEXT")]
+        only: Option<String>,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Where the cycles of a frame of each scene go: soft core, passes of the engines, memory, evaluations
+    Timeline {
         /// Measure only scenes whose name contains TEXT; the default folder is then target/report
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
@@ -210,6 +218,7 @@ fn main() -> Result<()> {
             only,
             output,
         } => measure_quality(quick, study.as_deref(), only.as_deref(), &output),
+        Page::Timeline { only, output } => measure_timeline(only.as_deref(), &output),
         Page::Stiff { only, output } => measure_stiff(only.as_deref(), &output),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
@@ -338,6 +347,14 @@ fn measure_quality(
         write_csv(&rows, &folder.join("quality-cycles.csv"))?;
     }
     output.rebuild("quality", &folder, pages::quality::rebuild)
+}
+
+fn measure_timeline(only: Option<&str>, output: &Output) -> Result<()> {
+    let rows = timeline::measure(only.unwrap_or_default())?;
+    output.print(&rows, pages::timeline::table)?;
+    let folder = output.folder(only.is_some())?;
+    write_csv(&rows, &folder.join("timeline.csv"))?;
+    output.rebuild("timeline", &folder, pages::timeline::rebuild)
 }
 
 fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {

@@ -173,6 +173,95 @@ fn draw_lines(
     Ok(())
 }
 
+/// A part of a track, with its ends on the horizontal axis.
+pub struct Part {
+    /// Name in the legend. Parts of the same name have the same colour.
+    pub name: &'static str,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+}
+
+/// Two opposite corners of a rectangle.
+type Corners = [(f64, f64); 2];
+
+/// A group of tracks, one below the other, with a label at its side.
+pub struct Bar {
+    /// Text beside the tracks.
+    pub label: String,
+    /// Parts of each track.
+    pub tracks: Vec<Vec<Part>>,
+}
+
+/// Writes a diagram of horizontal bars, the first at the top, over an axis from 0 to 100.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_bars(title: &str, across: &str, bars: &[Bar], path: &Path) -> Result<()> {
+    draw_bars(title, across, bars, path)
+        .map_err(|error| anyhow!("cannot draw {}: {error}", path.display()))
+}
+
+fn draw_bars(
+    title: &str,
+    across: &str,
+    bars: &[Bar],
+    path: &Path,
+) -> Result<(), Box<dyn std::error::Error>> {
+    let root = SVGBackend::new(path, SIZE).into_drawing_area();
+    root.fill(&WHITE)?;
+    let count = bars.len() as f64;
+    let mut chart = ChartBuilder::on(&root)
+        .caption(title, ("sans-serif", 22))
+        .margin(16)
+        .margin_right(30)
+        .x_label_area_size(44)
+        .y_label_area_size(200)
+        // Room for the legend is below the bars.
+        .build_cartesian_2d(0.0..100.0, count + 1.0..0.0)?;
+    chart
+        .configure_mesh()
+        .disable_y_mesh()
+        .y_labels(0)
+        .x_desc(across)
+        .x_label_formatter(&|place| format!("{place:.0}"))
+        .light_line_style(BLACK.mix(0.04))
+        .draw()?;
+    let mut shapes: Vec<(&str, Vec<Corners>)> = Vec::new();
+    for (bar, top) in bars.iter().zip(0..) {
+        let height = 0.8 / bar.tracks.len() as f64;
+        for (track, number) in bar.tracks.iter().zip(0..) {
+            let above = f64::from(top) + 0.1 + f64::from(number) * height;
+            for part in track.iter().filter(|part| part.to > part.from) {
+                let shape = [(part.from, above), (part.to, above + height)];
+                match shapes.iter_mut().find(|(name, _)| *name == part.name) {
+                    Some((_, shapes)) => shapes.push(shape),
+                    None => shapes.push((part.name, vec![shape])),
+                }
+            }
+        }
+        let place = EmptyElement::at((0.0, f64::from(top) + 0.5));
+        let text = Text::new(bar.label.clone(), (-200, -7), ("sans-serif", 13));
+        chart.plotting_area().draw(&(place + text))?;
+    }
+    for ((name, shapes), colour) in shapes.into_iter().zip(COLOURS) {
+        let shapes = shapes.into_iter();
+        chart
+            .draw_series(shapes.map(|shape| Rectangle::new(shape, colour.filled())))?
+            .label(name)
+            .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 18, y + 5)], colour.filled()));
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::LowerRight)
+        .background_style(WHITE.mix(0.9))
+        .border_style(BLACK.mix(0.3))
+        .draw()?;
+    root.present()?;
+    Ok(())
+}
+
 /// Draws the axes, the points and the legend of a chart.
 fn fill<'a, X, Y>(
     mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, Y>>,

@@ -4,12 +4,55 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use glint::board::SimulatedBoard;
-use glint::render::BoardRenderer;
+use glint::console::Console;
+use glint::render::{self, BoardRenderer, Route, Stats};
+use glint::scene::{self, Changes};
+use glint_scene::Scene;
+use virtual_board::{Start, VirtualBoard};
+
+use crate::report::workspace;
 
 /// Clock frequencies of the SoC in Hz: first the default, then a faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
+
+/// Draws a frame of a scene with another size and quality on a virtual board that has just started, and returns its statistics.
+///
+/// # Errors
+/// The board is not built, the soft core draws the frame, or it differs from the model's.
+pub fn frame(firmware: &[u8], scene: &Scene, changes: &Changes) -> Result<Stats> {
+    let folder = match scene.needs().smooth {
+        true => "virtual-smooth",
+        false => "virtual",
+    };
+    let library = format!("target/gateware/{folder}/libglint_soc.so");
+    let board = VirtualBoard::builder()
+        .library(workspace::path(&library))
+        .start(Start::Fast { firmware })
+        .build()?;
+    let mut board = SimulatedBoard::new(board);
+    let mut console = Console::new(&mut board);
+    console.greet()?;
+    let mut renderer = BoardRenderer::new(console);
+    let size = changes.size.unwrap_or(scene.size());
+    let quality = changes.quality.map(|quality| format!("quality {quality}"));
+    let command = render::size_command(size);
+    let lines = scene.settings().iter().map(String::as_str);
+    let lines: Vec<&str> = lines.chain(quality.as_deref()).chain([&*command]).collect();
+    let stats = renderer.render_after(&lines)?;
+    ensure!(
+        stats.backend.as_deref() == Some("gateware"),
+        "expected a frame of the gateware, found the soft core's"
+    );
+    let found = renderer.colour(size, Route::Memory, &mut |_, _| {})?;
+    let expected = scene::draw(scene, changes, render::on_model)??;
+    ensure!(
+        found == expected.image.colour,
+        "the frame is not the model's"
+    );
+    Ok(stats)
+}
 
 /// Totals of counters over many frames that are drawn back to back, by the counters' names in the console's reply.
 pub struct BackToBack {

@@ -9,4 +9,5 @@ pub mod quality;
 pub mod raymarch;
 pub mod sine;
 pub mod stiff;
+pub mod timeline;
 pub mod triangle;

@@ -1,10 +1,8 @@
 //! Experiment: pictures of the built-in scenes as a monitor shows them, against the same frames in f64, by size and by precision of the
 //! rays, and the cycles of these frames on the whole SoC.
 
-use anyhow::{Context, Result, ensure};
-use glint::board::{SimulatedBoard, built_firmware};
-use glint::console::Console;
-use glint::render::{self, BoardRenderer, Route};
+use anyhow::{Context, Result};
+use glint::board::built_firmware;
 use glint::scene::{self, Changes};
 use glint_core::block::Block;
 use glint_core::picture::Size;
@@ -12,14 +10,12 @@ use glint_core::quality::Quality;
 use glint_model::Frame;
 use glint_scene::{NAMES, Scene, built_in};
 use serde::{Deserialize, Serialize};
-use virtual_board::{Start, VirtualBoard};
 
 use crate::picture::exact::Exact;
 use crate::picture::{self, Measured};
 use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc;
-use crate::report::workspace;
 
 /// Errors of a frame: a line of `quality.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -100,7 +96,7 @@ impl Variant {
 }
 
 /// The built-in scenes with a picture of their own whose names contain `only`.
-fn scenes(only: &str) -> impl Iterator<Item = Scene> {
+pub fn scenes(only: &str) -> impl Iterator<Item = Scene> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
 }
@@ -152,7 +148,8 @@ pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
         // The frames of the qualities come first, because large frames of others take minutes on a virtual board.
         variants.sort_by_key(|variant| variant.quality().is_none());
         for variant in variants {
-            let cycles = frame_cycles(&firmware, scene, variant);
+            let stats = soc::frame(&firmware, scene, &variant.changes());
+            let cycles = stats.and_then(|stats| stats.cycles.context("no cycles in the reply"));
             let cycles = cycles.with_context(|| format!("{}, {variant:?}", scene.name()))?;
             bar.suspend(|| eprintln!("{}, {variant:?}: {cycles} cycles", scene.name()));
             bar.inc(1);
@@ -168,37 +165,4 @@ pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
     })?;
     bar.finish_and_clear();
     Ok(rows.into_iter().flatten().collect())
-}
-
-/// Draws a frame of a scene on a virtual board that has just started, and returns its cycles.
-fn frame_cycles(firmware: &[u8], scene: &Scene, variant: Variant) -> Result<u64> {
-    let folder = match scene.needs().smooth {
-        true => "virtual-smooth",
-        false => "virtual",
-    };
-    let library = format!("target/gateware/{folder}/libglint_soc.so");
-    let board = VirtualBoard::builder()
-        .library(workspace::path(&library))
-        .start(Start::Fast { firmware })
-        .build()?;
-    let mut board = SimulatedBoard::new(board);
-    let mut console = Console::new(&mut board);
-    console.greet()?;
-    let mut renderer = BoardRenderer::new(console);
-    let quality = variant.rays.map(|rays| format!("quality {rays}"));
-    let size = render::size_command(variant.size);
-    let lines = scene.settings().iter().map(String::as_str);
-    let lines: Vec<&str> = lines.chain(quality.as_deref()).chain([&*size]).collect();
-    let stats = renderer.render_after(&lines)?;
-    ensure!(
-        stats.backend.as_deref() == Some("gateware"),
-        "expected a frame of the gateware, found the soft core's"
-    );
-    let found = renderer.colour(variant.size, Route::Memory, &mut |_, _| {})?;
-    let expected = scene::draw(scene, &variant.changes(), render::on_model)??;
-    ensure!(
-        found == expected.image.colour,
-        "the frame is not the model's"
-    );
-    stats.cycles.context("no cycles in the reply")
 }

@@ -12,6 +12,7 @@ pub mod raymarch;
 pub mod sine;
 pub mod stiff;
 mod template;
+pub mod timeline;
 pub mod triangle;
 
 use std::path::Path;

@@ -1,0 +1,81 @@
+//! Experiment: where the cycles of a frame go, by the counters of the whole SoC, for each built-in scene.
+
+use anyhow::{Context, Result};
+use glint::board::built_firmware;
+use glint::render::Stats;
+use glint::scene::Changes;
+use glint_scene::Scene;
+use serde::{Deserialize, Serialize};
+
+use super::quality::scenes;
+use crate::report::progress;
+use crate::report::provenance::Provenance;
+use crate::report::soc;
+
+/// Lanes of the virtual board's raymarcher.
+pub const LANES: u64 = 2;
+
+/// Cycles and counts of a frame: a line of `timeline.csv`.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Width of the frame in pixels.
+    pub width: u32,
+    /// Cycles of the frame, drawn alone.
+    pub cycles: u64,
+    /// Cycles without a pass of the engines.
+    pub soft_core: u64,
+    /// Cycles of geometry passes.
+    pub geometry: u64,
+    /// Cycles of raster passes.
+    pub raster: u64,
+    /// Cycles in which memory refused a command of the engines; in some of them nothing waits.
+    pub refused: u64,
+    /// Words of 16 bytes that the engines read and wrote.
+    pub words: u64,
+    /// Evaluations of the field; `None` without a field.
+    pub evaluations: Option<u64>,
+    /// Commit with which the frame was measured.
+    pub commit: String,
+    /// Versions of the tools with which the frame was measured.
+    pub tools: String,
+}
+
+/// Measures a frame of each scene whose name contains `only`, on two virtual boards at a time.
+///
+/// # Errors
+/// A board is not built, or a frame differs from the model's.
+pub fn measure(only: &str) -> Result<Vec<Row>> {
+    let firmware = built_firmware(None)?;
+    let provenance = Provenance::find();
+    let scenes: Vec<Scene> = scenes(only).collect();
+    let bar = progress::bar(scenes.len() as u64)?;
+    let rows = soc::two_at_a_time(&scenes, |scene| {
+        let name = scene.name();
+        bar.set_message(format!("{name} on the SoC"));
+        let stats = soc::frame(&firmware, scene, &Changes::default());
+        let row = stats.and_then(|stats| row(scene, &stats, &provenance));
+        bar.inc(1);
+        row.with_context(|| name.to_owned())
+    })?;
+    bar.finish_and_clear();
+    Ok(rows)
+}
+
+fn row(scene: &Scene, stats: &Stats, provenance: &Provenance) -> Result<Row> {
+    let counter = |name: &str| stats.engine.get(name);
+    Ok(Row {
+        scene: scene.name().to_owned(),
+        width: scene.size().width(),
+        cycles: stats.cycles.context("no cycles in the reply")?,
+        soft_core: counter("cycles_soft_core")?,
+        geometry: counter("cycles_geometry")?,
+        raster: counter("cycles_raster")?,
+        refused: counter("cycles_stalled")?,
+        words: counter("words_read")? + counter("words_written")?,
+        evaluations: stats.rays.as_ref().map(|rays| rays.evaluations),
+        commit: provenance.commit.clone(),
+        tools: provenance.tools.clone(),
+    })
+}
