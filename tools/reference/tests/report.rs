@@ -5,6 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use glint::render;
+use glint::scene::{self, Changes};
 use glint_core::field::Field;
 use glint_core::stereo::Stereo;
 use glint_model::raymarch::{FieldOptions, FieldSetup};
@@ -20,7 +22,7 @@ use glint_reference::report::experiments::gouraud::forms;
 use glint_reference::report::experiments::imu::methods::Trial as MethodTrial;
 use glint_reference::report::experiments::kernels as small_kernels;
 use glint_reference::report::experiments::raymarch::{pictures, rates, trials};
-use glint_reference::report::experiments::sine;
+use glint_reference::report::experiments::{quality, sine, timeline};
 use glint_reference::report::pages::PAGES;
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
@@ -248,6 +250,31 @@ fn the_committed_errors_of_smooth_shading_hold() {
             let name = |column| format!("gouraud-forms.csv: {} of {}", column, row.form);
             assert_close(row.max_err, now.max_err, 1e-6, &name("max_err"));
             assert_close(row.rms, now.rms, 1e-6, &name("rms"));
+        }
+    }
+}
+
+/// Draws the frames of timeline.csv again on the model, and compares the evaluations with the committed ones. The parts of a frame are
+/// the whole frame.
+#[test]
+fn the_committed_parts_are_of_the_frames_of_all_scenes() {
+    let rows: Vec<timeline::Row> = committed("timeline.csv");
+    let scenes: Vec<_> = quality::scenes("").collect();
+    assert_eq!(rows.len(), scenes.len(), "scenes have come or gone");
+    for (row, scene) in rows.iter().zip(&scenes) {
+        let picture = (row.scene.as_str(), row.width);
+        assert_eq!(picture, (scene.name(), scene.size().width()));
+        let parts = row.soft_core + row.geometry + row.raster;
+        assert_eq!(row.cycles, parts, "{}: the sum of its parts", row.scene);
+        if row.evaluations.is_some() {
+            let drawn = scene::draw(scene, &Changes::default(), render::on_model);
+            let drawn = drawn.expect("a scene").expect("a picture");
+            let now = drawn.stats.rays.map(|rays| rays.evaluations);
+            assert_eq!(
+                row.evaluations, now,
+                "{}: evaluations in the table and now: run `cargo xtask report timeline`",
+                row.scene
+            );
         }
     }
 }

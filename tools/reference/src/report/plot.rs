@@ -219,7 +219,7 @@ fn draw_bars(
         .x_label_area_size(44)
         .y_label_area_size(200)
         // Room for the legend is below the bars.
-        .build_cartesian_2d(0.0..100.0, count + 1.0..0.0)?;
+        .build_cartesian_2d(0.0..100.0, count + 2.0..0.0)?;
     chart
         .configure_mesh()
         .disable_y_mesh()
@@ -233,7 +233,7 @@ fn draw_bars(
         let height = 0.8 / bar.tracks.len() as f64;
         for (track, number) in bar.tracks.iter().zip(0..) {
             let above = f64::from(top) + 0.1 + f64::from(number) * height;
-            for part in track.iter().filter(|part| part.to > part.from) {
+            for part in track {
                 let shape = [(part.from, above), (part.to, above + height)];
                 match shapes.iter_mut().find(|(name, _)| *name == part.name) {
                     Some((_, shapes)) => shapes.push(shape),

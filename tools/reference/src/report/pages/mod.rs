@@ -23,7 +23,7 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 11] = [
+pub const PAGES: [(&str, Rebuild); 12] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
@@ -33,6 +33,7 @@ pub const PAGES: [(&str, Rebuild); 11] = [
     ("gesture", gesture::rebuild),
     ("kernels", kernels::rebuild),
     ("quality", quality::rebuild),
+    ("timeline", timeline::rebuild),
     ("stiff", stiff::rebuild),
     // The index is made from the tables of all other pages.
     ("README", index::rebuild),
