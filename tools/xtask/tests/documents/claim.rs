@@ -1,7 +1,7 @@
 //! Claims of accuracy, speed or cost in a text: numbers with a unit that only a measurement has.
 //!
 //! The pages have one convention: what a design states by itself has other units. A frequency is in Hz, a time-out or a period in s, ms or
-//! µs, a position in fractions of a pixel, a limit of a circuit in clocks.
+//! µs, a position in fractions of a pixel, a limit of a circuit in clocks, a bound of a rounding in units of its format.
 
 use std::sync::LazyLock;
 
@@ -21,7 +21,7 @@ const UNITS: [&str; 11] = [
     // Time that a command takes.
     r"(?: (?:minutes|seconds|s of (?:CPU|processor) time)\b|(?: \w+)+, m?s\b)",
     // Cost in cells of an FPGA.
-    r" (?:more |fewer |other )?(?:LUT4?s?|FFs?|flip-flops|DSP48\w*|MULT18\w*|RAMB36\w*|DP16KD|slices|control sets)\b",
+    r" (?:more |fewer |other )?(?:LUT4?s?|FFs?|flip-flops|DSP48\w*|MULT18\w*|RAMB36\w*|block RAMs|DP16KD|slices|control sets)\b",
     // Accuracy.
     r" ULP\b",
     r" °/h",
@@ -60,6 +60,7 @@ fn figures_of_measurements_are_claims() {
         "this saves 88 flip-flops",
         "19 LUTs and a register",
         "takes 3 DSP48",
+        "4.5 block RAMs",
         "errors of 0.673 ULP",
         "drifts by 4 °/h",
         "its centre is then 2 pixels off",
