@@ -8,12 +8,16 @@ use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
 use crate::bus::Bus;
-use crate::cpu::{Cpu, Pause};
+use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
 
 /// Longest time in cycles between two looks at a condition.
 const SLICE: u64 = 1000;
+
+/// Factor of the devices' time while the board follows another one: an engine whose time is estimated too long must have ended when the
+/// program starts it again.
+const FOLLOWING: u64 = 16;
 
 /// An emulated board.
 pub struct EmulatedBoard {
@@ -83,6 +87,20 @@ impl EmulatedBoard {
             }
             self.run(left.min(SLICE));
         }
+    }
+
+    /// Executes the next instruction, which the CPU of another board has executed as `other` states, and compares address and result.
+    ///
+    /// Interrupts are taken where the other CPU took them. Results that depend on time are the other CPU's: loads from registers of
+    /// devices, reads of counters and of pending interrupts. Engines do their work when the program starts them, as on every
+    /// emulated board.
+    ///
+    /// # Errors
+    /// The CPUs execute different instructions, or leave different values in a register.
+    pub fn follow(&mut self, other: Executed) -> Result<(), Difference> {
+        let now = other.cycle * FOLLOWING;
+        self.bus.devices.advance(now, &mut self.bus.ram);
+        self.cpu.follow(&mut self.bus, now, other)
     }
 
     /// Clock cycles since the start.

@@ -140,6 +140,11 @@ enum Place {
     Unused,
 }
 
+/// Whether `address` is that of a register of a device.
+pub fn is_register(address: u32) -> bool {
+    matches!(place(address), Place::Register(_))
+}
+
 fn place(address: u32) -> Place {
     let within = |memory: Memory| {
         let offset = address.wrapping_sub(memory.base);

@@ -1,9 +1,13 @@
 //! The CPU: VexRiscv `full`, rv32im with machine mode, as an interpreter of decoded instructions.
 
+mod follow;
+
 use crate::bus::Bus;
 use crate::code::{Code, PAGE};
 use crate::csr::{Counts, Csrs, cause};
 use crate::decode::{Instruction, Operation};
+
+pub use follow::{Difference, Executed};
 
 /// Clock cycles of an instruction: an estimate, the mean of the real CPU.
 pub const CYCLES: u64 = 1;

@@ -30,6 +30,12 @@ pub mod cause {
     pub const CALL: u32 = 11;
 }
 
+/// Whether the value of the register `number` depends on time, or on the kind of the board: counters, pending interrupts, the
+/// implementation.
+pub fn depends_on_time(number: u32) -> bool {
+    matches!(number, 0x344 | 0xfc0 | 0xb00..=0xb8f | 0xc00..=0xc8f | 0xf13)
+}
+
 /// Counters of the CPU at an instruction.
 #[derive(Clone, Copy)]
 pub struct Counts {

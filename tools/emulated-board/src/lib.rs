@@ -29,6 +29,7 @@ mod memory;
 mod simulation;
 
 pub use board::EmulatedBoard;
+pub use cpu::{Difference, Executed};
 pub use device::Device;
 pub use engines::{GestureEngine, Raymarcher, TriangleEngine};
 pub use error::Error;

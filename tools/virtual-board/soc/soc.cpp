@@ -66,6 +66,8 @@ struct Soc : Harness {
     uint64_t camera_clocks = 0;
     bool video_on = false;
     std::vector<uint32_t> video;
+    bool instructions_on = false;
+    std::vector<SocInstruction> instructions;
 
     explicit Soc(uint32_t seed) : Harness(seed, Registers::ZERO) {
         step = HALF_PERIOD_PS;
@@ -85,6 +87,7 @@ struct Soc : Harness {
         const bool taken = top.serial_sink_valid && top.serial_sink_ready;
         const bool clocked = top.camera_xclk;
         move_camera();
+        if (instructions_on) record_instruction();
         top.sys_clk = 1;
         top.pix_clk = 0;
         eval();
@@ -114,6 +117,16 @@ struct Soc : Harness {
     void record_pixel() {
         video.push_back(uint32_t(top.vga_vsync) << 26 | uint32_t(top.vga_hsync) << 25 | uint32_t(top.vga_de) << 24 |
                         uint32_t(top.vga_r) << 16 | uint32_t(top.vga_g) << 8 | uint32_t(top.vga_b));
+    }
+
+    // Records the instruction that leaves the last stage of the CPU at the coming edge, if there is one.
+    void record_instruction() {
+        const auto *root = top.rootp;
+        if (!root->glint_virtual__DOT__VexRiscv__DOT__lastStageIsFiring) return;
+        const bool writes = root->glint_virtual__DOT__VexRiscv__DOT__lastStageRegFileWrite_valid;
+        instructions.push_back({cycles, root->glint_virtual__DOT__VexRiscv__DOT__lastStagePc,
+                                writes ? root->glint_virtual__DOT__VexRiscv__DOT__lastStageRegFileWrite_payload_address : 0u,
+                                root->glint_virtual__DOT__VexRiscv__DOT__lastStageRegFileWrite_payload_data});
     }
 
     // Moves the image sensor's port by half a cycle of sys_clk. The levels of a period change at its beginning, PCLK rises in its middle.
@@ -275,6 +288,13 @@ void soc_video_clear(Soc *soc) { soc->video.clear(); }
 
 void soc_flash_drive(Soc *soc, uint8_t lines) { soc->top.flash_dq_in = lines & FLASH_RELEASED; }
 uint8_t soc_flash_lines(const Soc *soc) { return soc->top.flash_dq_out; }
+
+void soc_instructions_record(Soc *soc, int on) { soc->instructions_on = on != 0; }
+const SocInstruction *soc_instructions(const Soc *soc, size_t *count) {
+    *count = soc->instructions.size();
+    return soc->instructions.data();
+}
+void soc_instructions_clear(Soc *soc) { soc->instructions.clear(); }
 
 int soc_filling(const Soc *soc) { return soc->filling(); }
 void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length) {

@@ -73,6 +73,19 @@ void soc_video_record(Soc *soc, int on);
 const uint32_t *soc_video_samples(const Soc *soc, size_t *count);
 void soc_video_clear(Soc *soc);
 
+/* An instruction that the CPU has executed. */
+struct SocInstruction {
+    uint64_t cycle;         /* Cycle of sys_clk in which it ended. */
+    uint32_t pc;            /* Its address. */
+    uint32_t rd;            /* Number of the register that it wrote, 0 for none. */
+    uint32_t value;         /* Value that it wrote there. */
+};
+/* Turns the recording of executed instructions on or off; it is off at first. */
+void soc_instructions_record(Soc *soc, int on);
+/* Instructions since the last call of soc_instructions_clear, in their order. Valid until the next run or clear. */
+const SocInstruction *soc_instructions(const Soc *soc, size_t *count);
+void soc_instructions_clear(Soc *soc);
+
 /* Whether the CPU fills a line of a cache, which holds old data of the line. */
 int soc_filling(const Soc *soc);
 /* Reads or writes DDR3, `offset` bytes into main RAM; offset + length must be at most 128 MiB. A store of the CPU reaches memory within a

@@ -10,7 +10,7 @@ use virtual_image_sensor::ImageSensor;
 use virtual_mpu6050::Wires;
 
 use crate::digits::Digits;
-use crate::library::Soc;
+use crate::library::{Instruction, Soc};
 use crate::memory::main_ram_offset;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
@@ -261,6 +261,16 @@ impl VirtualBoard {
             let monitor = &mut self.monitor;
             self.soc.video_take(|samples| monitor.watch(samples));
         }
+    }
+
+    /// Turns the recording of executed instructions on or off; it is off at first.
+    pub fn record_instructions(&mut self, on: bool) {
+        self.soc.instructions_record(on);
+    }
+
+    /// Moves the instructions that were recorded since the last call to the end of `list`, in their order.
+    pub fn take_instructions(&mut self, list: &mut Vec<Instruction>) {
+        self.soc.instructions_take(list);
     }
 
     /// Cycles of the system clock since the start.

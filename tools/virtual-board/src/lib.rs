@@ -38,6 +38,7 @@ mod simulation;
 
 pub use board::{Builder, Start, VirtualBoard};
 pub use error::Error;
+pub use library::Instruction;
 pub use monitor::{HEIGHT, Monitor, TimingError, WIDTH};
 pub use picture::{Picture, PictureError};
 pub use virtual_flash;

@@ -56,10 +56,27 @@ functions! {
     video_record: fn(Handle, c_int);
     video_samples: fn(Handle, *mut usize) -> *const u32;
     video_clear: fn(Handle);
+    instructions_record: fn(Handle, c_int);
+    instructions: fn(Handle, *mut usize) -> *const Instruction;
+    instructions_clear: fn(Handle);
     filling: fn(Handle) -> c_int;
     ddr_read: fn(Handle, u32, *mut u8, usize);
     ddr_write: fn(Handle, u32, *const u8, usize);
     rom_write: fn(Handle, *const u8, usize);
+}
+
+/// An instruction that the CPU has executed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub struct Instruction {
+    /// Cycle of the system clock in which it ended.
+    pub cycle: u64,
+    /// Its address.
+    pub pc: u32,
+    /// Number of the register that it wrote, 0 for none.
+    pub register: u32,
+    /// Value that it wrote there.
+    pub value: u32,
 }
 
 /// Outputs of the SoC to devices that answer each edge. SCL and SDA are released when `true`, and pulled low when `false`.
@@ -283,6 +300,24 @@ impl Soc {
         }
         // SAFETY: the handle belongs to a live SoC that nothing else uses; the slice is gone.
         unsafe { (self.functions.video_clear)(self.raw()) }
+    }
+
+    pub fn instructions_record(&mut self, on: bool) {
+        // SAFETY: the handle belongs to a live SoC that nothing else uses.
+        unsafe { (self.functions.instructions_record)(self.raw(), on.into()) }
+    }
+
+    /// Moves the recorded instructions to the end of `list`.
+    pub fn instructions_take(&mut self, list: &mut Vec<Instruction>) {
+        let mut count = 0;
+        // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is a valid place for the result.
+        let instructions = unsafe { (self.functions.instructions)(self.raw(), &mut count) };
+        if count != 0 {
+            // SAFETY: the library keeps `count` instructions at this address until the next run or clear.
+            list.extend_from_slice(unsafe { slice::from_raw_parts(instructions, count) });
+        }
+        // SAFETY: the handle belongs to a live SoC that nothing else uses; the slice is gone.
+        unsafe { (self.functions.instructions_clear)(self.raw()) }
     }
 
     /// Whether the CPU fills a line of a cache.

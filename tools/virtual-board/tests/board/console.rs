@@ -56,7 +56,7 @@ fn lasting(text: &str, clock_hz: u32) -> String {
 }
 
 /// The committed transcript, and its path.
-fn committed() -> (PathBuf, String) {
+pub fn committed() -> (PathBuf, String) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/board/console.txt");
     let text = std::fs::read_to_string(&path).expect("the transcript");
     (path, text)

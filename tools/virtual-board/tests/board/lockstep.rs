@@ -1,13 +1,16 @@
-//! The emulated CPU against the verilated one: random programs leave their registers, memory and traps in main memory, and both boards
-//! must leave the same.
+//! The emulated CPU against the verilated one. Random programs leave their registers, memory and traps in main memory, and both boards
+//! must leave the same. The firmware executes the same instructions with the same results.
 
 use std::fmt::Write;
 
-use emulated_board::EmulatedBoard;
+use emulated_board::{EmulatedBoard, Executed};
 use glint_vectors::Random;
 use litex_pac::ctrl;
 use litex_pac::memories::{MAIN_RAM, SRAM};
-use virtual_board::{Start, VirtualBoard};
+use virtual_board::{Instruction, Start, VirtualBoard};
+
+use crate::console::committed;
+use crate::firmware::{PROMPT, image};
 
 /// Number of random instructions of a program; its registers are stored after them.
 const BODY: usize = 64;
@@ -385,4 +388,70 @@ fn random_programs_leave_the_same_on_both_boards() {
     for seed in 0..count.div_ceil(BODY * PROGRAMS) {
         compare(seed as u64);
     }
+}
+
+/// Cycles of the firmware that are compared, unless `GLINT_LOCKSTEP_CYCLES` states another number.
+const CYCLES: u64 = 3_000_000;
+
+/// Cycles between two comparisons.
+const SLICE: u64 = 100_000;
+
+/// Compares each instruction of the firmware: its start, and the commands of the console's transcript. `GLINT_LOCKSTEP_CYCLES=50000000`
+/// in the environment compares 50 million cycles.
+#[test]
+fn the_firmware_executes_the_same_instructions() {
+    let cycles = std::env::var("GLINT_LOCKSTEP_CYCLES").ok();
+    let cycles = cycles.map_or(CYCLES, |text| text.parse().expect("a number"));
+    let firmware = image();
+    let start = Start::Fast {
+        firmware: &firmware,
+    };
+    let board = VirtualBoard::builder().start(start).build();
+    let mut verilated = board.expect("a virtual board");
+    let mut emulated = EmulatedBoard::fast(&firmware).expect("firmware that fits");
+    verilated.record_instructions(true);
+
+    let (_, transcript) = committed();
+    let mut commands = transcript
+        .lines()
+        .filter_map(|line| line.strip_prefix(PROMPT));
+    let (mut instructions, mut output, mut sent, mut executed) = (vec![], vec![], 0, 0_u64);
+    // The boards have different programs in their ROMs, which jump to the firmware: two instructions on this one.
+    emulated.run(2);
+    while verilated.cycles() < cycles {
+        verilated.run(SLICE);
+        verilated.uart_read(&mut output);
+        if output.ends_with(PROMPT.as_bytes()) {
+            output.clear();
+            let command = commands.next().expect("commands for all cycles");
+            verilated.uart_write(format!("{command}\r").as_bytes());
+            sent += 1;
+        }
+        verilated.take_instructions(&mut instructions);
+        for Instruction {
+            cycle,
+            pc,
+            register,
+            value,
+        } in instructions.drain(..)
+        {
+            if executed == 0 && pc != MAIN_RAM.base {
+                continue;
+            }
+            let other = Executed {
+                cycle,
+                pc,
+                register,
+                value,
+            };
+            if let Err(difference) = emulated.follow(other) {
+                panic!(
+                    "cycle {cycle}, after {executed} instructions and {sent} commands: {difference}"
+                );
+            }
+            executed += 1;
+        }
+    }
+    println!("{executed} instructions in {cycles} cycles, {sent} commands");
+    assert!(executed > cycles / 10);
 }

@@ -5,6 +5,25 @@ use crate::sensor::{board_with_sensor, sensor};
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
 
+/// All parts.
+const PARTS: [&str; 15] = [
+    "identity",
+    "clock",
+    "cycle counter",
+    "memory",
+    "imu",
+    "camera",
+    "scan-out",
+    "triangle flat",
+    "triangle smooth",
+    "line",
+    "raymarch sponge",
+    "raymarch cubes",
+    "raymarch spheres",
+    "raymarch stereo",
+    "underflow",
+];
+
 /// The verdict on the part `name`.
 fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
     let key = format!("selftest {name} ");
@@ -14,6 +33,21 @@ fn verdict<'a>(answer: &'a str, name: &str) -> &'a str {
         .unwrap_or_else(|| panic!("no {name} in {answer}"))
 }
 
+/// Checks that every part passes: sensors have the verdict `sensors`, and the gateware of the standard build has no smooth shading.
+fn check(answer: &str, sensors: &str) {
+    for part in PARTS {
+        let expected = match part {
+            "imu" | "camera" => sensors,
+            "triangle smooth" => "absent",
+            _ => "ok",
+        };
+        assert_eq!(verdict(answer, part), expected, "{part}: {answer}");
+    }
+    let parts = answer.lines().filter(|line| line.starts_with("selftest "));
+    assert_eq!(parts.count(), PARTS.len(), "{answer}");
+    assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+}
+
 #[test]
 fn plugged_sensors_pass() {
     let mut board = board_with_sensor(|_| State::default());
@@ -21,9 +55,13 @@ fn plugged_sensors_pass() {
     let timing = Timing::SHORT;
     board.plug_image_sensor(ImageSensor::new(Model::Ov7670, nothing, timing));
     let answer = command(&mut board, "selftest");
-    assert_eq!(verdict(&answer, "imu"), "ok", "{answer}");
-    assert_eq!(verdict(&answer, "camera"), "ok", "{answer}");
-    assert!(answer.ends_with("ok\r\nglint> "), "{answer}");
+    check(&answer, "ok");
+}
+
+#[test]
+fn sensors_that_are_not_plugged_are_absent() {
+    let (mut board, _) = emulated(&image());
+    check(&command(&mut board, "selftest"), "absent");
 }
 
 #[test]

@@ -1,0 +1,106 @@
+//! Execution instruction by instruction after another CPU, for comparison.
+
+use super::Cpu;
+use crate::bus::{self, Bus};
+use crate::csr;
+use crate::decode::{Instruction, Operation};
+
+/// An instruction as another CPU executed it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Executed {
+    /// Clock cycle in which it ended.
+    pub cycle: u64,
+    /// Its address.
+    pub pc: u32,
+    /// Number of the register that it wrote, 0 for none.
+    pub register: u32,
+    /// Value that it wrote there.
+    pub value: u32,
+}
+
+/// A difference between two CPUs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Difference {
+    /// The instructions are at different addresses.
+    #[error("expected the instruction at {expected:#010x}, found that at {found:#010x}")]
+    Address {
+        /// Address on the other CPU.
+        expected: u32,
+        /// Address on this one.
+        found: u32,
+    },
+    /// The instructions leave different values.
+    #[error(
+        "{pc:#010x} {word:#010x}: expected {expected:#010x} in x{register}, found {found:#010x}"
+    )]
+    Value {
+        /// Address of the instruction.
+        pc: u32,
+        /// The instruction.
+        word: u32,
+        /// Number of the register.
+        register: u32,
+        /// Value on the other CPU.
+        expected: u32,
+        /// Value on this one.
+        found: u32,
+    },
+}
+
+impl Cpu {
+    /// Executes the next instruction, which another CPU executed as `other` states, and compares address and result. `now` is the
+    /// time for the devices.
+    ///
+    /// Takes an interrupt where the other CPU took one. Results that depend on time are the other CPU's: loads from registers of
+    /// devices, and reads of counters and of pending interrupts.
+    pub fn follow(&mut self, bus: &mut Bus, now: u64, other: Executed) -> Result<(), Difference> {
+        if self.pc != other.pc {
+            self.csrs.lines = u32::MAX;
+            self.pc = self.csrs.interrupt(self.pc).unwrap_or(self.pc);
+        }
+        if self.pc != other.pc {
+            return Err(Difference::Address {
+                expected: other.pc,
+                found: self.pc,
+            });
+        }
+        let word = bus.memory_word(self.pc).unwrap_or_default();
+        let depends_on_time = self.depends_on_time(Instruction::decode(word));
+        self.asleep = false;
+        self.run(bus, now, now + super::CYCLES, 0);
+        if other.register == 0 {
+            return Ok(());
+        }
+        let register = &mut self.x[other.register as usize & 31];
+        if depends_on_time {
+            *register = other.value;
+        }
+        if *register == other.value {
+            return Ok(());
+        }
+        Err(Difference::Value {
+            pc: other.pc,
+            word,
+            register: other.register,
+            expected: other.value,
+            found: *register,
+        })
+    }
+
+    fn depends_on_time(&self, instruction: Instruction) -> bool {
+        use Operation::*;
+        let Instruction {
+            operation,
+            rs1,
+            immediate,
+            ..
+        } = instruction;
+        match operation {
+            Lb | Lh | Lw | Lbu | Lhu => {
+                bus::is_register(self.x[usize::from(rs1 & 31)].wrapping_add(immediate))
+            }
+            Csr => csr::depends_on_time(immediate >> 20),
+            _ => false,
+        }
+    }
+}
