@@ -102,10 +102,12 @@ impl Programs {
     pub fn run(self, environment: &[(&str, &OsStr)]) -> Result<u32> {
         let waiting = Mutex::new(self.0.into_iter());
         let results = Mutex::new(Results::default());
+        // A function of its own, because the guard of an expression in `while let` would live until the program has ended.
+        let next = || lock(&waiting).next();
         thread::scope(|scope| {
             for _ in 0..AT_A_TIME {
                 scope.spawn(|| {
-                    while let Some(program) = lock(&waiting).next() {
+                    while let Some(program) = next() {
                         let mut command = Command::new(&program.path);
                         command.current_dir(&program.package);
                         run_tests(&program.name(), command, environment, &results);
