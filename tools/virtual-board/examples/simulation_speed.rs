@@ -1,5 +1,7 @@
-//! `cargo run --release -p virtual-board --example simulation_speed` compares the speed of the virtual board with that of the bare model: [`VirtualBoard::run`] with the monitor off and on,
+//! Compares the speed of the virtual board with that of the bare model: [`VirtualBoard::run`] with the monitor off and on,
 //! and a C++ loop that only advances the clocks, in cycles per second. Measurements of the three kinds alternate.
+//!
+//! `cargo run -p virtual-board --example simulation_speed`
 //!
 //! Exit code 1 if the board with its monitor off is below 90 % of the bare loop's speed.
 

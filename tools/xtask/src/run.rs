@@ -38,6 +38,16 @@ pub fn print_progress(line: &str) {
     });
 }
 
+/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains nothing.
+pub fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new("cargo");
+    command
+        .args(arguments)
+        .env("CARGO_INCREMENTAL", "0")
+        .current_dir(paths::root());
+    command
+}
+
 /// Runs `command` as the step `name`: shows its latest line of output while it runs, writes all output to `target/log`, and
 /// prints one line with the run time at the end.
 ///

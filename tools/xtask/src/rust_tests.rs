@@ -79,15 +79,13 @@ impl Programs {
         let mut programs = Vec::new();
         run::watched_step(
             "build of the tests",
-            Command::new("cargo")
-                .args([
-                    "test",
-                    "--no-run",
-                    "--message-format",
-                    "json-render-diagnostics",
-                ])
-                .args(selection)
-                .current_dir(paths::root()),
+            run::cargo(&[
+                "test",
+                "--no-run",
+                "--message-format",
+                "json-render-diagnostics",
+            ])
+            .args(selection),
             |line| programs.extend(test_program(line)),
         )?;
         programs.sort_by_key(Program::rank);
@@ -132,8 +130,7 @@ impl Programs {
 /// An example fails.
 pub fn run_examples() -> Result<u32> {
     let results = Mutex::new(Results::default());
-    let mut command = Command::new("cargo");
-    command.args(["test", "--doc"]).current_dir(paths::root());
+    let command = run::cargo(&["test", "--doc"]);
     run_tests("examples in the documentation", command, &[], &results);
     let results = results.into_inner().expect("tests do not panic");
     match results.failed.first() {

@@ -137,22 +137,15 @@ impl CheckResults {
 
 /// Runs a cargo command as a check.
 fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
-    run::step(
-        name,
-        Command::new("cargo")
-            .args(arguments)
-            .current_dir(paths::root()),
-    )?;
+    run::step(name, &mut run::cargo(arguments))?;
     Ok(1)
 }
 
 fn documentation() -> Result<u32> {
     run::step(
         "rustdoc",
-        Command::new("cargo")
-            .args(["doc", "--no-deps", "--document-private-items"])
-            .env("RUSTDOCFLAGS", "-D warnings")
-            .current_dir(paths::root()),
+        run::cargo(&["doc", "--no-deps", "--document-private-items"])
+            .env("RUSTDOCFLAGS", "-D warnings"),
     )?;
     Ok(1)
 }
