@@ -48,5 +48,4 @@ fn the_verilated_board_runs_alone_from_its_flash() {
     let mut console = Console::new(&mut board);
     let state = console.command("demo").unwrap();
     assert_eq!(state, ["demo on", "scene 2 of 2 wireframe"]);
-    console.command("selftest").unwrap();
 }
