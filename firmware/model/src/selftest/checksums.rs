@@ -1,5 +1,5 @@
 //! The checksums of the self-test's pictures, in the order of their definition.
-// Written by `GLINT_UPDATE=1 cargo test -p glint-model --test selftest`. Do not edit.
+// Written by `GLINT_UPDATE=1 cargo test -p glint-model --test model -- selftest`. Do not edit.
 
 pub(super) const STORED: [u32; 7] = [
     0x8fcc3f78, 0x7251a3e0, 0xfbf7f676, 0xae5dd1d7, 0xb92113dd, 0xda075a2c, 0x92b1ce38,

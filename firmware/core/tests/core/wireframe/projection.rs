@@ -7,7 +7,7 @@ use glint_core::wireframe::{
 };
 use proptest::prelude::*;
 
-use crate::{point, q, viewing};
+use super::{point, q, viewing};
 
 /// The ends on the screen in units of 2^−8 pixels by f64, from positions after the motion.
 fn exact(viewing: &Viewing, size: Size, [a, b]: [[f64; 3]; 2]) -> Option<[[f64; 2]; 2]> {

@@ -5,7 +5,7 @@ use glint_core::wireframe::text::{assemble, parse_line};
 use glint_core::wireframe::{Instruction, MAX_SEGMENTS, Program, WORD_BYTES, Window};
 use proptest::prelude::*;
 
-use crate::{point, q, viewing};
+use super::{point, q, viewing};
 
 const TEXT: &str = "\
 # a triangle

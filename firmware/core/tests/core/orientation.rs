@@ -1,14 +1,12 @@
 //! Attitudes compared with closed forms: accuracy, length 1 of the quaternions, and freedom from panics.
 
-mod random;
-
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
     Angles, Gain, Integrator, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT,
     Tilt, Tracker, log,
 };
 
-use random::Random;
+use crate::random::Random;
 
 type Parts = [f64; 4];
 

@@ -15,7 +15,7 @@ fn file(checksums: &[u32]) -> String {
         .collect();
     format!(
         "//! The checksums of the self-test's pictures, in the order of their definition.
-// Written by `GLINT_UPDATE=1 cargo test -p glint-model --test selftest`. Do not edit.
+// Written by `GLINT_UPDATE=1 cargo test -p glint-model --test model -- selftest`. Do not edit.
 
 pub(super) const STORED: [u32; {}] = [
 {lines}];
@@ -61,7 +61,7 @@ fn the_stored_checksums_are_those_of_the_model() {
         assert_eq!(
             picture.stored(),
             checksum,
-            "{}: `GLINT_UPDATE=1 cargo test -p glint-model --test selftest` stores the checksums",
+            "{}: `GLINT_UPDATE=1 cargo test -p glint-model --test model -- selftest` stores the checksums",
             picture.name()
         );
     }

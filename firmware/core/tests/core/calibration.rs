@@ -1,13 +1,11 @@
 //! Tests of the gyroscope's calibration: results, rejected samples, and tracking of the bias at rest.
 
-mod random;
-
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
 };
 use glint_core::orientation::Sample;
 
-use random::Random;
+use crate::random::Random;
 
 impl Random {
     /// Returns an approximately normal random number with mean 0 and variance 1, from the sum of twelve uniform numbers.

@@ -6,7 +6,7 @@ use glint_core::wireframe::{
 };
 use proptest::prelude::*;
 
-use crate::{point, q};
+use super::{point, q};
 
 fn any_step() -> impl Strategy<Value = Step> {
     (prop::sample::select(&Key::ALL[..]), any::<bool>()).prop_map(|(key, rotate)| key.step(rotate))
