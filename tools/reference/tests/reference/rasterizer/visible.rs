@@ -4,10 +4,10 @@
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
 
-use crate::cameras::{cross, dot, minus, view};
-use crate::coverage::snap_limit;
-use crate::renderer::Renderer;
-use crate::scenes::{Case, ONE, random_case};
+use super::cameras::{cross, dot, minus, view};
+use super::coverage::snap_limit;
+use super::renderer::Renderer;
+use super::scenes::{Case, ONE, random_case};
 
 /// Numbers of compared pixels, and the largest error of a depth.
 #[derive(Debug, Default)]

@@ -5,9 +5,9 @@
 use glint_reference::camera::{Camera, Size};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 
-use crate::cameras::view;
-use crate::renderer::{Renderer, exact};
-use crate::scenes::{Case, LARGE, Scene, random_case};
+use super::cameras::view;
+use super::renderer::{Renderer, exact};
+use super::scenes::{Case, LARGE, Scene, random_case};
 
 /// Counts and largest errors of a comparison.
 #[derive(Clone, Copy, Debug, Default)]

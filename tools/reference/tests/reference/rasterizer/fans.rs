@@ -5,9 +5,9 @@ use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cameras::{around, log_range, view};
-use crate::renderer::{Renderer, exact};
-use crate::scenes::{Case, ONE, SMALL, Scene};
+use super::cameras::{around, log_range, view};
+use super::renderer::{Renderer, exact};
+use super::scenes::{Case, ONE, SMALL, Scene};
 
 /// Number of lattice steps along each of the two sides of a [`Cut`].
 const STEPS: i64 = 200;

@@ -4,10 +4,10 @@ use glint_reference::camera::{Camera, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cameras::{looking_at, view};
-use crate::coverage::check;
-use crate::renderer::Renderer;
-use crate::scenes::{Case, LARGE, MIDDLE, ONE, SMALL, Scene};
+use super::cameras::{looking_at, view};
+use super::coverage::check;
+use super::renderer::Renderer;
+use super::scenes::{Case, LARGE, MIDDLE, ONE, SMALL, Scene};
 
 /// One step of a coordinate in Q2.14.
 const STEP: f64 = 1.0 / ONE;

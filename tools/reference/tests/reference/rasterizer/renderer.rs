@@ -8,7 +8,7 @@ use glint_model::{
 use glint_reference::camera::Size;
 use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 
-use crate::scenes::Scene;
+use super::scenes::Scene;
 
 /// Draws scenes with the model, and keeps the last picture. The buffers are reused for the next picture.
 #[derive(Default)]

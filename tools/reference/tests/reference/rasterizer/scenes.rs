@@ -5,7 +5,7 @@ use glint_reference::camera::{Camera, Size, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cameras::{around, log_range};
+use super::cameras::{around, log_range};
 
 /// The number 1 in units of Q2.14.
 pub const ONE: f64 = 16384.0;

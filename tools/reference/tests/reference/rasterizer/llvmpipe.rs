@@ -13,9 +13,9 @@ use glint_reference::triangle::exact::{ExactTriangle, SnappedVertex};
 use glint_reference::triangle::surface::{Class, ProjectedTriangle};
 use serde::{Deserialize, Serialize};
 
-use crate::cameras::view;
-use crate::renderer::Renderer;
-use crate::scenes::{SMALL, random_case};
+use super::cameras::view;
+use super::renderer::Renderer;
+use super::scenes::{SMALL, random_case};
 
 /// Input of the script compare.py.
 #[derive(Serialize)]
@@ -112,7 +112,7 @@ fn snapped_corners(renderer: &Renderer, places: [[f64; 2]; 3]) -> Option<[Snappe
         let offset = |vertex: &SnappedVertex| {
             (vertex.x as f64 - place[0] * 256.0).hypot(vertex.y as f64 - place[1] * 256.0)
         };
-        let vertices = drawn.vertices.map(crate::renderer::snapped);
+        let vertices = drawn.vertices.map(super::renderer::snapped);
         vertices
             .into_iter()
             .min_by(|a, b| offset(a).total_cmp(&offset(b)))

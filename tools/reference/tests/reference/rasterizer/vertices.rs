@@ -9,9 +9,9 @@ use glint_reference::camera::{Camera, Size, Vector};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cameras::{around, log_range, view};
-use crate::renderer::Renderer;
-use crate::scenes::{LARGE, ONE, SMALL, Scene};
+use super::cameras::{around, log_range, view};
+use super::renderer::Renderer;
+use super::scenes::{LARGE, ONE, SMALL, Scene};
 
 /// Number of compared vertices, largest distances of these snapped vertices from their projection in f64, in steps of 1/256
 /// pixel, and the largest error of their depth, in steps of 1/64 depth code.

@@ -9,9 +9,9 @@ use glint_model::triangle::setup::Facing;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 
-use crate::cameras::{direction, looking_at, view};
-use crate::renderer::Renderer;
-use crate::scenes::{ONE, SMALL, Scene};
+use super::cameras::{direction, looking_at, view};
+use super::renderer::Renderer;
+use super::scenes::{ONE, SMALL, Scene};
 
 /// Returns the red, green and blue channel of an RGB565 colour, which have 5, 6 and 5 bits.
 fn channels(colour: u16) -> [f64; 3] {
