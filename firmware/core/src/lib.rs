@@ -42,6 +42,7 @@ pub mod picture;
 pub mod polar;
 pub mod quality;
 pub mod regions;
+pub mod root;
 pub mod scene;
 pub mod shape;
 pub mod stereo;

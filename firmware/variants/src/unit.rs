@@ -29,15 +29,27 @@ pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
     ),
     shipped(
         "unit_14",
-        "14 fraction bits, in 64 bits, of normals",
+        "192 entries, one Newton step, two terms, 14 fraction bits, of normals",
         Fixed(14),
-        exact::<14>,
+        corrected::<14>,
     ),
     shipped(
         "unit_30",
-        "30 fraction bits, in 64 bits, of cameras",
+        "192 entries, one Newton step, two terms, 30 fraction bits, of cameras",
         Fixed(30),
-        exact::<30>,
+        corrected::<30>,
+    ),
+    other(
+        "unit_divided_14",
+        "14 fraction bits, divided in 64 bits",
+        Fixed(14),
+        divided::<14>,
+    ),
+    other(
+        "unit_divided_30",
+        "30 fraction bits, divided in 64 bits",
+        Fixed(30),
+        divided::<30>,
     ),
     other("unit_micromath", "micromath: f32 invsqrt", Float, |q| {
         float(q, F32Ext::invsqrt)
@@ -47,8 +59,23 @@ pub const KERNELS: &[Kernel<[i32; 3], [i32; 3]>] = &[
     }),
 ];
 
-fn exact<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
+fn corrected<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     vector::unit::<BITS>(q.map(i64::from)).unwrap_or_default()
+}
+
+/// Scales to `BITS` fraction bits, at most 30, by a root and three quotients of 64 bits, rounded to nearest. The zero vector stays.
+fn divided<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
+    let size = q.map(i32::unsigned_abs);
+    let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
+        return q;
+    };
+    // The largest component gets 31 bits, and the sum of the squares has at most 64.
+    let size = size.map(|x| u64::from(x) << 31 >> (lead + 1));
+    let length = size.map(|x| x * x).iter().sum::<u64>().isqrt();
+    [0, 1, 2].map(|i| {
+        let quotient = (((size[i] << (BITS + 1)) / length + 1) >> 1) as i32;
+        if q[i] < 0 { -quotient } else { quotient }
+    })
 }
 
 /// Scales to `BITS` fraction bits, at most 14, with products and quotients of 32 bits, rounded to nearest. The zero vector stays.

@@ -1,0 +1,37 @@
+//! Reciprocals of square roots by a table and Newton steps, without a division.
+
+/// `SEED[i]` is 2^10/√x to nearest, at most 2^10 − 1, for x = 1 + (i + 1/2)/64.
+static SEED: [u16; 192] = seeds();
+
+const fn seeds() -> [u16; 192] {
+    let mut table = [0; 192];
+    let mut i = 0;
+    while i < table.len() {
+        // x is d/128, so the entry is the root of 2^27/d; twice the entry is the root of 2^29/d.
+        let d = 129 + 2 * i as u64;
+        let root = ((1 << 29) / d).isqrt().div_ceil(2);
+        table[i] = if root < 1 << 10 {
+            root as u16
+        } else {
+            (1 << 10) - 1
+        };
+        i += 1;
+    }
+    table
+}
+
+/// Approximates 2^31/√x for x in [1, 4), with 30 fraction bits, by a table and `STEPS` Newton steps y·(3 − x·y²)/2.
+///
+/// The relative error is at most 4.2e-3 without a step, 2.7e-5 after one, and 4e-9 after two: the words have 31 bits.
+pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
+    let seed = SEED[((x >> 24) as usize).saturating_sub(64).min(191)];
+    let mut y = u32::from(seed) << 21;
+    for _ in 0..STEPS {
+        let square = (u64::from(y) * u64::from(y)) >> 32;
+        // The product has 28 fraction bits and is near 1, so the difference is near 2.
+        let product = (square * u64::from(x)) >> 32;
+        let rest = (3 << 28) - product as u32;
+        y = ((u64::from(y) * u64::from(rest)) >> 29).min(1 << 31) as u32;
+    }
+    y
+}
