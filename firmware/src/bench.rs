@@ -1,7 +1,7 @@
 //! Benchmarks on the soft core: clock cycles of kernels, which are small functions such as sine and cosine.
 
 use glint_core::fixed::Turns;
-use glint_core::trig::{sin_cos_q14, sin_cos_q30};
+use glint_core::trig::sin_cos_q30;
 
 #[cfg(feature = "peers")]
 mod attitude;
@@ -29,9 +29,8 @@ pub use object::object;
 
 use measure::measure;
 
-/// Measures sine and cosine, and reports the clock cycles of each function.
+/// Measures sine and cosine, and reports their clock cycles.
 pub fn sine(report: Report) {
-    measure(report, "sin_cos_q14", Turns, sin_cos_q14);
     measure(report, "sin_cos_q30", Turns, sin_cos_q30);
     #[cfg(feature = "peers")]
     peers::sine(report);

@@ -4,9 +4,9 @@ use core::array;
 
 use crate::choice::choices;
 use crate::colour::Rgb565;
-use crate::fixed::{Q2_14, Turns};
+use crate::fixed::{Q2_14, Q2_30, Turns};
 use crate::mesh::{HEADER, MAGIC, RECORD};
-use crate::trig::sin_cos_q14;
+use crate::trig::sin_cos_q30;
 use crate::vector::{cross, unit};
 
 /// A built-in mesh. The round ones have 1,024 triangles each, and colours at their vertices.
@@ -100,7 +100,7 @@ impl Shape {
     /// The ring with this number; `None` after the last.
     fn ring(self, number: u32) -> Option<Ring> {
         let turned = |angle: u32| {
-            let (sin, cos) = sin_cos_q14(Turns(angle));
+            let (sin, cos) = sin_cos(Turns(angle));
             (i32::from(sin.to_bits()), i32::from(cos.to_bits()))
         };
         let one = i32::from(ONE);
@@ -161,7 +161,7 @@ impl Writer<'_> {
         let mut count = 0;
         for (number, ring) in (0_u32..).zip(rings) {
             for step in 0..AROUND {
-                let (sin, cos) = sin_cos_q14(Turns(step << 27));
+                let (sin, cos) = sin_cos(Turns(step << 27));
                 let [radius, outwards] = [ring.radius, ring.normal[0]]
                     .map(|length| [scaled(cos, length), scaled(sin, length)]);
                 // One turn of the colours around the axis, and about one across it.
@@ -257,6 +257,13 @@ impl Writer<'_> {
     }
 }
 
+/// Sine and cosine, rounded to nearest.
+fn sin_cos(angle: Turns) -> (Q2_14, Q2_14) {
+    let narrow = |x: Q2_30| Q2_14::from_bits(((x.to_bits() + (1 << 15)) >> 16) as i16);
+    let (sin, cos) = sin_cos_q30(angle);
+    (narrow(sin), narrow(cos))
+}
+
 /// The product of a factor and a length of at most 2 in Q2.14, rounded down.
 fn scaled(factor: Q2_14, length: i32) -> i32 {
     (i32::from(factor.to_bits()) * length) >> 14
@@ -265,7 +272,7 @@ fn scaled(factor: Q2_14, length: i32) -> i32 {
 /// A bright colour of the colour wheel.
 fn colour(hue: Turns) -> Rgb565 {
     let channel = |third: u32| {
-        let (_, cos) = sin_cos_q14(Turns(hue.0.wrapping_add(third * (u32::MAX / 3))));
+        let (_, cos) = sin_cos(Turns(hue.0.wrapping_add(third * (u32::MAX / 3))));
         // From 65 to 255.
         (160 + scaled(cos, 95)) as u8
     };

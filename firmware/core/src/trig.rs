@@ -13,7 +13,7 @@
 //!
 //! A polynomial of lower order takes less time and has a larger error, see [`sin_cos_q30_order`].
 
-use crate::fixed::{Q2_14, Q2_30, Turns};
+use crate::fixed::{Q2_30, Turns};
 
 /// Number of steps in an octant, and of nodes in the table, because node 0, where sin = 0 and cos = 1, is not stored.
 const STEPS: u32 = 64;
@@ -22,16 +22,6 @@ const STEP: u32 = (1 << 29) / STEPS;
 
 /// The table of nodes: sin(k·π/256) and 1 − cos(k·π/256) for k = 1…64, in u0.32, rounded to nearest.
 static NODES: [[u32; 2]; STEPS as usize] = nodes();
-
-/// Computes sine and cosine in Q2.14. The error is at most 0.51 units in the last place (2^−14), over all angles.
-pub fn sin_cos_q14(angle: Turns) -> (Q2_14, Q2_14) {
-    // The magnitudes are rounded before the signs are set, so that rounding keeps the symmetries.
-    let (sin, cos) = unfold(angle, |phase| {
-        octant::<2>(phase).map(|x| (x + (1 << 15)) >> 16)
-    });
-    // The values fit 16 bits, because they are at most 2^14 in magnitude.
-    (Q2_14::from_bits(sin as i16), Q2_14::from_bits(cos as i16))
-}
 
 /// Computes sine and cosine in Q2.30. The error is at most 0.68 units in the last place (2^−30), over all 2^32 angles.
 pub fn sin_cos_q30(angle: Turns) -> (Q2_30, Q2_30) {

@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn lines_are_found_among_others() {
-        let console = "glint> bench sine\r\nbench sin_cos_q14 min 90 median 101 max 260 cycles\r\n\
+        let console = "glint> bench sine\r\nbench sin_cos_q30 min 90 median 101 max 260 cycles\r\n\
                        bench idsp min 40 median 44 max 90 cycles\r\nok\r\nglint> ";
         let cycles = parse(console).expect("two lines");
         let expected = Figures {
@@ -181,7 +181,7 @@ mod tests {
             median: 101,
             max: 260,
         };
-        assert_eq!(cycles["sin_cos_q14"], expected);
+        assert_eq!(cycles["sin_cos_q30"], expected);
         assert_eq!(cycles.len(), 2);
     }
 

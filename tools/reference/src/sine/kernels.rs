@@ -88,19 +88,10 @@ pub fn kernels() -> Vec<Kernel> {
         Kernel {
             shipped: true,
             ..phases(
-                ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
-                14,
+                ["sin_cos_q30", GLINT, "order 3", "Q2.30"],
+                30,
                 SHORT_PHASES,
-                q14,
-            )
-        },
-        Kernel {
-            shipped: true,
-            ..phases(
-                ["sin_cos_q14", GLINT, "order 2", "Q2.14"],
-                14,
-                ALL_PHASES,
-                q14,
+                q30::<3>,
             )
         },
         Kernel {
@@ -161,11 +152,6 @@ const SOME_PHASES: Inputs = (15, "every 15th phase of an octant, in all octants"
 const ALL_RADIANS: Inputs = (1, "all radians in [−π, π]");
 /// Part of the inputs, for a slow kernel whose format has more than 10^9 inputs.
 const SOME_RADIANS: Inputs = (17, "every 17th of the radians in [−π, π]");
-
-fn q14(angle: u32) -> (i32, i32) {
-    let (sin, cos) = trig::sin_cos_q14(Turns(angle));
-    (sin.to_bits().into(), cos.to_bits().into())
-}
 
 fn q30<const ORDER: u32>(angle: u32) -> (i32, i32) {
     let (sin, cos) = trig::sin_cos_q30_order::<ORDER>(Turns(angle));

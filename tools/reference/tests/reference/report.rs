@@ -33,7 +33,7 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Transcript of the console, in the form in which the firmware prints it. With a transcript, the report needs no board.
-const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
+const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
 
 fn folder(name: &str) -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -64,15 +64,10 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
     let folder = folder("report");
     let rows = quick(&folder);
     let shipped: Vec<&Value> = rows.iter().filter(|row| row["shipped"] == true).collect();
-    assert_eq!(shipped.len(), 3);
+    assert_eq!(shipped.len(), 2);
     for row in shipped {
-        let limit = if row["kernel"] == "sin_cos_q14" {
-            1.0
-        } else {
-            2.0
-        };
         assert!(
-            row["max_ulp"].as_f64().is_some_and(|ulp| ulp <= limit),
+            row["max_ulp"].as_f64().is_some_and(|ulp| ulp <= 1.0),
             "{row:#}"
         );
         assert_eq!(row["asymmetric"], 0, "{row:#}");
@@ -81,7 +76,7 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
     assert_eq!(rows[0]["cycles_median"], 2);
     assert!(
         rows.iter()
-            .all(|row| row["kernel"] == "sin_cos_q14" || row["cycles_median"].is_null())
+            .all(|row| row["kernel"] == "sin_cos_q30" || row["cycles_median"].is_null())
     );
 
     let read = |name: &str| fs::read_to_string(folder.join(name)).expect("the report writes it");
@@ -89,7 +84,7 @@ fn a_quick_report_is_written_and_shipped_kernels_keep_their_bounds() {
     assert!(read("sine.svg").starts_with("<svg"));
     let page = read("sine.md");
     assert!(
-        page.contains("| **sin_cos_q14** |")
+        page.contains("| **sin_cos_q30** |")
             && page.contains("1 / 2 / 3")
             && page.contains("not measured")
     );

@@ -15,7 +15,7 @@ use glint_reference::report::pages::PAGES;
 use glint_reference::report::workspace;
 
 /// Cycles of the kernels that the jobs of these tests measure, as the console prints them.
-const TRANSCRIPT: &str = "bench sin_cos_q14 min 1 median 2 max 3 cycles\nok\n";
+const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
 
 /// A run of the workflow in a folder of its own, with jobs that need no board.
 struct Run {

@@ -5,7 +5,7 @@ use glint_core::colour::Rgb565;
 use glint_core::fixed::{Q32_32, Turns};
 use glint_core::orientation::Gain;
 use glint_core::polar::polar;
-use glint_core::trig::{sin_cos_q14, sin_cos_q30};
+use glint_core::trig::sin_cos_q30;
 use glint_core::vector::unit;
 use glint_model::DepthScale;
 use glint_model::triangle::reciprocal::Reciprocal;
@@ -16,10 +16,6 @@ use crate::stiff::outcome::Outcome;
 
 pub fn kinds() -> Vec<Kind> {
     vec![
-        Kind::new("sine-q14", |angle| {
-            let (sin, cos) = sin_cos_q14(Turns(angle));
-            Ok(Outcome::exact(format!("sin {sin}, cos {cos}")))
-        }),
         Kind::new("sine-q30", |angle| {
             let (sin, cos) = sin_cos_q30(Turns(angle));
             Ok(Outcome::exact(format!("sin {sin}, cos {cos}")))
