@@ -7,7 +7,7 @@
 //! 30 are multiplied; the vector of exp h is rounded to 32 bits and its remainder goes into the next step; and each step corrects
 //! the length, by half of 1 − |q|².
 
-use super::quaternion::{Quaternion, dot, product};
+use super::quaternion::{Quaternion, product};
 use super::rate::History;
 use super::scale::Scale;
 
@@ -17,33 +17,30 @@ pub const LONGEST_STEP: u32 = 500_000;
 /// Integrates angular rates to an attitude.
 #[derive(Clone, Copy, Debug)]
 pub struct Integrator {
-    scale: Scale,
     history: History,
     /// The attitude with 62 fraction bits.
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// The remainder of the last step's vector part of exp h after rounding, with 48 fraction bits. It is added to the half angle
-    /// vector of the next step.
-    rest: [i32; 3],
+    /// Half angle vector, with 48 fraction bits, that is added to that of the next step: the remainder of the last step's vector part of
+    /// exp h after rounding, and corrections.
+    rest: [i64; 3],
 }
 
-/// Largest component of the half angle vector h that one multiplication applies: 0.25 rad with 48 fraction bits. It bounds
-/// |h|² by 3/16.
-const LARGEST: i64 = 1 << 46;
+/// Largest component of the half angle vector h that one multiplication applies: 1/8 rad with 48 fraction bits. It bounds |h|² by
+/// 3/64.
+const LARGEST: i64 = 1 << 45;
 
 impl Integrator {
     /// Starts with the given attitude and the given angular rate about each axis, in 1/256 LSB.
     pub fn new(scale: Scale, attitude: Quaternion, rate: [i32; 3]) -> Self {
         let mut integrator = Self {
-            scale,
-            history: History::default(),
+            history: History::new(scale, rate),
             attitude: [0; 4],
             rounded: attitude,
             rest: [0; 3],
         };
         integrator.set_attitude(attitude);
-        integrator.restart(rate);
         integrator
     }
 
@@ -56,6 +53,13 @@ impl Integrator {
     /// Drops the earlier rates and continues from `rate` (in 1/256 LSB) with the present attitude.
     pub fn restart(&mut self, rate: [i32; 3]) {
         self.history.start(rate);
+    }
+
+    /// Drops the rates before the last one, which are unrelated to it.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn forget(&mut self) {
+        self.history.start(self.history.last());
     }
 
     /// Integrates a rate in 1/256 LSB that was measured `step` µs after the previous rate. `correction` is an additional
@@ -79,14 +83,17 @@ impl Integrator {
         if step == 0 || step > LONGEST_STEP {
             return self.restart(rate);
         }
-        let half = self.half_angle::<ORDER>(rate, step);
-        self.turn(&[0, 1, 2].map(|i| half[i] + correction[i]));
+        for (rest, correction) in core::iter::zip(&mut self.rest, correction) {
+            *rest += correction;
+        }
+        self.step::<ORDER>(rate, step);
     }
 
-    /// Takes a rate in 1/256 LSB that was measured `step` µs (1 to [`LONGEST_STEP`]) after the previous rate. Returns the
-    /// rotation of the step as a half angle vector in the body's axes, in radians with 48 fraction bits.
-    pub(super) fn half_angle<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
-        self.history.advance::<ORDER>(rate, step, self.scale)
+    /// Integrates a rate in 1/256 LSB that was measured `step` µs (1 to [`LONGEST_STEP`]) after the previous rate.
+    #[inline(always)]
+    pub(super) fn step<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) {
+        let half = self.history.advance::<ORDER>(rate, step);
+        self.turn([0, 1, 2].map(|i| half[i] + self.rest[i]));
     }
 
     /// The attitude, rounded to nearest.
@@ -94,14 +101,16 @@ impl Integrator {
         self.rounded
     }
 
-    /// A reference to the attitude, rounded to nearest.
-    pub(super) const fn rounded(&self) -> &Quaternion {
-        &self.rounded
+    /// A reference to the attitude, rounded to nearest, and to a half angle vector in the body's axes, with 48 fraction bits, by which the
+    /// next step turns the attitude too. What is added to it must be within ±8 rad.
+    pub(super) const fn correctable(&mut self) -> (&Quaternion, &mut [i64; 3]) {
+        (&self.rounded, &mut self.rest)
     }
 
     /// Turns the attitude by the rotation with the half angle vector `half`, of any length. Its components have 48 fraction bits
     /// and are within ±2^57.
-    pub(super) fn turn(&mut self, half: &[i64; 3]) {
+    #[inline(always)]
+    fn turn(&mut self, half: [i64; 3]) {
         if half.iter().all(|x| (-LARGEST..LARGEST).contains(x)) {
             self.turn_part(half);
         } else {
@@ -112,58 +121,68 @@ impl Integrator {
     /// Turns the attitude by a long half angle vector, in several equal parts.
     #[cold]
     #[inline(never)]
-    fn turn_far(&mut self, half: &[i64; 3]) {
+    fn turn_far(&mut self, half: [i64; 3]) {
         let all = half.iter().fold(0, |all, x| all | x.unsigned_abs());
         let halvings = all.ilog2().saturating_sub(LARGEST.ilog2()) + 1;
         let part = half.map(|x| x >> halvings);
+        self.rest = [0; 3];
         for _ in 0..1_u32 << halvings {
-            self.turn_part(&part);
+            self.turn_part([0, 1, 2].map(|i| part[i] + self.rest[i]));
         }
     }
 
-    #[inline(never)]
-    fn turn_part(&mut self, half: &[i64; 3]) {
-        let half = [0, 1, 2].map(|i| half[i] + i64::from(self.rest[i]));
-        // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^29.
-        let short = half.map(|x| (x >> 16) as i32);
+    /// Turns the attitude by a short half angle vector.
+    // Inlined in the code of every sample; `turn_far` has a copy.
+    #[inline(always)]
+    fn turn_part(&mut self, half: [i64; 3]) {
+        // h with 32 fraction bits, rounded down, from the words of 32 bits: all that follows is in such words.
+        let short = half.map(|x| (((x >> 32) as i32) << 16) | (x as u32 >> 16).cast_signed());
+        // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^26.
         let square = short
             .map(|x| ((i64::from(x) * i64::from(x)) >> 32) as u32)
             .iter()
             .sum();
         let (versine, lack) = series(square);
         let q = &self.rounded.parts;
-        // `excess` is 1 − |q|² with 60 fraction bits. The scalar part of `change` uses half of it, with 32 fraction
-        // bits, rounded down.
-        let excess = (1 << 60) - dot(q, q[0], q[1], q[2], q[3]);
-        let mut change = [(excess >> 29) as i32 - versine as i32, 0, 0, 0];
+        // The scalar part of `change` uses half of 1 − |q|², with 32 fraction bits, rounded down.
+        let mut change = [(excess(q) >> 27) - versine as i32, 0, 0, 0];
         for i in 0..3 {
-            // `exact` is h·sin|h|/|h| with 48 fraction bits, plus 2^−33 so that the shift below rounds to nearest.
-            let exact = half[i] - ((i64::from(short[i]) * i64::from(lack)) >> 16) + (1 << 15);
-            self.rest[i] = i32::from(exact as u16) - (1 << 15);
-            change[i + 1] = (exact >> 16) as i32;
+            // h·sin|h|/|h| is h less this product, which has 64 fraction bits.
+            let less = i64::from(short[i]) * i64::from(lack);
+            // The bits of the difference below 32 fraction bits, with 48 fraction bits, plus 2^−33 so that the shift rounds to nearest.
+            let low = (half[i] as i32 & 0xFFFF) - (less as u32 >> 16) as i32 + (1 << 15);
+            change[i + 1] = short[i] - (less >> 32) as i32 + (low >> 16);
+            self.rest[i] = i64::from((low & 0xFFFF) - (1 << 15));
         }
-        // |change| < 0.47, so no component of the sum below exceeds 1.47·2^62.
+        // |change| < 0.24, so no component of the sum below exceeds 1.24·2^62.
         let turned = product(q, change);
         for (part, turned) in core::iter::zip(&mut self.attitude, turned) {
             *part += turned;
         }
-        self.rounded.parts = self.attitude.map(|part| ((part + (1 << 31)) >> 32) as i32);
+        // Rounded by the highest bit of the low word, which takes fewer instructions than a sum of 64 bits.
+        let round = |part: i64| (part >> 32) as i32 + (part as u32 >> 31) as i32;
+        self.rounded.parts = self.attitude.map(round);
     }
 }
 
-/// Computes 1 − cos x and 1 − sin(x)/x from x². Argument and results have 32 fraction bits. For x² up to 3/16 the errors are at
-/// most 2 units; the first omitted terms of the series, x¹²/12! and x¹⁰/11!, are then 9e-14 and 6e-12.
+/// Computes 1 − |q|² with 58 fraction bits. The length of q is 1 within 2^−28, so the result fits 32 bits, and they follow from the low
+/// words of products alone: with q = 2a + b, b being its lowest bit, q² is 4·a·(a + b) + b. The sum of b/4 is left out.
+fn excess(q: &[i32; 4]) -> i32 {
+    q.iter().fold(0_i32, |sum, &q| {
+        sum.wrapping_sub((q >> 1).wrapping_mul(q - (q >> 1)))
+    })
+}
+
+/// Computes 1 − cos x and 1 − sin(x)/x from x². Argument and results have 32 fraction bits. For x² up to 3/64 the errors are at
+/// most 2 units; the first omitted terms of the series, x⁸/8! and x⁸/9!, are then 1.2e-10, half a unit, and 1.3e-11.
 fn series(square: u32) -> (u32, u32) {
     const fn one_over(n: u64) -> u32 {
         (((1 << 32) + n / 2) / n) as u32
     }
     let times = |a: u32| ((u64::from(square) * u64::from(a)) >> 32) as u32;
-    let versine = times(one_over(40_320) - times(one_over(3_628_800)));
-    let versine = times(one_over(720) - versine);
-    let versine = times(one_over(24) - versine);
+    let versine = times(one_over(24) - times(one_over(720)));
     let versine = times((1 << 31) - versine);
-    let lack = times(one_over(5_040) - times(one_over(362_880)));
-    let lack = times(one_over(120) - lack);
+    let lack = times(one_over(120) - times(one_over(5_040)));
     let lack = times(one_over(6) - lack);
     (versine, lack)
 }

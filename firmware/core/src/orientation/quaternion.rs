@@ -35,7 +35,7 @@ impl Quaternion {
     }
 
     /// Returns the quaternion with exactly these components (w, x, y, z in units of 2^−30); `None` unless the
-    /// length is 1 within 2^−28.
+    /// length is 1 within 2^−28, at which the correction of the length by the integrator ends.
     pub(crate) fn exact(parts: [i32; 4]) -> Option<Self> {
         // Each square is at most 2^62, so the sum fits u64; a sum beyond i64 is far too long.
         let square = parts
@@ -45,7 +45,7 @@ impl Quaternion {
         // The relative error of the squared length is twice that of the length.
         (square - (1 << 60))
             .unsigned_abs()
-            .le(&(1 << 33))
+            .lt(&(1 << 33))
             .then_some(Self { parts })
     }
 
@@ -194,6 +194,7 @@ impl Quaternion {
 /// Computes the product of two quaternions. The unit of its components is the product of the units of both factors. The lengths
 /// of both factors are at most 1 apart from rounding errors, so by the Cauchy–Schwarz inequality no partial sum exceeds 1 by more
 /// than these errors.
+#[inline(always)]
 pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     [
         dot(a, w, -x, -y, -z),
@@ -203,10 +204,9 @@ pub(super) fn product(a: &[i32; 4], [w, x, y, z]: [i32; 4]) -> [i64; 4] {
     ]
 }
 
-/// Computes the sum of four products. The caller ensures that partial sums fit 64 bits. The function is not inlined, which saves
-/// space in the soft core's small instruction cache.
-#[inline(never)]
-pub(super) fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
+/// Computes the sum of four products. The caller ensures that partial sums fit 64 bits.
+#[inline(always)]
+fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
 }
 

@@ -37,13 +37,17 @@ pub const MOST_STRETCH: u32 = 3;
 pub const LARGEST_RATE: i32 = 3 << 22;
 
 /// The data of the earlier samples from which the next step is computed.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct History {
+    scale: Scale,
     /// Number of earlier steps that can be used: 0, 1 or 2.
     steps: u8,
     axes: [Axis; 3],
     /// The durations h₁ and h₂ of the two earlier steps, in µs.
     ages: [u32; 2],
+    /// The factors of the last step: that of its half angle, and that of A × E.
+    factor: Factor,
+    coning: u32,
 }
 
 /// The data of the earlier rates about one axis from which the next step is computed, in 1/256 LSB.
@@ -53,12 +57,12 @@ struct Axis {
     last: i32,
     /// The difference of the last two rates, e₂.
     difference: i32,
-    /// The divided difference S of the previous step.
+    /// Twice the divided difference S of the previous step.
     second: i32,
 }
 
-/// The weights of the module's formulas, which depend only on the times of the samples. Weights without a stated
-/// format have 15 fraction bits.
+/// The weights of the module's formulas for steps that are not equal, which depend only on the times of the samples. Weights without a
+/// stated format have 15 fraction bits.
 #[derive(Clone, Copy)]
 struct Weights {
     /// g = h/h₁ in units of 2^−30, rounded to 15 fraction bits.
@@ -67,26 +71,17 @@ struct Weights {
     stretch_squared: i32,
     /// h/(h + h₁) in units of 2^−32, rounded to 15 fraction bits.
     half: u32,
-    /// The factor 9/5·h/(h + h₁ + h₂) of D in E.
+    /// The factor 9/10·h/(h + h₁ + h₂) of 2·D in E.
     near: i32,
-    /// The factor 4/3·(h + 2·h₁)/(h + h₁ + h₂) of D in A.
+    /// The factor 2/3·(h + 2·h₁)/(h + h₁ + h₂) of 2·D in A.
     far: i32,
 }
 
-const EIGHT_THIRDS: i32 = (8 << 15) / 3;
 const FOUR_THIRDS: i32 = (4 << 15) / 3 + 1;
-const NINE_FIFTHS: i32 = (9 << 15) / 5;
+const TWO_THIRDS: i32 = (2 << 15) / 3 + 1;
+const NINE_TENTHS: i32 = (9 << 15) / 10 + 1;
 
 impl Weights {
-    /// Weights for three equal steps.
-    const EVEN: Self = Self {
-        stretch: 1 << 30,
-        stretch_squared: 1 << 15,
-        half: 1 << 31,
-        near: NINE_FIFTHS / 3 + 1,
-        far: FOUR_THIRDS,
-    };
-
     /// Weights for a step without usable earlier steps: the rate is interpolated linearly.
     const STRAIGHT: Self = Self {
         stretch: 0,
@@ -99,21 +94,18 @@ impl Weights {
     /// Computes the weights for a step of duration h (`step`) after earlier steps of durations h₁ and h₂, of which `steps` (0 to
     /// 2) can be used.
     #[inline(never)]
-    fn of<const ORDER: u32>(steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
+    fn of(order: u32, steps: u8, step: u32, [h1, h2]: [u32; 2]) -> Self {
         if steps == 0 {
             return Self::STRAIGHT;
-        }
-        if steps == 2 && ORDER >= 4 && step == h1 && step == h2 {
-            return Self::EVEN;
         }
         let g = Divisor::new(h1).ratio(step);
         // D of the cubic (see the head of this file) needs S of the previous step. Without two earlier steps it is unknown, and its
         // weights are 0.
         let (mut near, mut far) = (0, 0);
-        if steps == 2 && ORDER >= 4 {
+        if steps == 2 && order >= 4 {
             let all = Divisor::new(step + h1 + h2);
-            near = narrow(wide(all.ratio(step), NINE_FIFTHS));
-            far = narrow(wide(all.ratio(step + 2 * h1), FOUR_THIRDS));
+            near = narrow(wide(all.ratio(step), NINE_TENTHS));
+            far = narrow(wide(all.ratio(step + 2 * h1), TWO_THIRDS));
         }
         Self {
             // g is at most 3, so h/(h + h₁) is at most 3/4.
@@ -173,22 +165,59 @@ fn within(rate: i32) -> i32 {
     rate.clamp(-LARGEST_RATE, LARGEST_RATE)
 }
 
-/// The components along one axis of A (with 12 fraction bits) and E (with 8 fraction bits) in the module's formulas.
+/// Whether a rate is within ±`LARGEST_RATE`.
+const fn is_in_range(rate: i32) -> bool {
+    rate.wrapping_add(LARGEST_RATE).cast_unsigned() <= 2 * LARGEST_RATE.cast_unsigned()
+}
+
+/// The components along one axis of A and E (with 13 fraction bits) in the module's formulas.
 type Ends = (i32, i32);
 
 impl Axis {
+    /// Takes the newest rate about the axis, in 1/256 LSB and [in range](is_in_range), after three equal steps, and computes A and E of its
+    /// step:
+    ///
+    /// ```text
+    /// 2·S = e₁ − e₂      2·D = 2·S − 2·S of the step before
+    /// A = (ω₂ + ω₃)/2 − (2·(2·S) + 2·D)/24
+    /// E = e₁ + 3/10·(2·D)
+    /// ```
+    ///
+    /// No number overflows: |e₁| is at most 1.5·2^24, so |2·S| is at most 3·2^24, |2·D| 6·2^24, |2·(2·S) + 2·D| 12·2^24, |A| 2^29.4
+    /// and |E| 2^30.8.
+    #[inline(always)]
+    fn advance_even(&mut self, rate: i32) -> Ends {
+        const TWO_THIRDS: u32 = 0xAAAA_AAAB;
+        const THREE_FIFTHS: u32 = 0x9999_999A;
+        let e1 = rate - self.last;
+        let second = e1 - self.difference;
+        let third = second - self.second;
+        // A twenty-fourth of the sum, and the change from 8 to 13 fraction bits, are a factor of 4/3.
+        let curve = half_up(upper((2 * second + third) << 2, TWO_THIRDS));
+        let ends = (
+            ((rate + self.last) << 4) - curve,
+            (e1 << 5) + upper(third << 4, THREE_FIFTHS),
+        );
+        *self = Self {
+            last: rate,
+            difference: e1,
+            second,
+        };
+        ends
+    }
+
     /// Takes the newest rate about the axis, in 1/256 LSB, and computes A and E of its step.
     #[inline(never)]
     fn advance(&mut self, rate: i32, weights: &Weights) -> Ends {
         let rate = within(rate);
         let e1 = rate - self.last;
-        // As g ≤ 3, |S| is at most 3·1.5·2^24, and |D| at most 10 times as much.
+        // As g ≤ 3, |2·S| is at most 3·3·2^24, and |2·D| at most 10 times as much.
         let before = half_up(upper(self.difference << 3, weights.stretch));
-        let second = half_up(upper((e1 - before) << 1, weights.half));
+        let second = half_up(upper((e1 - before) << 2, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // `curve` is (2·S + D·…)/12 of A. The weights contain the factor 16/12: the division by 12, and the change from 8 to 12
-        // fraction bits.
-        let curve = wide(second, EIGHT_THIRDS) + wide(third, weights.far);
+        // `curve` is (2·S + D·…)/12 of A. The weights contain the factor 8/12: the division by 12, the change from 8 to 12
+        // fraction bits, and the factor 2 of S and D.
+        let curve = wide(second, FOUR_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;
         let end = e1 + narrow(wide(third, weights.near));
@@ -199,23 +228,37 @@ impl Axis {
         };
         // No motion within the sensor's range reaches these limits.
         (
-            mean.clamp(-MOST_MEAN, MOST_MEAN),
-            end.clamp(-MOST_CHANGE, MOST_CHANGE),
+            mean.clamp(-MOST_MEAN, MOST_MEAN) << 1,
+            end.clamp(-MOST_CHANGE, MOST_CHANGE) << 5,
         )
     }
 }
 
 impl History {
     /// Starts with the rate of a first sample, in 1/256 LSB, and without earlier samples.
-    pub fn start(&mut self, rate: [i32; 3]) {
+    pub fn new(scale: Scale, rate: [i32; 3]) -> Self {
         let axis = |last| Axis {
             last,
             ..Axis::default()
         };
-        *self = Self {
+        Self {
+            scale,
+            steps: 0,
             axes: rate.map(within).map(axis),
-            ..Self::default()
-        };
+            ages: [0; 2],
+            factor: Factor::default(),
+            coning: 0,
+        }
+    }
+
+    /// Drops all samples, and starts with the rate of another one, in 1/256 LSB.
+    pub fn start(&mut self, rate: [i32; 3]) {
+        *self = Self::new(self.scale, rate);
+    }
+
+    /// The rate of the last sample, in 1/256 LSB.
+    pub fn last(&self) -> [i32; 3] {
+        self.axes.map(|axis| axis.last)
     }
 
     /// Takes the rate of a sample that was measured `step` µs (at least 1) after the previous sample. Returns half the rotation
@@ -224,28 +267,19 @@ impl History {
     /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample as the rate, 2 the
     /// mean of two samples, 3 the parabola through three samples (with e₁ in place of E), and 4 or more the cubic through four
     /// samples. The first steps after a start have fewer earlier samples; together they leave an error of order h³.
-    pub fn advance<const ORDER: u32>(
-        &mut self,
-        rate: [i32; 3],
-        step: u32,
-        scale: Scale,
-    ) -> [i64; 3] {
-        let [h1, _] = self.ages;
-        let curved = step <= LONGEST_CURVE && (self.steps == 0 || step <= MOST_STRETCH * h1);
-        let steps = if ORDER >= 3 && curved { self.steps } else { 0 };
-        let weights = Weights::of::<ORDER>(steps, step, self.ages);
-        let ends = [0, 1, 2].map(|i| self.axes[i].advance(rate[i], &weights));
-        self.steps = if curved { (self.steps + 1).min(2) } else { 0 };
-        self.ages = [step, h1];
-        let factor = scale.factor(step);
-        let coning = if ORDER >= 3 && curved {
-            factor.coning()
+    #[inline(always)]
+    pub fn advance<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
+        let is_even = self.steps == 2 && self.ages == [step; 2];
+        let ends = if ORDER >= 4 && is_even && rate.into_iter().all(is_in_range) {
+            [0, 1, 2].map(|i| self.axes[i].advance_even(rate[i]))
         } else {
-            0
+            let [x, y, z] = rate;
+            self.advance_uneven(ORDER, x, y, z, step)
         };
+        let (coning, factor) = (self.coning, self.factor);
         let [mut x, mut y, mut z] = ends;
         if ORDER == 1 {
-            [x.0, y.0, z.0] = rate.map(|rate| within(rate) << 4);
+            [x.0, y.0, z.0] = rate.map(|rate| within(rate) << 5);
         }
         [
             turned(x.0, y, z, coning, factor),
@@ -253,19 +287,47 @@ impl History {
             turned(z.0, x, y, coning, factor),
         ]
     }
+
+    /// Takes the rate of a sample as [`Self::advance`] does, by a method of any order. Returns A and E along the axes.
+    // The components are arguments of their own, which are in registers.
+    #[inline(never)]
+    fn advance_uneven(&mut self, order: u32, x: i32, y: i32, z: i32, step: u32) -> [Ends; 3] {
+        let [h1, _] = self.ages;
+        let curved = step <= LONGEST_CURVE && (self.steps == 0 || step <= MOST_STRETCH * h1);
+        let steps = if order >= 3 && curved { self.steps } else { 0 };
+        let weights = Weights::of(order, steps, step, self.ages);
+        let rate = [x, y, z];
+        let ends = [0, 1, 2].map(|i| self.axes[i].advance(rate[i], &weights));
+        self.steps = if curved { (self.steps + 1).min(2) } else { 0 };
+        self.ages = [step, h1];
+        self.factor = self.scale.factor(step);
+        self.coning = if order >= 3 && curved {
+            self.factor.coning()
+        } else {
+            0
+        };
+        ends
+    }
 }
 
 /// Computes the component of φ/2 along an axis from A along this axis (`mean`), and from A and E along the next two axes in
 /// cyclic order (`mj`, `ej` and `mk`, `ek`).
 #[inline(always)]
 fn turned(mean: i32, (mj, ej): Ends, (mk, ek): Ends, coning: u32, factor: Factor) -> i64 {
-    // Before the shift the cross product A × E is in LSB² with 20 fraction bits, at most 2^55.
-    let cross = ((wide(mj, ek) - wide(mk, ej)) >> 25) as i32;
-    let coning = (i64::from(cross) * i64::from(coning) + (1 << 31)) >> 32;
-    factor.half_angle(mean + coning as i32)
+    // The cross product A × E in units of 2^6 LSB², each product rounded down; below 2^29.
+    let cross = mul_high(mj, ek) - mul_high(mk, ej);
+    // In units of 2^−12 LSB, rounded to nearest.
+    let coning = half_up(upper(cross << 2, coning));
+    factor.half_angle(mean + (coning << 1))
 }
 
-/// The largest mean rate, 2^17 LSB with 12 fraction bits.
-const MOST_MEAN: i32 = 1 << 29;
-/// The largest change of the rate in a step, 2^17 LSB with 8 fraction bits.
-const MOST_CHANGE: i32 = 1 << 25;
+/// Returns the upper 32 bits of the 64-bit product of two signed numbers.
+const fn mul_high(a: i32, b: i32) -> i32 {
+    ((a as i64 * b as i64) >> 32) as i32
+}
+
+/// The largest mean rate, 1.5·2^16 LSB with 12 fraction bits. With this limit the rate with its coning term fits 32 bits in the longest curved
+/// step of the most sensitive scale.
+const MOST_MEAN: i32 = 3 << 27;
+/// The largest change of the rate in a step, almost 2^17 LSB, with 8 fraction bits.
+const MOST_CHANGE: i32 = (1 << 25) - 1;

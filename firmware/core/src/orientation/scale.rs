@@ -36,21 +36,23 @@ impl Scale {
 
     /// Computes the factor that converts rates to half angles, for a step of `step` µs, which is at most 2^20.
     pub(super) fn factor(self, step: u32) -> Factor {
-        Factor(self.per_microsecond * u64::from(step))
+        Factor((self.per_microsecond * u64::from(step)) >> 1)
     }
 }
 
-/// The half angle of a step for a rate of 2^−12 LSB, in radians with 80 fraction bits; at most 2^59.
-#[derive(Clone, Copy, Debug)]
+/// The half angle of a step for a rate of 2^−13 LSB, in radians with 80 fraction bits; at most 2^58.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Factor(u64);
 
 impl Factor {
     /// Computes the half angle of the step, in radians with 48 fraction bits, rounded to nearest. The rate is in
-    /// LSB with 12 fraction bits.
+    /// LSB with 13 fraction bits.
     pub fn half_angle(self, rate: i32) -> i64 {
         let (high, low) = ((self.0 >> 32) as i32, self.0 as u32);
-        let rate = i64::from(rate);
-        rate * i64::from(high) + ((rate * i64::from(low) + (1 << 31)) >> 32)
+        // The low word is rounded by its highest bit, which takes fewer instructions than a sum of 64 bits.
+        let low = i64::from(rate) * i64::from(low);
+        let low = (low >> 32) as i32 + (low as u32 >> 31) as i32;
+        i64::from(rate) * i64::from(high) + i64::from(low)
     }
 
     /// Computes the factor h/12 of the cross product A × E in the formulas of the module `rate`, for a step h of at most
@@ -58,7 +60,7 @@ impl Factor {
     /// product in units of 2^5 LSB² to a rate in units of 2^−12 LSB.
     pub fn coning(self) -> u32 {
         const TWELFTH: u64 = (1 << 32) / 12;
-        // `self.0 >> 18` is below 2^36 for such a step.
-        (((self.0 >> 18) * TWELFTH) >> 32) as u32
+        // `self.0 >> 17` is below 2^36 for such a step.
+        (((self.0 >> 17) * TWELFTH) >> 32) as u32
     }
 }

@@ -1,7 +1,5 @@
 //! Computes a body's attitude from the samples of the sensor on the body.
 
-use core::mem;
-
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
 use super::sample::Sample;
@@ -46,8 +44,6 @@ const LARGEST_BIAS: i32 = 1 << 30;
 pub struct Tracker {
     integrator: Integrator,
     tilt: Option<Tilt>,
-    /// Tilt correction by the last reading, as a half angle vector with 48 fraction bits. The next step applies it.
-    correction: [i64; 3],
     bias: [i32; 3],
     resting: Option<RestBias>,
     /// Time of the last sample; `None` before the first.
@@ -61,7 +57,6 @@ impl Tracker {
         Self {
             integrator: Integrator::new(scale, Quaternion::IDENTITY, [0; 3]),
             tilt,
-            correction: [0; 3],
             bias: [0; 3],
             resting: None,
             last: None,
@@ -106,53 +101,53 @@ impl Tracker {
     // contiguous, and rare code is in separate functions.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
-        let rate = [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i]);
         let Some(last) = self.last else {
-            return self.begin(sample, rate);
+            return self.begin(sample);
         };
         let step = sample.t_us.wrapping_sub(last);
         // An earlier time gives a long step.
         if step == 0 || step > u64::from(LONGEST_STEP) {
-            return self.hold(sample.t_us, last, rate);
+            return self.hold(sample, last);
         }
         let step = step as u32;
-        self.last = Some(sample.t_us);
-        let mut half = self.integrator.half_angle::<4>(rate, step);
-        for (half, correction) in core::iter::zip(&mut half, &mut self.correction) {
-            *half += mem::take(correction);
+        // The time alone is written: `last` is known to have one.
+        if let Some(last) = &mut self.last {
+            *last = sample.t_us;
         }
-        self.integrator.turn(&half);
+        self.integrator.step::<4>(self.rate(sample), step);
         // The correction uses the attitude after the step, which is the attitude at the time of the reading. With the attitude
         // before the step a fast turn would cause a tilt.
-        if let Some(tilt) = &mut self.tilt
-            && !tilt.correct(
-                self.integrator.rounded(),
-                sample.accel,
-                step,
-                &mut self.correction,
-            )
-        {
-            self.counts.rejected += 1;
+        if let Some(tilt) = &mut self.tilt {
+            let (attitude, half) = self.integrator.correctable();
+            if !tilt.correct(attitude, sample.accel, step, half) {
+                self.counts.rejected += 1;
+            }
         }
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
-            // The bias is a weighted mean of counts and of the first bias, so `rate` does not overflow.
+            // A weighted mean of counts and of the first bias, so no rate overflows.
             self.bias = resting.bias();
         }
         if sample.gyro.into_iter().any(|count| is_end(count.into())) {
             self.counts.saturated += 1;
-            self.doubt(rate);
+            self.integrator.forget();
+            self.doubt();
         }
         Outcome::Step
+    }
+
+    /// The rate of a sample without the bias, in 1/256 LSB.
+    fn rate(&self, sample: &Sample) -> [i32; 3] {
+        [0, 1, 2].map(|i| (i32::from(sample.gyro[i]) << 8) - self.bias[i])
     }
 
     /// Takes the first sample, which starts the attitude.
     #[cold]
     #[inline(never)]
-    fn begin(&mut self, sample: &Sample, rate: [i32; 3]) -> Outcome {
+    fn begin(&mut self, sample: &Sample) -> Outcome {
         self.last = Some(sample.t_us);
-        self.integrator.restart(rate);
+        self.integrator.restart(self.rate(sample));
         if self.tilt.is_some() {
             self.integrator.set_attitude(Tilt::align(sample.accel));
         }
@@ -162,22 +157,22 @@ impl Tracker {
     /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap.
     #[cold]
     #[inline(never)]
-    fn hold(&mut self, t_us: u64, last: u64, rate: [i32; 3]) -> Outcome {
-        if t_us <= last {
+    fn hold(&mut self, sample: &Sample, last: u64) -> Outcome {
+        if sample.t_us <= last {
             self.counts.stale += 1;
             return Outcome::Stale;
         }
-        self.last = Some(t_us);
+        self.last = Some(sample.t_us);
         self.counts.gaps += 1;
-        self.doubt(rate);
+        self.integrator.restart(self.rate(sample));
+        self.doubt();
         Outcome::Gap
     }
 
-    /// Restarts after a gap or saturation: the present rate is unrelated to earlier rates, and the tilt may be wrong.
+    /// Marks the tilt as uncertain after a gap or saturation.
     #[cold]
     #[inline(never)]
-    fn doubt(&mut self, rate: [i32; 3]) {
-        self.integrator.restart(rate);
+    fn doubt(&mut self) {
         if let Some(tilt) = &mut self.tilt {
             tilt.doubt();
         }
