@@ -23,7 +23,7 @@ mod control;
 mod filter;
 mod target;
 
-pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics, quotient, root};
+pub use blob::{Blob, Doubt, LEAST_CONFIDENCE, Region, Statistics, quotient};
 pub use calibration::{Calibrated, CalibrationError, LEAST_SAMPLES, WIDEST, Window, calibrate};
 pub use control::{
     ANGLE, CHANNELS, Control, DISTANCE, PATIENCE, Pose, Presence, RUN_MOVING, RUN_RESTING,

@@ -1,4 +1,4 @@
-//! Reciprocals of square roots by a table and Newton steps, without a division.
+//! Square roots and their reciprocals by a table and Newton steps, without a division.
 
 /// `SEED[i]` is 2^10/√x to nearest, at most 2^10 − 1, for x = 1 + (i + 1/2)/64.
 static SEED: [u16; 192] = seeds();
@@ -34,4 +34,26 @@ pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
         y = ((u64::from(y) * u64::from(rest)) >> 29).min(1 << 31) as u32;
     }
     y
+}
+
+/// Computes the square root to nearest; 65535 for larger ones.
+///
+/// The root is x·(1/√x) with one Newton step, at most 2 too small, and the square of the result corrects it.
+// Not inlined, because the linker script places it with the code of camera frames.
+#[inline(never)]
+pub fn root(square: u32) -> u16 {
+    if square == 0 {
+        return 0;
+    }
+    // The number x·4^n with x in [1, 4), 30 fraction bits.
+    let (mut x, mut shift) = (square, 14);
+    while x < 1 << 30 {
+        x <<= 2;
+        shift += 1;
+    }
+    let mut root = ((u64::from(x) * u64::from(inverse_root::<1>(x))) >> 32) as u32 >> shift;
+    while root < u32::from(u16::MAX) && root * root + root < square {
+        root += 1;
+    }
+    root as u16
 }

@@ -1,6 +1,6 @@
-//! Reciprocal roots and directions, compared with f64.
+//! Roots, reciprocal roots and directions, compared with f64.
 
-use glint_core::root::inverse_root;
+use glint_core::root::{inverse_root, root};
 use glint_core::vector::unit;
 use proptest::prelude::*;
 
@@ -19,6 +19,18 @@ fn each_newton_step_doubles_the_bits_of_a_reciprocal_root() {
     assert!(largest_error(inverse_root::<0>) < 4.2e-3);
     assert!(largest_error(inverse_root::<1>) < 2.7e-5);
     assert!(largest_error(inverse_root::<2>) < 4e-9);
+}
+
+#[test]
+fn a_root_is_the_nearest_number() {
+    let between = (0..=u32::MAX).step_by(65_521);
+    let squares = (1..=u32::from(u16::MAX)).flat_map(|x| [x * x - x, x * x - 1, x * x, x * x + x]);
+    for square in between.chain(squares) {
+        let exact = f64::from(square).sqrt().round().min(65_535.0);
+        assert_eq!(f64::from(root(square)), exact, "{square}");
+    }
+    // The squares of 65,535.5 and more have roots that do not fit.
+    assert_eq!([0, 1, u32::MAX].map(root), [0, 1, 65_535]);
 }
 
 #[test]

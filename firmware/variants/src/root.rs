@@ -1,7 +1,7 @@
 //! Square roots of numbers x in [1, 4) with 22 fraction bits.
 
 use fixed::types::{I8F24, U2F30};
-use glint_core::hand;
+use glint_core::root;
 use micromath::F32Ext;
 
 use crate::inverse_root::inverse_root;
@@ -23,11 +23,14 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
         by_inverse::<1>,
     ),
     shipped(
-        "root_bits",
-        "bit by bit, 32 bits, of a hand's width",
+        "root_16",
+        "x/√x, one Newton step, corrected to nearest 16 bits, of a hand's width",
         Fixed(15),
-        |x| hand::root(x << 8).into(),
+        |x| root::root(x << 8).into(),
     ),
+    other("root_bits", "bit by bit, 32 bits", Fixed(15), |x| {
+        bit_by_bit(x << 8).into()
+    }),
     other("root_32", "u32::isqrt", Fixed(15), |x| {
         (x << 8).isqrt().into()
     }),
@@ -56,4 +59,24 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
 /// √x as x·(1/√x), with 21 fraction bits.
 fn by_inverse<const STEPS: u32>(x: u32) -> u64 {
     (u64::from(x) * u64::from(inverse_root::<STEPS>(x))) >> 32
+}
+
+/// The square root, rounded down.
+#[inline(never)]
+fn bit_by_bit(square: u32) -> u16 {
+    let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
+    // The number of rounds is not known to the compiler, which would write out sixteen of them.
+    while bit > square {
+        bit >>= 2;
+    }
+    while bit != 0 {
+        let tried = root | bit;
+        root >>= 1;
+        if rest >= tried {
+            rest -= tried;
+            root |= bit;
+        }
+        bit >>= 2;
+    }
+    root as u16
 }

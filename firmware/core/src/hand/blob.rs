@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::fixed::{U0_16, U20_12};
+use crate::root::root;
 
 /// A rectangle of pixels of a camera frame. Its corners belong to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +117,7 @@ pub struct Blob {
     /// Coordinates x and y of its centre of mass; the centre of the frame's top left pixel is (0, 0). Rounded down to 2^−12
     /// pixels.
     pub centre: [U20_12; 2],
-    /// The square root of its part of the frame's area: the side of a square of this area, as part of the frame's.
+    /// The square root of its part of the frame's area: the side of a square of this area, as part of the frame's. Rounded to nearest.
     pub width: U0_16,
     /// The smallest rectangle with all its pixels.
     pub bounds: Region,
@@ -201,27 +202,6 @@ pub fn quotient(number: u32, divisor: u32) -> u32 {
 /// Computes 12 fraction bits of the quotient of `rest` and `divisor`; the rest is below the divisor, which is below 2^20.
 const fn fraction(rest: u32, divisor: u32) -> u32 {
     (rest << 12) / divisor
-}
-
-/// Returns the square root, rounded down, bit by bit. `u32::isqrt` takes fewer cycles once its code and its table are in the caches,
-/// where they are not when a frame comes.
-#[inline(never)]
-pub const fn root(square: u32) -> u16 {
-    let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
-    // The number of rounds is not known to the compiler, which would write out sixteen of them.
-    while bit > square {
-        bit >>= 2;
-    }
-    while bit != 0 {
-        let tried = root | bit;
-        root >>= 1;
-        if rest >= tried {
-            rest -= tried;
-            root |= bit;
-        }
-        bit >>= 2;
-    }
-    root as u16
 }
 
 /// Returns 0 below the first limit, 255 from the second one on, and the linear interpolation between them. Limits are below 2^24.

@@ -4,8 +4,9 @@ use anyhow::Result;
 use glint_core::fixed::{Q4_28, U16_16};
 use glint_core::hand::{
     Backlash, Control, OneEuro, Region, Statistics, Step, Tuning, calibrate, low_pass_gain,
-    quotient, root, target, towards,
+    quotient, target, towards,
 };
+use glint_core::root::root;
 use serde::Deserialize;
 
 use crate::stiff::kind::Kind;
