@@ -265,6 +265,7 @@ impl Build {
             "virtual",
             "--scene",
             scene.name(),
+            "--force",
             "--stats",
         ];
         let mut arguments: Vec<_> = words.into_iter().map(Path::new).collect();
