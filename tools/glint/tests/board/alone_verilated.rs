@@ -48,4 +48,6 @@ fn the_verilated_board_runs_alone_from_its_flash() {
     let mut console = Console::new(&mut board);
     let state = console.command("demo").unwrap();
     assert_eq!(state, ["demo on", "scene 2 of 2 wireframe"]);
+    // An error of the command fails the test.
+    console.command("selftest").unwrap();
 }

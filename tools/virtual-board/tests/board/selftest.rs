@@ -1,7 +1,8 @@
-//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong.
+//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong. The virtual board takes it in a test of `glint`,
+//! which runs alone from its flash.
 
 use crate::firmware::{address, command, emulated, image, patch};
-use crate::sensor::{board_with_sensor, sensor};
+use crate::sensor::{emulated_with_sensor, sensor};
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Scene, Timing};
 use virtual_board::virtual_mpu6050::{Fault, State};
 
@@ -50,7 +51,7 @@ fn check(answer: &str, sensors: &str) {
 
 #[test]
 fn plugged_sensors_pass() {
-    let mut board = board_with_sensor(|_| State::default());
+    let mut board = emulated_with_sensor(|_| State::default());
     let nothing = Scene::new([320, 240], |_| Vec::new());
     let timing = Timing::SHORT;
     board.plug_image_sensor(ImageSensor::new(Model::Ov7670, nothing, timing));

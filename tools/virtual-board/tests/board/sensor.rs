@@ -103,7 +103,7 @@ fn ready_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Wires {
 }
 
 /// Starts a virtual board with a sensor.
-pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
+fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> VirtualBoard {
     let image = image();
     let start = Start::Fast { firmware: &image };
     let mut board = VirtualBoard::builder()
@@ -116,7 +116,7 @@ pub fn board_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> Virt
 }
 
 /// Starts an emulated board with a sensor.
-fn emulated_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> EmulatedBoard {
+pub fn emulated_with_sensor(motion: impl Fn(f64) -> State + Send + 'static) -> EmulatedBoard {
     let mut board = EmulatedBoard::fast(&image()).expect("an image that fits");
     board.plug(ready_sensor(motion));
     board.expect(PROMPT, "start");
