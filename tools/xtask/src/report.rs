@@ -28,6 +28,9 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     }
     bootstrap::bootstrap()?;
     if name == "stiff" {
+        if arguments.iter().any(|argument| argument == "--virtual") {
+            gateware::build(Board::Virtual)?;
+        }
         firmware::build(Board::Virtual, &[])?;
         return run::program("glint-reference", "report", name, arguments);
     }

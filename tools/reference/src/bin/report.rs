@@ -123,6 +123,9 @@ enum Page {
         /// Run only cases whose name or subject contains TEXT, and write no page
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
+        /// Run the cases on the virtual board instead, which take minutes
+        #[arg(long = "virtual")]
+        on_virtual_board: bool,
         #[command(flatten)]
         output: Output,
     },
@@ -219,7 +222,11 @@ fn main() -> Result<()> {
             output,
         } => measure_quality(quick, study.as_deref(), only.as_deref(), &output),
         Page::Timeline { only, output } => measure_timeline(only.as_deref(), &output),
-        Page::Stiff { only, output } => measure_stiff(only.as_deref(), &output),
+        Page::Stiff {
+            only,
+            on_virtual_board,
+            output,
+        } => measure_stiff(only.as_deref(), on_virtual_board, &output),
         Page::Pages { out } => {
             let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
             PAGES
@@ -357,8 +364,12 @@ fn measure_timeline(only: Option<&str>, output: &Output) -> Result<()> {
     output.rebuild("timeline", &folder, pages::timeline::rebuild)
 }
 
-fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
-    let rows = stiff::measure(only)?;
+fn measure_stiff(only: Option<&str>, on_virtual_board: bool, output: &Output) -> Result<()> {
+    let (part, table) = match on_virtual_board {
+        false => (stiff::Part::Host, "stiff.csv"),
+        true => (stiff::Part::VirtualBoard, "stiff-virtual.csv"),
+    };
+    let rows = stiff::measure(part, only)?;
     output.print(&rows, pages::stiff::sections)?;
     let differing: Vec<_> = rows.iter().filter(|row| !row.holds).collect();
     for row in &differing {
@@ -377,7 +388,7 @@ fn measure_stiff(only: Option<&str>, output: &Output) -> Result<()> {
         return Ok(());
     }
     let folder = output.folder(false)?;
-    write_csv(&rows, &folder.join("stiff.csv"))?;
+    write_csv(&rows, &folder.join(table))?;
     output.rebuild("stiff", &folder, pages::stiff::rebuild)
 }
 

@@ -13,6 +13,9 @@ use super::outcome::Expected;
 pub struct Subject {
     /// Title of its section in the report.
     pub title: String,
+    /// Whether the cases need the virtual board.
+    #[serde(default)]
+    pub on_virtual_board: bool,
     /// The cases.
     #[serde(rename = "case")]
     pub cases: Vec<Case>,

@@ -34,25 +34,39 @@ pub struct Row {
     pub holds: bool,
 }
 
-/// Runs all cases, or those whose name or subject contains `only`.
+/// The cases of the catalogue that run together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// Those on this host and on the emulated board.
+    Host,
+    /// Those on the virtual board, one after the other because they share one.
+    VirtualBoard,
+}
+
+/// Runs all cases of a part, or those whose name or subject contains `only`.
 ///
 /// # Errors
 /// The catalogue cannot be read, or a case has an unknown kind.
-pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
+pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Row>> {
     let subjects = read(&workspace::path("tools/reference/stiff"))?;
     let kinds = kinds::all().into_iter().map(|kind| (kind.name, kind));
     let kinds: BTreeMap<_, _> = kinds.collect();
     let wanted = |text: &str| only.is_none_or(|only| text.contains(only));
     let cases: Vec<_> = subjects
         .iter()
+        .filter(|subject| subject.on_virtual_board == (part == Part::VirtualBoard))
         .flat_map(|subject| subject.cases.iter().map(move |case| (&subject.title, case)))
         .filter(|(subject, case)| wanted(subject) || wanted(&case.name))
         .collect();
-    two_at_a_time(&cases, |(subject, case)| {
+    let run = |(subject, case): &(&String, &Case)| {
         let kind = kinds.get(case.kind.as_str());
         let kind = kind.with_context(|| format!("{}: no kind {:?}", case.name, case.kind))?;
         run(subject, case, kind).with_context(|| case.name.clone())
-    })
+    };
+    match part {
+        Part::Host => two_at_a_time(&cases, run),
+        Part::VirtualBoard => cases.iter().map(run).collect(),
+    }
 }
 
 fn run(subject: &str, case: &Case, kind: &Kind) -> Result<Row> {

@@ -13,7 +13,8 @@ use crate::report::table::{Table, read_table};
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("stiff.csv"))?;
+    let mut rows: Vec<Row> = read_table(&folder.join("stiff.csv"))?;
+    rows.extend(read_table::<Row>(&folder.join("stiff-virtual.csv"))?);
     let page = fill(
         include_str!("stiff.md"),
         &[

@@ -7,6 +7,7 @@ mod decimals;
 mod fields;
 mod files;
 mod frames;
+mod gateware;
 mod hands;
 mod kernels;
 mod lines;
@@ -33,6 +34,7 @@ pub fn all() -> Vec<Kind> {
         decimals::kinds(),
         fields::kinds(),
         files::kinds(),
+        gateware::kinds(),
         hands::kinds(),
         kernels::kinds(),
         lines::kinds(),
