@@ -35,7 +35,7 @@ pub fn unit<const BITS: u32>(vector: [i64; 3]) -> Option<[i32; 3]> {
     let factor = lack + ((3 * second) >> 15) as i32;
     let scale = |x: u32| {
         let [whole, fraction] = halves(u64::from(x << 1) * u64::from(inverse));
-        // `whole` has 31 fraction bits, and what is added to it has 45.
+        // `whole` has 31 fraction bits, its correction 45.
         let more = ((whole.cast_signed() * i64::from(factor)) >> 32) as i32;
         let more = (more + (fraction >> 18) as i32) >> 14;
         let scaled = (whole as u32).wrapping_add_signed(more);

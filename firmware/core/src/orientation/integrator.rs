@@ -22,8 +22,8 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// Half angle vector, with 48 fraction bits, that is added to that of the next step: the remainder of the last step's vector part of
-    /// exp h after rounding, and corrections.
+    /// Half angle vector with 48 fraction bits, which the next step adds to its own: the remainder of the last step's vector part of exp h
+    /// after rounding, and corrections.
     rest: [i64; 3],
 }
 
@@ -101,8 +101,8 @@ impl Integrator {
         self.rounded
     }
 
-    /// A reference to the attitude, rounded to nearest, and to a half angle vector in the body's axes, with 48 fraction bits, by which the
-    /// next step turns the attitude too. What is added to it must be within ±8 rad.
+    /// References to the attitude, rounded to nearest, and to a half angle vector in the body's axes, in radians with 48 fraction bits,
+    /// which the next step adds to its own. A caller may add a vector whose components are within ±8.
     pub(super) const fn correctable(&mut self) -> (&Quaternion, &mut [i64; 3]) {
         (&self.rounded, &mut self.rest)
     }

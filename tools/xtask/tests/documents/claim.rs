@@ -1,7 +1,7 @@
 //! Claims of accuracy, speed or cost in a text: numbers with a unit that only a measurement has.
 //!
-//! The pages have one convention: what a design states by itself has other units. A frequency is in Hz, a time-out or a period in s, ms or
-//! µs, a position in fractions of a pixel, a limit of a circuit in clocks, a bound of a rounding in units of its format.
+//! Numbers of a specification have other units: a frequency Hz, a time-out or a period s, ms or µs, a position fractions of a pixel, a limit
+//! of a circuit clocks, a bound of a rounding units of its format.
 
 use std::sync::LazyLock;
 
