@@ -17,6 +17,19 @@ use crate::report::workspace;
 /// Clock frequencies of the SoC in Hz: first the default, then a faster one.
 pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
 
+/// A virtual board with the gateware in a folder below `target/gateware`, and with `firmware` in its memory.
+///
+/// # Errors
+/// The board is not built, or the firmware is for gateware of another build.
+pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
+    let library = format!("target/gateware/{folder}/libglint_soc.so");
+    let board = VirtualBoard::builder()
+        .library(workspace::path(&library))
+        .start(Start::Fast { firmware })
+        .build()?;
+    Ok(SimulatedBoard::new(board))
+}
+
 /// Draws a frame of a scene with another size and quality on a virtual board that has just started, and returns its statistics.
 ///
 /// # Errors
@@ -26,12 +39,7 @@ pub fn frame(firmware: &[u8], scene: &Scene, changes: &Changes) -> Result<Stats>
         true => "virtual-smooth",
         false => "virtual",
     };
-    let library = format!("target/gateware/{folder}/libglint_soc.so");
-    let board = VirtualBoard::builder()
-        .library(workspace::path(&library))
-        .start(Start::Fast { firmware })
-        .build()?;
-    let mut board = SimulatedBoard::new(board);
+    let mut board = started(folder, firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
     let mut renderer = BoardRenderer::new(console);

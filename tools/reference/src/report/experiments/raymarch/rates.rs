@@ -1,7 +1,7 @@
 //! Experiment: frames per second of the raymarcher on the whole SoC, where it shares LiteDRAM with the scan-out to the monitor.
 
 use anyhow::{Context, Result, ensure};
-use glint::board::{SimulatedBoard, built_firmware};
+use glint::board::built_firmware;
 use glint::console::Console;
 use glint::render::{self, BoardRenderer, FieldSubject, Frame, Route, Subject};
 use glint_core::appearance::Appearance;
@@ -11,14 +11,12 @@ use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
-use virtual_board::{Start, VirtualBoard};
 
 use crate::camera::{Camera, Vector};
 use crate::raymarch::views;
 use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
-use crate::report::workspace;
 
 /// A verilated build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
@@ -230,12 +228,7 @@ fn draw(
     commit: &str,
     bar: &ProgressBar,
 ) -> Result<Vec<Row>> {
-    let library = format!("target/gateware/{}/libglint_soc.so", case.build.folder);
-    let board = VirtualBoard::builder()
-        .library(workspace::path(&library))
-        .start(Start::Fast { firmware })
-        .build()?;
-    let mut board = SimulatedBoard::new(board);
+    let mut board = soc::started(case.build.folder, firmware)?;
     let mut console = Console::new(&mut board);
     console.greet()?;
     let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
