@@ -40,14 +40,16 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     run::program("glint-reference", "report", name, arguments)
 }
 
-/// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoC whose raymarcher evaluates the field
-/// four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC with smooth
+/// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoCs whose raymarchers evaluate the sponge
+/// or spheres four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC with smooth
 /// shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
             let sponge = "sponge";
             gateware::build_beside(sponge, &["--fields", sponge], Library::Profiled)?;
+            let spheres = ["--fields", "spheres,stereo", "--lanes", "4"];
+            gateware::build_beside("spheres-4", &spheres, Library::Quick)?;
             model("raymarcher")
         }
         "gouraud" => model("triangle_raster"),
@@ -157,6 +159,7 @@ fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     if !quick {
         files.extend([
             "gateware/virtual-sponge/libglint_soc.so",
+            "gateware/virtual-spheres-4/libglint_soc.so",
             "gateware/virtual-smooth/libglint_soc.so",
             "gateware/models/raymarcher.so",
         ]);

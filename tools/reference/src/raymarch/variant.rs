@@ -24,6 +24,9 @@ impl Norm {
     }
 }
 
+/// Number of steps after which the threshold grows.
+const GROWTH_STEPS: u32 = 64;
+
 /// A method to march rays to the Menger sponge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
@@ -39,8 +42,8 @@ pub struct Method {
     pub footprint: f64,
     /// Limit of the number of steps of a ray.
     pub cap: u32,
-    /// The threshold doubles each time this number of steps is complete; `None` if it never doubles.
-    pub relax: Option<u32>,
+    /// Factor by which the threshold grows after each [`GROWTH_STEPS`] steps; 1 if it does not grow.
+    pub growth: f64,
     /// Whether the hit of a ray that approaches a face is moved forward to the plane of the face. The ray's parameter grows by
     /// the remaining distance divided by the component of the ray's direction along the normal.
     pub correct: bool,
@@ -68,8 +71,8 @@ impl Method {
             if (0..3).any(|axis| point[axis].abs() > 1.0 && outward(ray, axis, point)) {
                 break Outcome::Miss;
             }
-            let doubled = self.relax.map_or(0, |every| steps / every);
-            let threshold = (self.threshold + self.footprint * t * speed) * f64::from(1 << doubled);
+            let grown = self.growth.powi((steps / GROWTH_STEPS) as i32);
+            let threshold = (self.threshold + self.footprint * t * speed) * grown;
             let step = left.max(0.0);
             if left < threshold {
                 let (face, normal, _) = sponge.surface(point);

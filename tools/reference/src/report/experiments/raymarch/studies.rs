@@ -4,10 +4,10 @@ use anyhow::{Result, bail};
 use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
 
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
-use super::requirements::SMALL;
+use super::requirements::{LARGE, SMALL};
 use super::trials::{Trial, Views, pixels};
 use crate::raymarch::metrics::Outcome;
-use crate::raymarch::raymarched;
+use crate::raymarch::raymarched::{self, Subject};
 use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
 use crate::report::{progress, soc};
@@ -16,13 +16,14 @@ use crate::report::{progress, soc};
 type Study = fn(&Views) -> Vec<Trial>;
 
 /// Name and function of each study, in the order on the report's page. The file of a study is `raymarch-NAME.csv`.
-const STUDIES: [(&str, Study); 7] = [
+const STUDIES: [(&str, Study); 8] = [
     ("fraction", fractions),
     ("cap", caps),
     ("threshold", thresholds),
     ("norm", norms),
     ("end", ends),
     ("prepass", prepasses),
+    ("block", blocks),
     ("normal", normals),
 ];
 
@@ -50,15 +51,27 @@ pub fn measure(
         );
     }
     let commit = Provenance::find().commit;
-    let subjects = raymarched::sponges(SMALL);
     let bar = progress::bar(studies.len() as u64)?;
     soc::two_at_a_time(&studies, |(name, study)| {
+        let subjects = subjects(name);
         finished(name, &study(&Views::new(&subjects, bar.clone(), &commit)))?;
         bar.inc(1);
         Ok(())
     })?;
     bar.finish_and_clear();
     Ok(())
+}
+
+/// The pictures of a study: the sponge in all views at 320 × 180, or in the slowest view at 1280 × 720.
+fn subjects(study: &str) -> Vec<Subject> {
+    match study {
+        "block" => {
+            let mut large = raymarched::sponges(LARGE);
+            large.retain(|subject| subject.name == "tunnel");
+            large
+        }
+        _ => raymarched::sponges(SMALL),
+    }
 }
 
 fn tuned(tuning: Tuning) -> FieldOptions {
@@ -79,7 +92,7 @@ fn in_f64(threshold: u32) -> Method {
         threshold: f64::from(threshold) / 4096.0 / UNITS,
         footprint: (-f64::from(DEFAULT_TUNING.footprint)).exp2(),
         cap: DEFAULT_TUNING.cap,
-        relax: None,
+        growth: 1.0,
         correct: false,
     }
 }
@@ -119,7 +132,7 @@ fn caps(views: &Views) -> Vec<Trial> {
 fn thresholds(views: &Views) -> Vec<Trial> {
     let footprints = [10, 12, 13, 14, 15];
     let trials = footprints.into_iter().flat_map(|footprint| {
-        [4, 8, 16, DEFAULT_TUNING.threshold, 40, 80, 160, 320].map(|threshold| {
+        [4, 6, 8, 16, DEFAULT_TUNING.threshold, 40, 80, 160, 320].map(|threshold| {
             let options = tuned(Tuning {
                 threshold,
                 footprint,
@@ -176,17 +189,18 @@ fn norms(views: &Views) -> Vec<Trial> {
 
 fn ends(views: &Views) -> Vec<Trial> {
     let families = [
-        ("plain", None, false, false),
-        ("corrected", None, true, false),
-        ("relaxed", Some(64), false, false),
-        ("relaxed and corrected", Some(64), true, false),
-        ("exact entry", None, false, true),
+        ("plain", 1.0, false, false),
+        ("corrected", 1.0, true, false),
+        ("doubling", 2.0, false, false),
+        ("doubling and corrected", 2.0, true, false),
+        ("quadrupling", 4.0, false, false),
+        ("exact entry", 1.0, false, true),
     ];
     let trials = families
         .into_iter()
-        .flat_map(|(family, relax, correct, exact_entry)| {
+        .flat_map(|(family, growth, correct, exact_entry)| {
             by_threshold(views, family, exact_entry, |method| Method {
-                relax,
+                growth,
                 correct,
                 ..method
             })
@@ -211,16 +225,46 @@ fn prepasses(views: &Views) -> Vec<Trial> {
         })
     });
     let others = [3, 4].into_iter().flat_map(|block| {
-        THRESHOLDS.map(|threshold| {
-            let family = format!("blocks of {}", 1 << block);
-            views.trial(&family, format!("{threshold}"), 0, |subject| {
-                let mut setup = subject.setup(&options(threshold, false));
-                setup.cones = Some(Cones::new(block, setup.is_round(), &setup.steps));
-                raymarched::picture(&setup, 0)
-            })
-        })
+        THRESHOLDS.map(|threshold| with_blocks(views, block, &options(threshold, false)))
     });
     built.chain(others).collect()
+}
+
+/// A trial with a cone before each block of 2^`block` × 2^`block` pixels, in software only.
+fn with_blocks(views: &Views, block: u32, options: &FieldOptions) -> Trial {
+    let family = format!("blocks of {}", 1 << block);
+    views.trial(
+        &family,
+        options.tuning.threshold.to_string(),
+        0,
+        |subject| {
+            let mut setup = subject.setup(options);
+            setup.cones = Some(Cones::new(block, setup.is_round(), &setup.steps));
+            raymarched::picture(&setup, 0)
+        },
+    )
+}
+
+fn blocks(views: &Views) -> Vec<Trial> {
+    let options = [14, DEFAULT_TUNING.threshold, 56, 112].map(|threshold| {
+        tuned(Tuning {
+            threshold,
+            ..DEFAULT_TUNING
+        })
+    });
+    let alone = options.map(|options| {
+        let config = options.tuning.threshold.to_string();
+        views.trial("no prepass", config, 0, |subject| subject.picture(&options))
+    });
+    let blocks = (2..=4).flat_map(|block| {
+        options.map(|options| {
+            let mut trial = with_blocks(views, block, &options);
+            // The gateware's prepass has blocks of 8 × 8 pixels for pictures of this size.
+            trial.shipped = block == 3 && options.tuning == DEFAULT_TUNING;
+            trial
+        })
+    });
+    alone.into_iter().chain(blocks).collect()
 }
 
 fn normals(views: &Views) -> Vec<Trial> {
