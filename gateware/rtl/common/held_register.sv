@@ -29,8 +29,12 @@ module held_register #(
 
     always_ff @(posedge clk) begin
         for (int i = 0; i < COPIES; i++) enables[i] <= rst || (enables[i] ? !in_valid : leaves);
-        for (int i = 0; i < WIDTH; i++)
-            if (enables[i / LOADS]) out[i] <= in[i];
+    end
+
+    for (genvar i = 0; i < COPIES; i++) begin : copies
+        localparam int unsigned FIRST = i * LOADS;
+        localparam int unsigned BITS  = FIRST + LOADS > WIDTH ? WIDTH - FIRST : LOADS;
+        always_ff @(posedge clk) if (enables[i]) out[FIRST+:BITS] <= in[FIRST+:BITS];
     end
 endmodule
 
