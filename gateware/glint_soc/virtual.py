@@ -8,7 +8,7 @@ from litedram.phy.model import SDRAMPHYModel
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
 from litex.build.sim.common import sim_special_overrides
 from litex.gen import LiteXModule
-from migen import ClockDomain, Instance, Signal
+from migen import Cat, ClockDomain, Instance, Mux, Signal
 from migen.fhdl.specials import Memory
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
@@ -103,7 +103,7 @@ class VirtualSoC(GlintSoC):
                           fields=fields, sys_clk_freq=sys_clk_freq)
         module = MT41K64M16(sys_clk_freq, "1:4")
         self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=sys_clk_freq)
-        self._name_banks()
+        self._prepare_banks()
         # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
         self.rom.mem.init = None
         self.sram.mem.init = None
@@ -123,13 +123,27 @@ class VirtualSoC(GlintSoC):
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))
                           for name in ("hsync", "vsync", "de", "r", "g", "b")]
 
-    def _name_banks(self):
-        """Gives the memory of each DDR3 bank a name that the harness can rely on."""
+    def _prepare_banks(self):
+        """Gives the memory of each DDR3 bank a name that the harness can rely on, and lets it write whole words."""
         # Reads the private `_fragment`, because get_fragment() would remove the module from its parent's fragment.
         banks = [special for _, module in self.ddrphy._submodules for special in module._fragment.specials
                  if isinstance(special, Memory)]
         for number, memory in enumerate(sorted(banks, key=lambda memory: memory.duid)):
             memory.name_override = f"ddr3_bank{number}"
+            self._write_words(memory)
+
+    def _write_words(self, memory):
+        """Replaces the write port of a memory, which writes single bytes, by one that merges bytes into the word and writes that: the
+        simulation checks each write enable in each cycle."""
+        port = next(port for port in memory.ports if port.we is not None)
+        size = port.we_granularity
+        enables, data = port.we, port.dat_w
+        port.we, port.dat_w, port.we_granularity = Signal(), Signal(memory.width), memory.width
+        before = memory.get_port(async_read=True)
+        self.specials += before
+        merged = (Mux(enable, data[size * i:size * (i + 1)], before.dat_r[size * i:size * (i + 1)])
+                  for i, enable in enumerate(enables))
+        self.comb += [before.adr.eq(port.adr), port.we.eq(enables != 0), port.dat_w.eq(Cat(*merged))]
 
     def init_rom(self, name, contents=(), auto_size=True):
         """Leaves the ROM empty and at its full size: the harness loads the BIOS or another program."""
