@@ -15,12 +15,7 @@ module delay #(
 
     assign out = passing[CLOCKS-1];
 
-    always_ff @(posedge clk) begin
-        if (enable) begin
-            passing[0] <= in;
-            for (int i = 1; i < CLOCKS; i++) passing[i] <= passing[i-1];
-        end
-    end
+    always_ff @(posedge clk) if (enable) passing <= (CLOCKS * WIDTH)'({passing, in});
 endmodule
 
 `default_nettype wire
