@@ -123,7 +123,7 @@ enum Task {
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of independent jobs]
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`, `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of independent jobs]
         page: Option<String>,
         /// Measure samples, into target/report
         #[arg(long)]

@@ -27,7 +27,7 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
         return run::program("glint-reference", "report", name, arguments);
     }
     bootstrap::bootstrap()?;
-    if name == "stiff" {
+    if name == "stiff" || name == "long" {
         if arguments.iter().any(|argument| argument == "--virtual") {
             gateware::build(Board::Virtual)?;
         }

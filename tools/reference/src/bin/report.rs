@@ -9,7 +9,8 @@ use clap::{Args, Parser, Subcommand};
 use glint_core::picture::Size;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, kernels, quality, raymarch, sine, stiff, timeline, triangle,
+    geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff, timeline,
+    triangle,
 };
 use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
@@ -118,6 +119,25 @@ enum Page {
         #[command(flatten)]
         output: Output,
     },
+    /// Long runs of the whole firmware on the emulated board: 1,000,000 frames, counters that wrap, a day of the sensor
+    Long {
+        /// Shorten the runs to a hundredth (minutes instead of hours)
+        #[arg(long)]
+        quick: bool,
+        /// Measure only one table
+        #[arg(long, value_name = "NAME", value_parser = long::STUDIES)]
+        study: Option<String>,
+        /// Hours of the sensor, each of which takes minutes
+        #[arg(
+            long,
+            value_name = "HOURS",
+            default_value_t = 24.0,
+            conflicts_with = "quick"
+        )]
+        hours: f64,
+        #[command(flatten)]
+        output: Output,
+    },
     /// Stiff and extreme cases: runs the catalogue tools/reference/stiff, and fails where an outcome differs
     Stiff {
         /// Run only cases whose name or subject contains TEXT, and write no page
@@ -222,6 +242,12 @@ fn main() -> Result<()> {
             output,
         } => measure_quality(quick, study.as_deref(), only.as_deref(), &output),
         Page::Timeline { only, output } => measure_timeline(only.as_deref(), &output),
+        Page::Long {
+            quick,
+            study,
+            hours,
+            output,
+        } => measure_long(quick, study.as_deref(), hours, &output),
         Page::Stiff {
             only,
             on_virtual_board,
@@ -362,6 +388,32 @@ fn measure_timeline(only: Option<&str>, output: &Output) -> Result<()> {
     let folder = output.folder(only.is_some())?;
     write_csv(&rows, &folder.join("timeline.csv"))?;
     output.rebuild("timeline", &folder, pages::timeline::rebuild)
+}
+
+/// Runs all studies, or only the one that `study` names. Each table is written as soon as it is complete.
+fn measure_long(quick: bool, study: Option<&str>, hours: f64, output: &Output) -> Result<()> {
+    let folder = output.folder(quick)?;
+    let file = |name: &str| folder.join(format!("long-{name}.csv"));
+    let is_selected = |name: &str| study.is_none_or(|study| study == name);
+    let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };
+    if is_selected("orbit") {
+        let rows = long::orbit::measure(turns, long::orbit::FRAMES)?;
+        output.print(&rows, pages::long::orbit_table)?;
+        write_csv(&rows, &file("orbit"))?;
+    }
+    if is_selected("uptime") {
+        let rows = long::uptime::measure(quick)?;
+        output.print(&rows, pages::long::uptime_table)?;
+        write_csv(&rows, &file("uptime"))?;
+    }
+    for path in long::sensor::Path::ALL {
+        if is_selected(path.name()) {
+            let rows = long::sensor::measure(path, hours)?;
+            output.print(&rows, pages::long::sensor_table)?;
+            write_csv(&rows, &file(path.name()))?;
+        }
+    }
+    output.rebuild("long", &folder, pages::long::rebuild)
 }
 
 fn measure_stiff(only: Option<&str>, on_virtual_board: bool, output: &Output) -> Result<()> {

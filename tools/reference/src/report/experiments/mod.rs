@@ -5,6 +5,7 @@ pub mod gesture;
 pub mod gouraud;
 pub mod imu;
 pub mod kernels;
+pub mod long;
 pub mod quality;
 pub mod raymarch;
 pub mod sine;

@@ -7,6 +7,7 @@ pub mod gouraud;
 pub mod imu;
 mod index;
 pub mod kernels;
+pub mod long;
 pub mod quality;
 pub mod raymarch;
 pub mod sine;
@@ -23,7 +24,7 @@ use anyhow::Result;
 pub type Rebuild = fn(&Path) -> Result<()>;
 
 /// Name of each page, and the function that rebuilds it.
-pub const PAGES: [(&str, Rebuild); 12] = [
+pub const PAGES: [(&str, Rebuild); 13] = [
     ("sine", sine::rebuild),
     ("triangle", triangle::rebuild),
     ("raymarch", raymarch::rebuild),
@@ -34,6 +35,7 @@ pub const PAGES: [(&str, Rebuild); 12] = [
     ("kernels", kernels::rebuild),
     ("quality", quality::rebuild),
     ("timeline", timeline::rebuild),
+    ("long", long::rebuild),
     ("stiff", stiff::rebuild),
     // The index is made from the tables of all other pages.
     ("README", index::rebuild),

@@ -1,0 +1,14 @@
+//! Experiments with the whole firmware on the emulated board that run for hours of the board's time. Each is a study of its own, because
+//! the longest takes more than an hour of the host's.
+
+pub mod orbit;
+pub mod sensor;
+pub mod uptime;
+
+/// Names of the studies. The file of a study is `long-NAME.csv`.
+pub const STUDIES: [&str; 4] = [
+    "orbit",
+    "uptime",
+    sensor::Path::Rest.name(),
+    sensor::Path::Turning.name(),
+];

@@ -1,0 +1,281 @@
+//! A day of the motion sensor on the board: the attitude of the firmware against the true one.
+
+use std::sync::{Arc, Mutex};
+
+use anyhow::{Context, Result, anyhow};
+use glint::console::value as entry;
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+use virtual_board::virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
+
+use crate::basis;
+use crate::emulated::{Emulated, command, cycles, start, view};
+use crate::imu::motion::Motion;
+use crate::imu::quaternion::Quaternion;
+use crate::report::progress::bar;
+use crate::report::provenance::Provenance;
+
+/// Time in s at which the motion begins; before, the sensor rests and is calibrated.
+const BEGIN: f64 = 20.0;
+/// Rates about the sensor's axes in °/s of the sensor that turns: 30 °/s about an axis that is no axis of the sensor.
+const RATE: [f64; 3] = [10.0, 20.0, -20.0];
+/// The sensor's bias in °/s, and its noise in °/s and g per √Hz, which is that of a real one.
+const IMPERFECTIONS: Imperfections = Imperfections {
+    bias: [4.5, 0.05, 1.1],
+    noise: 0.005,
+    accel_noise: 0.0004,
+    clock: 0.004,
+    ..Imperfections::NONE
+};
+
+/// Minutes after [`BEGIN`] at which the attitude is measured, up to an hour; then it is measured each hour.
+const MINUTES: [f64; 9] = [1.0 / 6.0, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0];
+
+/// Path of the sensor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Path {
+    /// At rest.
+    Rest,
+    /// Turning about an axis that is none of the sensor's.
+    Turning,
+}
+
+impl Path {
+    /// Both paths.
+    pub const ALL: [Self; 2] = [Self::Rest, Self::Turning];
+
+    /// Name of the path and of its study.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rest => "rest",
+            Self::Turning => "turning",
+        }
+    }
+
+    /// The motion from [`BEGIN`] on.
+    const fn motion(self) -> Motion {
+        match self {
+            Self::Rest => Motion::Rest,
+            Self::Turning => Motion::Spin(RATE),
+        }
+    }
+
+    fn state(self, time: f64) -> State {
+        let since = time - BEGIN;
+        let motion = if since < 0.0 {
+            Motion::Rest
+        } else {
+            self.motion()
+        };
+        State {
+            rate: motion.rate(since).map(f64::to_degrees),
+            force: motion.force(since),
+            ..State::default()
+        }
+    }
+
+    fn attitude(self, time: f64) -> Result<Quaternion> {
+        let attitude = self.motion().attitude((time - BEGIN).max(0.0));
+        attitude.context("a motion with an attitude in closed form")
+    }
+}
+
+/// Errors of the attitude at one time: a line of `long-sensor.csv`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Path of the sensor.
+    pub path: String,
+    /// Time since the motion began, in s.
+    pub seconds: f64,
+    /// Turn about the vertical since the motion began that is not the sensor's, in degrees.
+    pub heading: f64,
+    /// Angle between the vertical and the firmware's, in degrees.
+    pub inclination: f64,
+    /// Largest error of a length or an angle of the basis of a camera that the sensor turns.
+    pub basis: f64,
+    /// Samples that the firmware has taken.
+    pub samples: u64,
+    /// Samples of the sensor that the firmware has not taken.
+    pub lost: u64,
+    /// Gaps in the samples, of more than half a second.
+    pub gaps: u64,
+    /// Commit with which the row was measured.
+    pub commit: String,
+}
+
+/// Number of measurements whose times are known: more than the firmware has not taken yet.
+const KNOWN: usize = 64;
+
+/// Times of the last measurements of the chip, and their number.
+struct Measured {
+    count: u64,
+    times: [f64; KNOWN],
+}
+
+impl Measured {
+    /// Time of a measurement by its number from 1 on, if it is one of the last ones.
+    fn time(&self, number: u64) -> Option<f64> {
+        let is_known = number <= self.count && number + KNOWN as u64 > self.count;
+        is_known.then(|| self.times[number as usize % KNOWN])
+    }
+}
+
+/// The board, its sensor, and what is known about their samples.
+struct Bench {
+    path: Path,
+    board: Emulated,
+    measured: Arc<Mutex<Measured>>,
+    /// Number by which the chip's measurements exceed the firmware's samples.
+    ahead: u64,
+    /// The turn about the vertical when the motion began.
+    heading: f64,
+}
+
+/// What the firmware says about the sensor.
+struct Status {
+    samples: u64,
+    gaps: u64,
+    attitude: Quaternion,
+}
+
+/// Measures the errors for this number of hours.
+///
+/// # Errors
+/// The firmware has not been built, or refuses a command.
+pub fn measure(path: Path, hours: f64) -> Result<Vec<Row>> {
+    let commit = Provenance::find().commit;
+    let mut bench = Bench::new(path)?;
+    let first = MINUTES.into_iter().map(|minutes| 60.0 * minutes);
+    let later = (2..=hours.floor() as u32).map(|hour| 3600.0 * f64::from(hour));
+    let times = first.chain(later).filter(|time| *time <= 3600.0 * hours);
+    let times: Vec<f64> = times.collect();
+    let bar = bar((3600.0 * hours) as u64)?.with_message(path.name());
+    let mut rows = Vec::new();
+    for time in times {
+        bench.run_to(BEGIN + time, &bar);
+        rows.push(bench.row(time, &commit)?);
+    }
+    bar.finish_and_clear();
+    Ok(rows)
+}
+
+impl Bench {
+    /// A board with a calibrated sensor, just before the motion begins.
+    fn new(path: Path) -> Result<Self> {
+        let mut board = start()?;
+        let measured = Arc::new(Mutex::new(Measured {
+            count: 0,
+            times: [0.0; KNOWN],
+        }));
+        let notes = measured.clone();
+        let motion = move |time: f64| {
+            if let Ok(mut notes) = notes.lock() {
+                notes.count += 1;
+                let place = notes.count as usize % KNOWN;
+                notes.times[place] = time;
+            }
+            path.state(time)
+        };
+        let chip = Chip::new(Source::Motion(Box::new(motion)), IMPERFECTIONS, 1);
+        board.inner().plug(Wires::new(chip));
+        let wait = cycles(&mut board, 500);
+        board.inner().run(wait);
+        command(&mut board, "imu calibrate 4096")?;
+        let mut bench = Self {
+            path,
+            board,
+            measured,
+            ahead: 0,
+            heading: 0.0,
+        };
+        bench.run_to(BEGIN - 1.0, &ProgressBar::hidden());
+        let (Status { attitude, .. }, ahead) = bench.newest()?;
+        let [heading, ..] = attitude.angles();
+        Ok(Self {
+            ahead,
+            heading,
+            ..bench
+        })
+    }
+
+    fn run_to(&mut self, seconds: f64, bar: &ProgressBar) {
+        let board = self.board.inner();
+        let hertz = f64::from(board.clock_hz());
+        let end = (seconds * hertz) as u64;
+        while board.cycles() < end {
+            let second = end.saturating_sub(board.cycles()).min(hertz as u64);
+            board.run(second);
+            bar.set_position((board.cycles() as f64 / hertz - BEGIN).max(0.0) as u64);
+        }
+    }
+
+    /// Number of the chip's measurements.
+    fn count(&self) -> Result<u64> {
+        let measured = self.measured.lock();
+        Ok(measured.map_err(|_| anyhow!("the motion panicked"))?.count)
+    }
+
+    fn status(&mut self) -> Result<Status> {
+        const COMMAND: &str = "imu";
+        let lines = command(&mut self.board, COMMAND)?;
+        let attitude: String = entry(COMMAND, &lines, "attitude")?;
+        let parts = attitude
+            .split(' ')
+            .map(str::parse)
+            .collect::<Result<Vec<f64>, _>>()?;
+        let parts = <[f64; 4]>::try_from(parts);
+        Ok(Status {
+            samples: entry(COMMAND, &lines, "samples")?,
+            gaps: entry(COMMAND, &lines, "gaps")?,
+            attitude: Quaternion(parts.map_err(|_| anyhow!("{attitude:?}"))?),
+        })
+    }
+
+    /// What the firmware says about the newest sample, and the number by which the chip's measurements exceed the samples. Some
+    /// measurements have not been taken yet, so the smallest of several numbers counts.
+    fn newest(&mut self) -> Result<(Status, u64)> {
+        let mut ahead = u64::MAX;
+        for _ in 0..12 {
+            let status = self.status()?;
+            ahead = ahead.min(self.count()?.saturating_sub(status.samples));
+            let wait = cycles(&mut self.board, 10) / 3;
+            self.board.inner().run(wait);
+        }
+        Ok((self.status()?, ahead))
+    }
+
+    fn row(&mut self, seconds: f64, commit: &str) -> Result<Row> {
+        let (status, ahead) = self.newest()?;
+        let number = status.samples + ahead;
+        let measured = self.measured.lock();
+        let time = measured.ok().and_then(|measured| measured.time(number));
+        let truth = self
+            .path
+            .attitude(time.context("the time of the last sample")?)?;
+        // What turns the true attitude to the firmware's, about the axes of the world.
+        let error = status.attitude.times(truth.inverse());
+        let [heading, ..] = error.angles();
+        let turned = (heading - self.heading).to_degrees();
+        Ok(Row {
+            path: self.path.name().to_owned(),
+            seconds,
+            heading: (turned + 180.0).rem_euclid(360.0) - 180.0,
+            inclination: status.attitude.inclination_to(truth),
+            basis: self.basis()?,
+            samples: status.samples,
+            lost: ahead.saturating_sub(self.ahead),
+            gaps: status.gaps,
+            commit: commit.to_owned(),
+        })
+    }
+
+    /// The largest error of a length or an angle of the camera's basis, while the sensor turns the camera.
+    fn basis(&mut self) -> Result<f64> {
+        command(&mut self.board, "imu look")?;
+        let wait = cycles(&mut self.board, 50);
+        self.board.inner().run(wait);
+        let [length, angle] = basis::errors(basis::of(&view(&mut self.board)?));
+        command(&mut self.board, "imu off")?;
+        Ok(length.max(angle))
+    }
+}

@@ -1,0 +1,437 @@
+//! The board beyond the ranges of its counters: commands while a counter wraps, pauses that are short in 32 bits, and counters of the
+//! engines.
+
+use anyhow::{Context, Result, ensure};
+use glint::board::Board;
+use glint::console::Console;
+use glint::gesture::{image_sensor, moving_hand};
+use glint::transfer::upload;
+use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
+use glint_vectors::Model;
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+use virtual_board::virtual_image_sensor::{Frame, Source as Pictures};
+use virtual_board::virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
+
+use crate::emulated::{Emulated, command, cycles, start, value, view};
+use crate::report::progress::bar;
+use crate::report::provenance::Provenance;
+
+/// What is asked of the board, and its answer: a line of `long-uptime.csv`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Row {
+    /// When it is asked.
+    pub when: String,
+    /// What is asked.
+    pub what: String,
+    /// The right answer.
+    pub expected: String,
+    /// The board's answer.
+    pub measured: String,
+    /// Commit with which the row was measured.
+    pub commit: String,
+}
+
+/// Commands whose replies do not change with the time, and the first words of the lines that count; all lines without such a word.
+const QUESTIONS: [(&str, &[&str]); 7] = [
+    ("echo still", &[]),
+    ("info", &["firmware_id", "scene", "size", "uart_lost"]),
+    (
+        "render",
+        &["triangles_in", "triangles_drawn", "pixels_drawn"],
+    ),
+    ("view", &[]),
+    ("imu", &["sensor", "failure", "saturated"]),
+    ("models", &[]),
+    ("selftest", &[]),
+];
+
+/// 2^32: the number of values of the counters' low words.
+const WRAP: u64 = 1 << 32;
+/// A pause in ms after which a hand is still tracked.
+const SHORT: u64 = 100;
+
+/// The board, and what was found.
+struct Bench {
+    board: Emulated,
+    rows: Vec<Row>,
+    commit: String,
+    /// Seconds of the board's time.
+    bar: ProgressBar,
+}
+
+/// Asks all questions; `quick` leaves out those that need more than 2^32 cycles a few times.
+///
+/// # Errors
+/// The firmware has not been built, or does not answer.
+pub fn measure(quick: bool) -> Result<Vec<Row>> {
+    let hours = if quick { 0 } else { 24 };
+    let seconds = if quick { 160 } else { hours * 3600 };
+    let mut bench = Bench {
+        board: start()?,
+        rows: Vec::new(),
+        commit: Provenance::find().commit,
+        bar: bar(seconds)?.with_message("uptime"),
+    };
+    bench.board.inner().plug(resting_sensor());
+    bench.run(1_000);
+    command(&mut bench.board, "scene cube")?;
+    let answers = bench.answers()?;
+    bench.across("camera after an orbit of 12 frames", 100, |board| {
+        let before = view(board)?;
+        command(board, "orbit 12")?;
+        let is_back = view(board)? == before;
+        Ok(if is_back {
+            "back at its start"
+        } else {
+            "elsewhere"
+        }
+        .to_owned())
+    })?;
+    bench.same_answers("after 2^32 cycles", &answers)?;
+    bench.across("samples of a calibration", 100, |board| {
+        value(board, "imu calibrate 256", "calibrated")
+    })?;
+    if !quick {
+        bench.across("stream of 200 samples", 100, stream)?;
+        bench.across("counts of an uploaded mesh", 20, upload_mesh)?;
+        bench.across("counts of a frame by the soft core", 5, |board| {
+            command(board, "backend cpu")?;
+            let lines = command(board, "render")?;
+            command(board, "backend gateware")?;
+            Ok(picked(lines, &["triangles_drawn", "pixels_drawn"]))
+        })?;
+        bench.sensor_is_off()?;
+        bench.engine_counters()?;
+        // Without a sensor, because the time of its transfers is most of the time on the host.
+        let wait = hours * 3_600_000 - bench.milliseconds();
+        bench.run(wait);
+        bench.board.inner().plug(resting_sensor());
+        bench.run(1_000);
+        bench.same_answers("after 24 h", &answers)?;
+        bench.clocks("after 24 h")?;
+        bench.hand()?;
+    }
+    bench.bar.finish_and_clear();
+    Ok(bench.rows)
+}
+
+impl Bench {
+    /// Time of the board in ms.
+    fn milliseconds(&mut self) -> u64 {
+        self.board.inner().cycles() / cycles(&mut self.board, 1)
+    }
+
+    fn run(&mut self, milliseconds: u64) {
+        let end = self.board.inner().cycles() + cycles(&mut self.board, milliseconds);
+        self.run_to(end);
+    }
+
+    fn run_to(&mut self, end: u64) {
+        let second = cycles(&mut self.board, 1_000);
+        while self.board.inner().cycles() < end {
+            let board = self.board.inner();
+            board.run(second.min(end - board.cycles()));
+            let now = self.milliseconds();
+            self.bar.set_position(now / 1_000);
+        }
+    }
+
+    fn note(&mut self, when: &str, what: &str, expected: String, measured: String) {
+        let [when, what] = [when, what].map(str::to_owned);
+        self.rows.push(Row {
+            when,
+            what,
+            expected,
+            measured,
+            commit: self.commit.clone(),
+        });
+    }
+
+    /// Does something now, and again so that the number of cycles passes a multiple of 2^32 meanwhile, `lead` ms after it has begun. The
+    /// answers must be equal.
+    fn across(
+        &mut self,
+        what: &str,
+        lead: u64,
+        ask: impl Fn(&mut Emulated) -> Result<String>,
+    ) -> Result<()> {
+        let expected = ask(&mut self.board)?;
+        let multiple = (self.board.inner().cycles() / WRAP + 1) * WRAP;
+        let lead = cycles(&mut self.board, lead);
+        self.run_to(multiple - lead);
+        let measured = ask(&mut self.board)?;
+        let end = self.board.inner().cycles();
+        ensure!(end > multiple, "{what} took less than {lead} cycles");
+        self.note("while 2^32 cycles pass", what, expected, measured);
+        Ok(())
+    }
+
+    /// The answers to the questions.
+    fn answers(&mut self) -> Result<Vec<String>> {
+        let ask = |(question, words): (&str, &[&str])| {
+            Ok(picked(command(&mut self.board, question)?, words))
+        };
+        QUESTIONS.into_iter().map(ask).collect()
+    }
+
+    fn same_answers(&mut self, when: &str, expected: &[String]) -> Result<()> {
+        let found = self.answers()?;
+        let names = QUESTIONS.map(|(question, _)| question);
+        let answers = expected.iter().zip(&found).zip(names);
+        let others = answers.filter(|((expected, found), _)| expected != found);
+        let others: Vec<_> = others
+            .map(|((expected, found), name)| format!("{name}: {found}, not {expected}"))
+            .collect();
+        let what = format!("replies to {}", names.join(", "));
+        let same = format!("the {} of the start", QUESTIONS.len());
+        let measured = if others.is_empty() {
+            same.clone()
+        } else {
+            others.join("; ")
+        };
+        self.note(when, &what, same, measured);
+        Ok(())
+    }
+
+    /// A hand in front of the image sensor, while the main loop is busy with an upload for 2^32 cycles and a little.
+    fn hand(&mut self) -> Result<()> {
+        let mut sensor = image_sensor(moving_hand([320, 240]));
+        let still = sensor.source.frame(0.0);
+        sensor.source = Box::new(Still(still));
+        // 20 frames a second, of few periods, which take time on the host.
+        sensor.timing.clock = 4_000_000;
+        sensor.timing.blank = [3, 20, 20];
+        self.board.inner().plug_image_sensor(sensor);
+        command(&mut self.board, "gesture on")?;
+        self.run(1_000);
+        let tracked: String = value(&mut self.board, "gesture", "hand")?;
+        ensure!(tracked == "tracked", "the hand is {tracked}");
+        let end = self.board.inner().cycles() + WRAP + cycles(&mut self.board, SHORT);
+        self.hold_transfer(end)?;
+        let found = value(&mut self.board, "gesture", "hand")?;
+        let what = "hand that was tracked before";
+        let when = "2^32 cycles and 0.1 s after the last frame";
+        self.note(when, what, "appearing".to_owned(), found);
+        command(&mut self.board, "gesture off")?;
+        Ok(())
+    }
+
+    /// Begins an upload, and keeps it open up to a cycle.
+    fn hold_transfer(&mut self, end: u64) -> Result<()> {
+        // Time from Ctrl-C to its effect.
+        let effect = cycles(&mut self.board, 60);
+        let mesh = cube();
+        let Manifest { length, crc32 } = Manifest::of(&mesh);
+        let line = format!("load {length} {crc32:08x}");
+        let board = &mut self.board;
+        let mut console = Console::new(board);
+        console.command_with_transfer(&line, &mut |_| {})?;
+        let now = board.now_ms();
+        let mut frame = [0; MAX_FRAME];
+        let length = Sender::new(&mesh, 1, Timing::HOST, now).poll(now, &mut frame);
+        let mut said = Vec::new();
+        loop {
+            // Each opening frame tells the board that the line is alive.
+            self.board.write(&frame[..length])?;
+            let left = (end - effect).saturating_sub(self.board.inner().cycles());
+            let span = cycles(&mut self.board, 800);
+            self.board.inner().run(left.min(span));
+            if left <= span {
+                break;
+            }
+        }
+        self.board.write(b"\x03")?;
+        self.run_to(end);
+        self.board.inner().uart_read(&mut said);
+        Ok(())
+    }
+
+    /// A sensor that turns is unplugged for 2^32 µs and a little, and then comes back; its samples then pass a multiple of 2^32 µs.
+    fn sensor_is_off(&mut self) -> Result<()> {
+        let attitude = |bench: &mut Self| value::<String>(&mut bench.board, "imu", "angles");
+        let gaps = |bench: &mut Self| value::<u64>(&mut bench.board, "imu", "gaps");
+        self.board.inner().plug(turning_sensor());
+        self.run(1_000);
+        let sensor = self.board.inner().unplug().context("a sensor")?;
+        self.run(100);
+        let (before, gaps_before) = (attitude(self)?, gaps(self)?);
+        let micros = |board: &mut Emulated, micros: u64| cycles(board, 1_000) * micros / 1_000_000;
+        let pause = micros(&mut self.board, WRAP) + cycles(&mut self.board, 100);
+        let end = self.board.inner().cycles() + pause;
+        self.run_to(end);
+        self.board.inner().plug(sensor);
+        while gaps(self)? == gaps_before && self.board.inner().cycles() < end + WRAP {
+            self.run(1);
+        }
+        let when = "2^32 µs and 0.2 s after the last sample";
+        let pauses = (gaps(self)? - gaps_before).to_string();
+        self.note(when, "gaps in the samples", "1".to_owned(), pauses);
+        let turned = attitude(self)?;
+        let what = "yaw of a sensor that turns at 100 °/s, in °";
+        let yaw = |angles: &str| -> Result<f64> {
+            Ok(angles.split(' ').next().context("angles")?.parse()?)
+        };
+        // The samples since the gap turn it by a few tenths.
+        let moved = (yaw(&turned)? - yaw(&before)? + 180.0).rem_euclid(360.0) - 180.0;
+        let is_kept = moved.abs() < 1.0;
+        let kept = "within 1 of that before the pause".to_owned();
+        let measured = if is_kept { kept.clone() } else { turned };
+        self.note(when, what, kept, measured);
+
+        self.board.inner().unplug();
+        let period = micros(&mut self.board, WRAP);
+        let next = (self.board.inner().cycles() / period + 1) * period;
+        let lead = cycles(&mut self.board, 100);
+        self.run_to(next - 10 * lead);
+        self.board.inner().plug(resting_sensor());
+        self.run_to(next - lead);
+        let measured = stream(&mut self.board)?;
+        let when = "while 2^32 µs pass";
+        self.note(when, "stream of 200 samples", STREAM.to_owned(), measured);
+        self.board.inner().unplug();
+        Ok(())
+    }
+
+    /// Frames of a field until the engines have been busy for 2^32 cycles.
+    fn engine_counters(&mut self) -> Result<()> {
+        const WORDS: [&str; 5] = [
+            "evaluations",
+            "hits",
+            "misses",
+            "cycles_busy",
+            "pixels_drawn",
+        ];
+        command(&mut self.board, "field menger:4")?;
+        let ask = |board: &mut Emulated| {
+            Ok::<_, anyhow::Error>(picked(command(board, "render")?, &WORDS))
+        };
+        let expected = ask(&mut self.board)?;
+        let busy: u64 = value(&mut self.board, "stats", "cycles_busy")?;
+        let frames = WRAP / busy + 2;
+        let mut others = Vec::new();
+        for _ in 0..frames {
+            let found = ask(&mut self.board)?;
+            if found != expected {
+                others.push(found);
+            }
+            let now = self.milliseconds();
+            self.bar.set_position(now / 1_000);
+        }
+        let measured = others.pop().unwrap_or_else(|| expected.clone());
+        let when = format!("in {frames} frames, {busy} cycles of the engines each");
+        self.note(&when, "statistics of each frame", expected, measured);
+        command(&mut self.board, "scene cube")?;
+        Ok(())
+    }
+
+    /// The clocks that the firmware shows, against those of the emulated board.
+    fn clocks(&mut self, when: &str) -> Result<()> {
+        let shown: u64 = value(&mut self.board, "info uptime_ms", "uptime_ms")?;
+        let exact = self.milliseconds();
+        let what = "uptime_ms";
+        let near = |shown: u64| {
+            if exact.abs_diff(shown) <= 1 {
+                exact
+            } else {
+                shown
+            }
+        };
+        self.note(when, what, exact.to_string(), near(shown).to_string());
+        let blankings = self.board.inner().blankings() & u64::from(u32::MAX);
+        let shown: u64 = value(&mut self.board, "info video_frames", "video_frames")?;
+        let near = if blankings.abs_diff(shown) <= 1 {
+            blankings
+        } else {
+            shown
+        };
+        self.note(
+            when,
+            "video_frames",
+            blankings.to_string(),
+            near.to_string(),
+        );
+        Ok(())
+    }
+}
+
+/// The lines of a reply whose first word is one of `words`, or all lines without words.
+fn picked(lines: Vec<String>, words: &[&str]) -> String {
+    let counts = |line: &String| {
+        let word = line.split(' ').next().unwrap_or_default();
+        words.is_empty() || words.contains(&word)
+    };
+    lines
+        .into_iter()
+        .filter(counts)
+        .collect::<Vec<_>>()
+        .join("; ")
+}
+
+const STREAM: &str = "200 samples, each at most 1.2 ms after the one before";
+
+/// Streams samples, and states whether their times grow by a sample's period each.
+fn stream(board: &mut Emulated) -> Result<String> {
+    const COMMAND: &str = "imu stream 200";
+    let lines = command(board, COMMAND)?;
+    let time = |line: &String| line.split(',').next()?.parse::<u64>().ok();
+    let times: Vec<u64> = lines.iter().filter_map(time).collect();
+    let steps = times.windows(2).map(|pair| pair[1].wrapping_sub(pair[0]));
+    let is_even = steps.clone().all(|step| (800..=1_200).contains(&step));
+    Ok(match (is_even, times.len()) {
+        (true, 200) => STREAM.to_owned(),
+        (_, count) => format!("{count} samples, {:?} µs apart", steps.max()),
+    })
+}
+
+/// Uploads a mesh, and states what the board has then.
+fn upload_mesh(board: &mut Emulated) -> Result<String> {
+    let (mesh, _) = glint::convert::convert(
+        &glint::generate::named("icosphere:5")?,
+        glint::convert::Options::default(),
+    )?;
+    let send = |board: &mut Emulated, mesh: &[u8]| -> Result<Vec<String>> {
+        upload(&mut Console::new(board), mesh, None, 1, &mut |_, _| {})?;
+        let lines = command(board, "info")?;
+        command(board, "unload model")?;
+        Ok(lines)
+    };
+    let lines = send(board, &mesh)?;
+    // Another mesh in its place: what the memory already holds is not sent again.
+    send(board, &cube())?;
+    command(board, "scene cube")?;
+    Ok(picked(lines, &["vertices", "triangles"]))
+}
+
+fn cube() -> Vec<u8> {
+    Model::cube(8_192).encoded()
+}
+
+/// An image sensor that sees one picture.
+struct Still(Frame);
+
+impl Pictures for Still {
+    fn frame(&mut self, _: f64) -> Frame {
+        self.0.clone()
+    }
+}
+
+fn resting_sensor() -> Wires {
+    sensor(|_| State::default())
+}
+
+fn turning_sensor() -> Wires {
+    sensor(|_| State {
+        rate: [0.0, 0.0, 100.0],
+        ..State::default()
+    })
+}
+
+fn sensor(state: impl Fn(f64) -> State + Send + 'static) -> Wires {
+    let imperfections = Imperfections {
+        noise: 0.005,
+        accel_noise: 0.0004,
+        ..Imperfections::NONE
+    };
+    Wires::new(Chip::new(Source::Motion(Box::new(state)), imperfections, 1))
+}
