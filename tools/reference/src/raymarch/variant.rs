@@ -25,7 +25,7 @@ impl Norm {
 }
 
 /// Number of steps after which the threshold grows.
-const GROWTH_STEPS: u32 = 64;
+pub const GROWTH_STEPS: u32 = 64;
 
 /// A method to march rays to the Menger sponge.
 #[derive(Clone, Copy, Debug, PartialEq)]
