@@ -76,103 +76,69 @@ impl Case {
     }
 }
 
+/// The sponge for two eyes.
+const STEREO_SPONGE: Case = Case {
+    field: "menger:4",
+    stereo: Some("0.03,1.5"),
+    prepass: false,
+    size: (320, 180),
+    build: FIELDS,
+    cameras: of_the_sponge,
+    path: views::path,
+    clock: 0,
+    at_least: 60.0,
+    aim: Some(120.0),
+};
+
+/// The sponge over the whole screen, with a prepass.
+const LARGE_SPONGE: Case = Case {
+    stereo: None,
+    prepass: true,
+    size: (1280, 720),
+    build: SPONGE,
+    path: still,
+    at_least: 30.0,
+    aim: Some(60.0),
+    ..STEREO_SPONGE
+};
+
+/// The lattice for two eyes.
+const LATTICE: Case = Case {
+    field: "lattice:1,0.3",
+    cameras: of_the_lattice,
+    path: still,
+    at_least: 57.0,
+    aim: None,
+    ..STEREO_SPONGE
+};
+
 /// All measured cases, in the order of the page.
 pub const CASES: [Case; 8] = [
+    STEREO_SPONGE,
     Case {
-        field: "menger:4",
-        stereo: Some("0.03,1.5"),
-        prepass: false,
-        size: (320, 180),
-        build: FIELDS,
-        cameras: of_the_sponge,
-        path: views::path,
-        clock: 0,
-        at_least: 60.0,
-        aim: Some(120.0),
-    },
-    Case {
-        field: "menger:4",
-        stereo: Some("0.03,1.5"),
         prepass: true,
-        size: (320, 180),
-        build: FIELDS,
-        cameras: of_the_sponge,
-        path: views::path,
-        clock: 0,
-        at_least: 60.0,
-        aim: Some(120.0),
+        ..STEREO_SPONGE
     },
     Case {
-        field: "menger:4",
-        stereo: None,
         prepass: false,
-        size: (1280, 720),
-        build: SPONGE,
-        cameras: of_the_sponge,
-        path: still,
         clock: 1,
-        at_least: 30.0,
         aim: None,
+        ..LARGE_SPONGE
     },
+    LARGE_SPONGE,
     Case {
-        field: "menger:4",
-        stereo: None,
-        prepass: true,
-        size: (1280, 720),
-        build: SPONGE,
-        cameras: of_the_sponge,
-        path: still,
-        clock: 0,
-        at_least: 30.0,
-        aim: Some(60.0),
-    },
-    Case {
-        field: "menger:4",
-        stereo: None,
-        prepass: true,
-        size: (1280, 720),
         build: FIELDS,
-        cameras: of_the_sponge,
-        path: still,
-        clock: 0,
-        at_least: 30.0,
-        aim: Some(60.0),
+        ..LARGE_SPONGE
     },
+    LATTICE,
     Case {
-        field: "lattice:1,0.3",
-        stereo: Some("0.03,1.5"),
-        prepass: false,
-        size: (320, 180),
-        build: FIELDS,
-        cameras: of_the_lattice,
-        path: still,
-        clock: 0,
-        at_least: 57.0,
-        aim: None,
-    },
-    Case {
-        field: "lattice:1,0.3",
-        stereo: Some("0.03,1.5"),
-        prepass: false,
-        size: (320, 180),
         build: SPHERES,
-        cameras: of_the_lattice,
-        path: still,
-        clock: 0,
-        at_least: 57.0,
-        aim: None,
+        ..LATTICE
     },
     Case {
-        field: "lattice:1,0.3",
-        stereo: Some("0.03,1.5"),
         prepass: true,
-        size: (320, 180),
-        build: FIELDS,
-        cameras: of_the_lattice,
-        path: still,
-        clock: 0,
         at_least: 60.0,
-        aim: None,
+        ..LATTICE
     },
 ];
 
