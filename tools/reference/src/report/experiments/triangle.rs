@@ -44,7 +44,7 @@ struct Case {
 /// 96 % of the picture's height.
 const FILLING: f64 = 0.4781;
 
-const CASES: [Case; 9] = [
+static CASES: [Case; 9] = [
     Case {
         name: "one triangle over the whole screen",
         mesh: screen,
@@ -234,7 +234,7 @@ pub struct CpuRow {
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
 pub fn measure(only: Option<&str>) -> Result<Vec<Row>> {
-    measure_cases(only, Backend::Gateware, measure_engine)
+    measure_cases(only, CASES.iter(), Backend::Gateware, measure_engine)
 }
 
 /// Name of the model whose frames the soft core does not draw for the report, because the virtual board simulates each for minutes.
@@ -245,7 +245,9 @@ const FOR_THE_ENGINE_ALONE: &str = "scan:59";
 /// # Errors
 /// When the board is not built, or a frame differs from the model's.
 pub fn measure_cpu(only: Option<&str>) -> Result<Vec<CpuRow>> {
-    measure_cases(only, Backend::Cpu, |case, shown| {
+    let cases = CASES.iter();
+    let cases = cases.filter(|case| !case.name.starts_with(FOR_THE_ENGINE_ALONE));
+    measure_cases(only, cases, Backend::Cpu, |case, shown| {
         Ok(CpuRow {
             scene: case.name.to_owned(),
             cycles: shown.stats.cycles.context("no cycles")?,
@@ -264,17 +266,16 @@ struct Shown<'r, 'b> {
     expected: Stats,
 }
 
-/// Starts a virtual board for each of the scenes whose name contains `only`, shows the scene by `backend`, and measures it.
+/// Starts a virtual board for each of `cases` whose name contains `only`, shows the scene by `backend`, and measures it.
 fn measure_cases<R: Send>(
     only: Option<&str>,
+    cases: impl Iterator<Item = &'static Case>,
     backend: Backend,
     measure: impl Fn(&Case, &mut Shown) -> Result<R> + Sync,
 ) -> Result<Vec<R>> {
     let firmware = built_firmware(None)?;
-    let cases = CASES.iter();
     let cases: Vec<_> = cases
         .filter(|case| only.is_none_or(|text| case.name.contains(text)))
-        .filter(|case| backend != Backend::Cpu || !case.name.starts_with(FOR_THE_ENGINE_ALONE))
         .collect();
     soc::two_at_a_time(&cases, |case| {
         eprintln!(
