@@ -41,8 +41,8 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
 }
 
 /// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoCs whose raymarchers evaluate the sponge
-/// or spheres four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC with smooth
-/// shading.
+/// or spheres four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC
+/// with smooth shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {

@@ -36,7 +36,7 @@ const MINUTES: [f64; 9] = [1.0 / 6.0, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0
 pub enum Path {
     /// At rest.
     Rest,
-    /// Turning about an axis that is none of the sensor's.
+    /// Turning at 30 °/s about an oblique axis.
     Turning,
 }
 
@@ -120,7 +120,7 @@ impl Measured {
     }
 }
 
-/// The board, its sensor, and what is known about their samples.
+/// The board with its sensor, and the times and numbers of the samples.
 struct Bench {
     path: Path,
     board: Emulated,

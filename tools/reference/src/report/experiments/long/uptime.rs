@@ -17,16 +17,16 @@ use crate::emulated::{Emulated, command, cycles, start, value, view};
 use crate::report::progress::bar;
 use crate::report::provenance::Provenance;
 
-/// What is asked of the board, and its answer: a line of `long-uptime.csv`.
+/// A question to the board, with the expected and the measured answer: a line of `long-uptime.csv`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
-    /// When it is asked.
+    /// Time of the question.
     pub when: String,
-    /// What is asked.
+    /// The question.
     pub what: String,
-    /// The right answer.
+    /// The expected answer.
     pub expected: String,
-    /// The board's answer.
+    /// The measured answer.
     pub measured: String,
     /// Commit with which the row was measured.
     pub commit: String,
