@@ -1,19 +1,23 @@
 //! Tests of the report. They check that a quick run writes its files, that the committed tables agree with today's code (as far
 //! as this is cheap to check), and that the committed pages are those that are made from the committed tables.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use glint::render;
+use glint::render::{self, FieldSubject, Frame, Subject};
 use glint::scene::{self, Changes};
+use glint_core::appearance::Appearance;
 use glint_core::field::Field;
+use glint_core::picture::Size;
+use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_model::raymarch::{FieldOptions, FieldSetup};
+use glint_model::raymarch::FieldOptions;
 use glint_reference::imu::measure::method_error;
 use glint_reference::imu::method::Method;
 use glint_reference::imu::motion::Motion;
-use glint_reference::raymarch::raymarched::{Measured, others, picture, rounds, sponges};
+use glint_reference::raymarch::raymarched::{Measured, others, rounds, sponges};
 use glint_reference::raymarch::verilated::Raymarcher;
 use glint_reference::raymarch::views;
 use glint_reference::report::cycles::Cycles;
@@ -101,6 +105,38 @@ fn assert_close(committed: f64, now: f64, tolerance: f64, what: &str) {
         (committed - now).abs() <= tolerance * now,
         "{what} is {committed:e} in the table and {now:e} now: measure the page again with `cargo xtask report`"
     );
+}
+
+/// The output of git in the checkout, or `None` if it fails.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git")
+        .args(arguments)
+        .current_dir(workspace::path(""))
+        .output();
+    let output = output.ok().filter(|output| output.status.success())?;
+    Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())
+}
+
+#[test]
+fn the_committed_tables_name_commits_of_the_history() {
+    if git(&["rev-parse", "--is-shallow-repository"]).is_none_or(|shallow| shallow != "false") {
+        return println!("the checkout has no whole history");
+    }
+    for file in fs::read_dir(workspace::path("docs/report")).expect("docs/report is there") {
+        let path = file.expect("an entry").path();
+        if path.extension().is_none_or(|extension| extension != "csv") {
+            continue;
+        }
+        let rows: Vec<BTreeMap<String, String>> = read_csv(&path).expect("a committed table");
+        let commits = rows.iter().filter_map(|row| row.get("commit"));
+        for commit in commits.collect::<BTreeSet<_>>() {
+            assert!(
+                git(&["merge-base", "--is-ancestor", commit, "HEAD"]).is_some(),
+                "{}: {commit} is no commit of the history: measure the table again",
+                path.display()
+            );
+        }
+    }
 }
 
 #[test]
@@ -290,23 +326,32 @@ fn the_committed_frames_a_second_are_of_these_frames() {
             .view()
             .expect("a camera");
         let field = Field::parse(&row.field).expect("a field");
-        let stereo = row.stereo.as_deref();
-        let options = FieldOptions {
-            stereo: stereo.map(|eyes| Stereo::parse(eyes).expect("two eyes")),
-            ..FieldOptions::default()
+        let subject = FieldSubject {
+            field: &field,
+            appearance: &Appearance::default(),
+            quality: Quality::default(),
+            prepass: row.prepass,
         };
-        let setup = FieldSetup::new(&field, &view, (320, 180), &options).expect("a size");
-        let eyes = if stereo.is_some() { 2 } else { 1 };
-        let rays = (0..eyes).flat_map(|eye| picture(&setup, eye));
-        let evaluations: u64 = rays.map(|ray| u64::from(ray.steps)).sum();
+        let size = Size::of(row.width, row.height).expect("a size");
+        let stereo = row.stereo.as_deref();
+        let frame = Frame {
+            stereo: stereo.map(|eyes| Stereo::parse(eyes).expect("two eyes")),
+            ..Frame::new(Subject::Field(subject), view, size)
+        };
+        let drawn = render::on_model(&frame).expect("a picture");
+        let evaluations = drawn.stats.rays.map(|rays| rays.evaluations);
         assert_eq!(
-            evaluations, row.evaluations,
+            evaluations,
+            Some(row.evaluations),
             "{} turned by {}, {}, {}: evaluations now and in the table: run `cargo xtask report raymarch`",
-            row.view, row.yaw, row.pitch, row.roll
+            row.view,
+            row.yaw,
+            row.pitch,
+            row.roll
         );
         counted += 1;
     }
-    assert_eq!(counted, 4 * views::path().len());
+    assert_eq!(counted, 2 * 4 * views::path().len());
 }
 
 /// Draws the views of the sponge again with Glint's configuration on the verilated raymarcher, and compares the cycles with the
