@@ -138,6 +138,10 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     let committed = paths::root().join("docs/report");
     for file in fs::read_dir(&pages).with_context(|| format!("reading {}", pages.display()))? {
         let file = file?;
+        // Snakemake leaves a file with a timestamp in the folder.
+        if file.file_name().as_encoded_bytes().starts_with(b".") {
+            continue;
+        }
         fs::copy(file.path(), committed.join(file.file_name()))
             .with_context(|| format!("copying {}", file.path().display()))?;
     }
