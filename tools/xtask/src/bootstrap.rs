@@ -8,7 +8,11 @@ use anyhow::{Context, Result, bail};
 use crate::{firmware, paths, run};
 
 /// Debian packages and their purposes.
-const PACKAGES: [(&str, &str); 5] = [
+const PACKAGES: [(&str, &str); 6] = [
+    (
+        "ccache",
+        "keeps the objects of the C library for the BIOS of the next board",
+    ),
     ("chromium", "opens the live page in tests"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     ("g++", "compiles the verilated SoC"),

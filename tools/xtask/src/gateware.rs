@@ -198,6 +198,11 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
+            // LiteX compiles the C library for each BIOS anew: the same commands on the same sources, in another folder.
+            .env("CCACHE", "ccache")
+            .env("CCACHE_DIR", paths::target().join("ccache"))
+            .env("CCACHE_BASEDIR", paths::target())
+            .env("CCACHE_NOHASHDIR", "1")
             .env("PYTHONPATH", gateware)
             .env("PYTHONDONTWRITEBYTECODE", "1"),
     )
