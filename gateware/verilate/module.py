@@ -29,7 +29,7 @@ def build(top, sources, name, parameters):
     parts = [*sorted(folder.glob("Vmodel*.cpp")), compiler.HARNESS / "module.cpp"]
     whole = folder / "whole.cpp"
     whole.write_text("".join(f'#include "{path}"\n' for path in parts))
-    run(["g++", *options, "-c", whole, "-o", folder / "whole.o"])
+    run([compiler.COMPILER, *options, "-c", whole, "-o", folder / "whole.o"])
     runtime = compiler.runtime(MODELS / "runtime", ["-std=gnu++20", "-fPIC", "-fvisibility=hidden", "-pthread", "-w", _OPTIMISE])
     compiler.link([folder / "whole.o", *runtime], folder / "built.so", library)
     stamp.write_text(inputs)

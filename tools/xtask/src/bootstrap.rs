@@ -8,14 +8,19 @@ use anyhow::{Context, Result, bail};
 use crate::{firmware, paths, run};
 
 /// Debian packages and their purposes.
-const PACKAGES: [(&str, &str); 6] = [
+const PACKAGES: [(&str, &str); 8] = [
     (
         "ccache",
         "keeps the objects of the C library for the BIOS of the next board",
     ),
     ("chromium", "opens the live page in tests"),
+    ("clang", "compiles the verilated SoC"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
-    ("g++", "compiles the verilated SoC"),
+    (
+        "libclang-rt-dev",
+        "counts the branches that the verilated SoC takes",
+    ),
+    ("llvm", "prepares these counts for the compiler"),
     ("make", "builds the LiteX BIOS"),
     ("python3-venv", "holds the Python packages"),
 ];
@@ -87,6 +92,11 @@ fn is_present(package: &str) -> bool {
         "gcc-riscv64-unknown-elf" => {
             run::succeeds(Command::new("riscv64-unknown-elf-gcc").arg("--version"))
         }
+        "libclang-rt-dev" => {
+            let program = "echo 'int main() { return 0; }' | clang++ -fprofile-generate -x c++ -o /dev/null -";
+            run::succeeds(Command::new("sh").args(["-c", program]))
+        }
+        "llvm" => run::succeeds(Command::new("llvm-profdata").arg("--version")),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
         program => run::succeeds(Command::new(program).arg("--version")),
     }
