@@ -42,13 +42,26 @@ const REQUIREMENTS: [&str; 2] = [
 /// # Errors
 /// Lists each prerequisite that is still missing, and the command that installs it.
 pub fn bootstrap() -> Result<()> {
-    let missing: Vec<String> = [debian_packages(), rust_targets(), python_environment()]
+    all([debian_packages(), rust_targets(), python_environment()])
+}
+
+/// Installs what a build of the Rust crates needs: as [`bootstrap`], without the Python environment.
+///
+/// # Errors
+/// As [`bootstrap`].
+pub fn programs() -> Result<()> {
+    all([debian_packages(), rust_targets()])
+}
+
+/// Joins the errors of prerequisites that are still missing.
+fn all<const COUNT: usize>(outcomes: [Result<()>; COUNT]) -> Result<()> {
+    let missing: Vec<String> = outcomes
         .into_iter()
         .filter_map(Result::err)
-        .map(|error| format!("{error:#}"))
+        .map(|error| format!("- {error:#}"))
         .collect();
     if !missing.is_empty() {
-        bail!("the setup is incomplete:\n- {}", missing.join("\n- "));
+        bail!("the setup is incomplete:\n{}", missing.join("\n"));
     }
     Ok(())
 }
@@ -133,7 +146,11 @@ pub fn rust_targets() -> Result<()> {
     })
 }
 
-fn python_environment() -> Result<()> {
+/// Makes the Python environment, with Debian's package for it.
+///
+/// # Errors
+/// Python is missing or too old, or its packages cannot be installed.
+pub fn python_environment() -> Result<()> {
     let supported = "import sys; sys.exit(sys.version_info < (3, 11))";
     if !run::succeeds(Command::new("python3").args(["-c", supported])) {
         bail!("python3: expected version 3.11 or later (Debian 12 has it)");

@@ -14,22 +14,23 @@ use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, wa
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
-/// The gateware's builds and checks run beside those of cargo, because most of them keep one core busy. The Rust tests wait for the
-/// gateware tests, which build the verilated models that the Rust tests use.
+/// The Python packages and the gateware's builds and checks run beside those of cargo, because most of them keep one core busy. The
+/// Rust tests wait for the gateware tests, which build the verilated models that the Rust tests use.
 ///
 /// # Errors
 /// A build or a check fails; the error names the checks.
 pub fn test() -> Result<()> {
     let start = Instant::now();
-    bootstrap::bootstrap()?;
+    bootstrap::programs()?;
 
     let results = CheckResults::default();
     let (gateware_is_built, gateware_builds) = mpsc::channel();
     let (models_are_built, models) = mpsc::channel();
     thread::scope(|scope| -> Result<()> {
         scope.spawn(|| {
-            let built =
-                gateware::build(Board::Virtual).and_then(|()| gateware::build(Board::Urbana));
+            let built = bootstrap::python_environment()
+                .and_then(|()| gateware::build(Board::Virtual))
+                .and_then(|()| gateware::build(Board::Urbana));
             let is_built = built.is_ok();
             // Errors of sending are ignored: the receiver is gone only if another build has failed.
             let _ = gateware_is_built.send(built);
