@@ -318,7 +318,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
 
 #[test]
 fn the_soc_draws_at_320x180() {
-    draw(Size::W320, scenes(true));
+    draw(Size::W320, third(0));
 }
 
 /// Returns the sphere, of which several views are drawn, and every third of the other scenes, from number `first` on. The test of the
