@@ -215,7 +215,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
 pub enum Library {
     /// For speed, with a profile of its branches.
     Profiled,
-    /// Once, with little optimisation: a third of the compile time, for a board that runs a few frames.
+    /// Once, with little optimisation and no profile: a shorter build, for a board that runs a few frames.
     Quick,
     /// Able to write waveforms.
     Waveforms,
