@@ -40,17 +40,18 @@ impl<'a> View<'a> {
     }
 }
 
-/// Makes a row of a table: field, number of eyes, size and prepass of a case, followed by `cells`.
+/// Makes a row of a table: field, number of eyes, size, prepass and lanes of a case, followed by `cells`.
 fn row<const CELLS: usize, const COLUMNS: usize>(
     case: &Case,
     cells: [String; CELLS],
 ) -> [String; COLUMNS] {
-    const { assert!(COLUMNS == 4 + CELLS) };
+    const { assert!(COLUMNS == 5 + CELLS) };
     let case = [
         case.field.to_owned(),
         case.eyes().to_string(),
         format!("{}×{}", case.size.0, case.size.1),
         if case.prepass { "yes" } else { "" }.to_owned(),
+        case.build.lanes.to_string(),
     ];
     let mut all = case.into_iter().chain(cells);
     std::array::from_fn(|_| all.next().expect("as many cells as columns"))
@@ -78,7 +79,6 @@ pub fn requirements(rows: &[Row]) -> String {
         let rate = slowest.map(|cycles| clock / cycles);
         let measured = rate.map(|rate| format!("{rate:.2} frames a second at {} MHz", clock / 1e6));
         let cells = [
-            case.build.lanes.to_string(),
             bold(
                 measured.unwrap_or_else(|| "not measured".to_owned()),
                 rate.is_some_and(|rate| rate < case.at_least),
@@ -98,6 +98,7 @@ pub fn views(rows: &[Row]) -> String {
         "eyes",
         "size",
         "prepass",
+        "lanes",
         "view",
         "poses",
         "cycles, frame alone: mean, slowest",
