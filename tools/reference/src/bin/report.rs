@@ -466,14 +466,16 @@ fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
     write_csv(&imu::soft_core::kernels(&cycles)?, &file("imu-cycles.csv"))?;
     write_csv(&[replay], &file("imu-replay.csv"))?;
     eprintln!("targets …");
-    let targets = imu::targets::measure(part);
+    let count = imu::targets::one_count(part);
+    let targets = imu::targets::measure(part, count);
     write_csv(&targets, &file("imu.csv"))?;
     eprintln!("methods …");
     write_csv(&imu::methods::measure(&cycles), &file("imu-methods.csv"))?;
     eprintln!("filters …");
     write_csv(&imu::filters::measure(part), &file("imu-filters.csv"))?;
     eprintln!("stiff cases …");
-    write_csv(&imu::stiff::measure(part, !quick), &file("imu-stiff.csv"))?;
+    let stiff = imu::stiff::measure(part, (!quick).then_some(count));
+    write_csv(&stiff, &file("imu-stiff.csv"))?;
     eprintln!("error over time …");
     write_csv(&imu::time::measure(190.0 * part), &file("imu-time.csv"))?;
     output.print(&targets, pages::imu::table)?;

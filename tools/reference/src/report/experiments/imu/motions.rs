@@ -13,3 +13,6 @@ pub const CONING: Motion = Motion::Coning {
 pub const SPIN: Motion = Motion::Spin([0.0, 0.0, 1990.0]);
 /// Constant rotation at a rate of one count of the gyroscope.
 pub const COUNT: Motion = Motion::Spin([1.0 / 16.4, 0.0, 0.0]);
+
+/// A day in seconds.
+pub const DAY: f64 = 86_400.0;

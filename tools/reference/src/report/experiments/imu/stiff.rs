@@ -4,8 +4,8 @@ use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
 use serde::{Deserialize, Serialize};
 
-use super::motions::{COUNT, SPIN, TUMBLE};
-use crate::imu::measure::{against_f64, tracker};
+use super::motions::{DAY, SPIN, TUMBLE};
+use crate::imu::measure::{Largest, against_f64, tracker};
 use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::imu::sensor::Sensor;
@@ -23,17 +23,18 @@ pub struct StiffCase {
     pub outcome: String,
 }
 
-/// Measures all cases. `part` is the fraction of the full duration of long cases, and `day` adds the cases of 24 hours.
-pub fn measure(part: f64, day: bool) -> Vec<StiffCase> {
+/// Measures all cases. `part` is the fraction of the full duration of long cases. Cases of a whole day need `count`, the errors after a
+/// day's rotation at one count of the gyroscope.
+pub fn measure(part: f64, count: Option<Largest>) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
     rows.push(rest_cycle());
     rows.extend(uneven());
     rows.push(saturation());
     rows.extend(squares());
-    if day {
-        for (name, motion) in [("1 count", COUNT), ("1990 °/s", SPIN)] {
-            let largest = against_f64(Sensor::ideal(1000.0), motion, 86_400.0, false);
+    if let Some(count) = count {
+        let spin = against_f64(Sensor::ideal(1000.0), SPIN, DAY, false);
+        for (name, largest) in [("1 count", count), ("1990 °/s", spin)] {
             rows.push(StiffCase {
                 case: format!("{name} about one axis, 24 h at 1 kHz"),
                 other: String::new(),
