@@ -14,15 +14,20 @@ const KERNELS: &[&str] = &[
     "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
-/// Number of frames that the gateware draws back to back for a measurement.
+/// Number of frames that the gateware draws back to back for a measurement, unless the command has another.
 const FRAMES: u32 = 8;
 
-/// Measures the kernel with the name `kernel` and prints its cycles. Without a name, measures sine and cosine, and the
-/// drawing of frames if the SoC has a triangle engine.
+/// Measures a kernel, by its name and the number of frames that it draws if it draws some, and prints its cycles. Without a kernel,
+/// measures sine and cosine, and the drawing of frames if the SoC has a triangle engine.
 ///
 /// # Errors
 /// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene.
-pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), CommandError<'l>> {
+pub fn run<'l>(
+    machine: &mut Machine,
+    benchmark: Option<(&'l str, Option<u32>)>,
+) -> Result<(), CommandError<'l>> {
+    let (kernel, count) = benchmark.unzip();
+    let count = count.flatten().unwrap_or(FRAMES);
     let has_engine = machine.renderer.gateware.is_some();
     let mut print = |name: &str, cycles: Cycles| {
         let Cycles { min, median, max } = cycles;
@@ -34,7 +39,7 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
         None => {
             bench::sine(&mut print);
             if has_engine {
-                frames(machine)?;
+                frames(machine, count)?;
             }
         }
         Some("sine") => bench::sine(&mut print),
@@ -52,7 +57,7 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
             return Err(CommandError::FieldShown);
         }
         Some("field") if machine.scene.field().is_none() => return Err(CommandError::NoField),
-        Some("triangle" | "field") => frames(machine)?,
+        Some("triangle" | "field") => frames(machine, count)?,
         Some(name) => {
             return Err(CommandError::Kernel {
                 name,
@@ -63,9 +68,9 @@ pub fn run<'l>(machine: &mut Machine, kernel: Option<&'l str>) -> Result<(), Com
     Ok(())
 }
 
-/// Measures the drawing of `FRAMES` frames of the present scene, back to back: the geometry pass of a frame runs during
+/// Measures the drawing of `count` frames of the present scene, back to back: the geometry pass of a frame runs during
 /// the raster pass of the frame before. The frames are not shown.
-fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
+fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>> {
     let Machine {
         terminal,
         scene,
@@ -78,7 +83,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
     }
     // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
     let rendered = loop {
-        if let Some(rendered) = renderer.repeat(models, scene, FRAMES) {
+        if let Some(rendered) = renderer.repeat(models, scene, count) {
             break rendered.map_err(CommandError::Engine)?;
         }
     };
@@ -89,7 +94,7 @@ fn frames<'l>(machine: &mut Machine) -> Result<(), CommandError<'l>> {
         (None, None) => "triangle",
     };
     terminal.print(format_args!(
-        "bench {kernel} frames {FRAMES} cycles {} soft_core {}",
+        "bench {kernel} frames {count} cycles {} soft_core {}",
         rendered.cycles,
         rendered.cycles - rendered.waited
     ));

@@ -125,8 +125,8 @@ impl<'l> FrameCommands<'l> for Machine {
         Ok(Reply::Done)
     }
 
-    fn bench(&mut self, kernel: Option<&'l str>) -> Outcome<'l> {
-        bench::run(self, kernel)?;
+    fn bench(&mut self, benchmark: Option<(&'l str, Option<u32>)>) -> Outcome<'l> {
+        bench::run(self, benchmark)?;
         Ok(Reply::Done)
     }
 }

@@ -8,8 +8,8 @@ use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
 use super::table::{commands, part};
 use super::values::{
-    DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName, Mounting, Name,
-    Sensitivity, Size, Upload, View, Whole,
+    Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
+    Mounting, Name, Sensitivity, Size, Upload, View, Whole,
 };
 use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
@@ -114,7 +114,7 @@ commands! {
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";
-        bench Bench(kernel: Option<Name>) in BENCH: "measure all kernels in clock cycles, or one";
+        bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure all kernels in clock cycles, or one; triangle and field draw FRAMES frames (default 8)";
     }
 }
 

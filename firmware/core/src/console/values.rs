@@ -117,33 +117,33 @@ impl WordArgument for HalfTurn {
     }
 }
 
-/// A whole number from 0 to `MAX`, decimal, or hexadecimal with `0x`.
-pub struct Whole<const MAX: u32>;
+/// A whole number from `MIN` to `MAX`, decimal, or hexadecimal with `0x`.
+pub struct Whole<const MAX: u32, const MIN: u32 = 0>;
 
-impl<const MAX: u32> WordArgument for Whole<MAX> {
+impl<const MAX: u32, const MIN: u32> WordArgument for Whole<MAX, MIN> {
     type Value<'a> = u32;
-    const KIND: Kind = Kind::Text(&UpTo(MAX));
+    const KIND: Kind = Kind::Text(&Between(MIN, MAX));
 
     fn parse(text: &str) -> Option<u32> {
-        whole(text).filter(|&number| number <= MAX)
+        whole(text).filter(|number| (MIN..=MAX).contains(number))
     }
 }
 
 /// A whole number from 0 to 65535.
 impl WordArgument for u16 {
     type Value<'a> = Self;
-    const KIND: Kind = Kind::Text(&UpTo(Self::MAX as u32));
+    const KIND: Kind = Kind::Text(&Between(0, Self::MAX as u32));
 
     fn parse(text: &str) -> Option<Self> {
         whole(text)?.try_into().ok()
     }
 }
 
-struct UpTo(u32);
+struct Between(u32, u32);
 
-impl Display for UpTo {
+impl Display for Between {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        write!(f, "a whole number from 0 to {}", self.0)
+        write!(f, "a whole number from {} to {}", self.0, self.1)
     }
 }
 
@@ -285,6 +285,12 @@ group! {
     /// Width and height of the picture.
     Size: picture::Size = (w: Whole<1280>, h: Whole<720>)
         => picture::Size::of(w, h).ok_or(ValueError::Size([w, h]))
+}
+
+group! {
+    /// The kernel of the command `bench`, and an optional number of frames.
+    Benchmark: (&'a str, Option<u32>) = (kernel: Name, frames: Option<Whole<1_000, 1>>)
+        => Ok::<_, ValueError>((kernel, frames))
 }
 
 group! {

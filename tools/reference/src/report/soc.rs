@@ -69,17 +69,21 @@ pub struct BackToBack {
 }
 
 impl BackToBack {
-    /// Draws the renderer's current scene many times, back to back, by the console command `bench KERNEL`. `kernel` is
+    /// Draws `frames` frames of the renderer's current scene, back to back, by the console command `bench KERNEL FRAMES`. `kernel` is
     /// `triangle` or `field`.
     ///
     /// # Errors
     /// When the console reports an error, or its reply has no line for this kernel.
-    pub fn measure(renderer: &mut BoardRenderer<SimulatedBoard>, kernel: &str) -> Result<Self> {
-        let command = format!("bench {kernel}");
+    pub fn measure(
+        renderer: &mut BoardRenderer<SimulatedBoard>,
+        kernel: &str,
+        frames: u32,
+    ) -> Result<Self> {
+        let command = format!("bench {kernel} {frames}");
         let lines = renderer.console().command(&command)?;
         let line = lines
             .iter()
-            .find_map(|line| line.strip_prefix(&command))
+            .find_map(|line| line.strip_prefix(&format!("bench {kernel} ")))
             .with_context(|| format!("{command}: expected its line in {lines:?}"))?;
         let words: Vec<&str> = line.split_whitespace().collect();
         let values = words.chunks(2).map(|pair| match pair {

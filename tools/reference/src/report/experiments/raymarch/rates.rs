@@ -18,6 +18,10 @@ use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 
+/// Cycles that a measurement of frames back to back takes at least. Its first frame takes up to 7,600 cycles more than the others, which are
+/// at most 0.3 % of these.
+const LEAST_CYCLES: u64 = 3_000_000;
+
 /// A verilated build of the SoC, in a folder of `target/gateware`.
 pub struct Build {
     folder: &'static str,
@@ -192,7 +196,7 @@ pub struct Row {
     pub evaluations: u64,
     /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
-    /// Mean cycles of a frame among many that are drawn back to back. They are measured for the slowest pose of a view only.
+    /// Mean cycles of a frame among several that are drawn back to back. They are measured for the slowest pose of a view only.
     pub cycles_frame: Option<f64>,
     /// Commit with which the pose was measured.
     pub commit: String,
@@ -301,7 +305,9 @@ fn draw(
         if last != Some(view) {
             renderer.look(&view)?;
         }
-        slowest.cycles_frame = Some(BackToBack::measure(&mut renderer, "field")?.frame("cycles")?);
+        let frames = LEAST_CYCLES.div_ceil(slowest.cycles_alone) as u32;
+        let together = BackToBack::measure(&mut renderer, "field", frames)?;
+        slowest.cycles_frame = Some(together.frame("cycles")?);
     }
     Ok(rows)
 }
