@@ -462,9 +462,9 @@ fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
     let folder = output.folder(quick)?;
     let file = |name: &str| folder.join(name);
     let cycles = source.measure("attitude")?;
-    let replay = imu::soft_core::replay(source, (100_000.0 * part) as u64)?;
+    let replays = imu::soft_core::replays(source, (100_000.0 * part) as u64)?;
     write_csv(&imu::soft_core::kernels(&cycles)?, &file("imu-cycles.csv"))?;
-    write_csv(&[replay], &file("imu-replay.csv"))?;
+    write_csv(&replays, &file("imu-replay.csv"))?;
     eprintln!("targets …");
     let count = imu::targets::one_count(part);
     let targets = imu::targets::measure(part, count);

@@ -142,16 +142,19 @@ fn cycle_table(kernels: &[Kernel]) -> String {
 fn replay_text(replays: &[Replay]) -> String {
     let lines = replays.iter().map(|replay| {
         let Replay {
+            board,
             samples,
             differing,
             cycles,
         } = replay;
+        let cycles = cycles.map(|cycles| format!(", {cycles} cycles a sample"));
         format!(
-            "A hand motion of {samples} samples at 1 kHz, with tilt and a tracked bias: {differing} attitudes of the soft core \
-             differ\nfrom the host's in any bit, {cycles} cycles a sample.\n"
+            "- {board} board: {samples} samples, {differing} attitudes differ from the host's in any bit{}.\n",
+            cycles.unwrap_or_default()
         )
     });
-    lines.collect()
+    let lines: String = lines.collect();
+    format!("A hand motion at 1 kHz, with tilt and a tracked bias, on the soft core:\n\n{lines}")
 }
 
 fn filter_table(filters: &[FilterErrors]) -> String {
