@@ -14,6 +14,9 @@ const KERNELS: &[&str] = &[
     "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
+/// Names of the kernels that draw frames.
+const DRAWING: &[&str] = &["triangle", "field"];
+
 /// Number of frames that the gateware draws back to back for a measurement, unless the command has another.
 const FRAMES: u32 = 8;
 
@@ -21,13 +24,23 @@ const FRAMES: u32 = 8;
 /// measures sine and cosine, and the drawing of frames if the SoC has a triangle engine.
 ///
 /// # Errors
-/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene.
+/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene; or a kernel that
+/// draws no frames has a number of them.
 pub fn run<'l>(
     machine: &mut Machine,
     benchmark: Option<(&'l str, Option<u32>)>,
 ) -> Result<(), CommandError<'l>> {
     let (kernel, count) = benchmark.unzip();
-    let count = count.flatten().unwrap_or(FRAMES);
+    let count = count.flatten();
+    if let (Some(name), Some(_)) = (kernel, count)
+        && !DRAWING.contains(&name)
+    {
+        return Err(CommandError::Kernel {
+            name,
+            expected: DRAWING,
+        });
+    }
+    let count = count.unwrap_or(FRAMES);
     let has_engine = machine.renderer.gateware.is_some();
     let mut print = |name: &str, cycles: Cycles| {
         let Cycles { min, median, max } = cycles;

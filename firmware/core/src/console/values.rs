@@ -289,7 +289,7 @@ group! {
 
 group! {
     /// The kernel of the command `bench`, and an optional number of frames.
-    Benchmark: (&'a str, Option<u32>) = (kernel: Name, frames: Option<Whole<1_000, 1>>)
+    Benchmark: (&'a str, Option<u32>) = (kernel: Name, frames: Option<Whole<100, 1>>)
         => Ok::<_, ValueError>((kernel, frames))
 }
 
