@@ -427,11 +427,17 @@ fn every_command_is_understood() {
             backend: Some(Backend::Gateware),
         },
     );
-    assert_parses("bench", Command::Bench { kernel: None });
+    assert_parses("bench", Command::Bench { benchmark: None });
     assert_parses(
         "bench sine",
         Command::Bench {
-            kernel: Some("sine"),
+            benchmark: Some(("sine", None)),
+        },
+    );
+    assert_parses(
+        "bench field 2",
+        Command::Bench {
+            benchmark: Some(("field", Some(2))),
         },
     );
     assert_parses("selftest", Command::SelfTest {});
