@@ -14,33 +14,19 @@ const KERNELS: &[&str] = &[
     "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
-/// Names of the kernels that draw frames.
-const DRAWING: &[&str] = &["triangle", "field"];
-
 /// Number of frames that the gateware draws back to back for a measurement, unless the command has another.
 const FRAMES: u32 = 8;
 
-/// Measures a kernel, by its name and the number of frames that it draws if it draws some, and prints its cycles. Without a kernel,
+/// Measures a kernel and prints its cycles. `benchmark` is its name, and a number of frames for a kernel that draws some. Without it,
 /// measures sine and cosine, and the drawing of frames if the SoC has a triangle engine.
 ///
 /// # Errors
-/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene; or a kernel that
-/// draws no frames has a number of them.
+/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene; or a number of
+/// frames stands behind a kernel that draws none.
 pub fn run<'l>(
     machine: &mut Machine,
     benchmark: Option<(&'l str, Option<u32>)>,
 ) -> Result<(), CommandError<'l>> {
-    let (kernel, count) = benchmark.unzip();
-    let count = count.flatten();
-    if let (Some(name), Some(_)) = (kernel, count)
-        && !DRAWING.contains(&name)
-    {
-        return Err(CommandError::Kernel {
-            name,
-            expected: DRAWING,
-        });
-    }
-    let count = count.unwrap_or(FRAMES);
     let has_engine = machine.renderer.gateware.is_some();
     let mut print = |name: &str, cycles: Cycles| {
         let Cycles { min, median, max } = cycles;
@@ -48,30 +34,36 @@ pub fn run<'l>(
             "bench {name} min {min} median {median} max {max} cycles\n"
         ));
     };
-    match kernel {
+    match benchmark {
         None => {
             bench::sine(&mut print);
             if has_engine {
-                frames(machine, count)?;
+                frames(machine, FRAMES)?;
             }
         }
-        Some("sine") => bench::sine(&mut print),
-        Some("object") => bench::object(&mut print),
-        #[cfg(feature = "peers")]
-        Some("attitude") => bench::attitude(&mut print),
-        #[cfg(feature = "peers")]
-        Some("geometry") => bench::geometry(&mut print),
-        #[cfg(feature = "peers")]
-        Some("gesture") => bench::gesture(&mut print),
-        #[cfg(feature = "peers")]
-        Some("kernels") => bench::kernels(&mut print),
-        Some("triangle" | "field") if !has_engine => return Err(CommandError::NoEngine),
-        Some("triangle") if machine.scene.field().is_some() => {
+        Some(("triangle" | "field", _)) if !has_engine => return Err(CommandError::NoEngine),
+        Some(("triangle", _)) if machine.scene.field().is_some() => {
             return Err(CommandError::FieldShown);
         }
-        Some("field") if machine.scene.field().is_none() => return Err(CommandError::NoField),
-        Some("triangle" | "field") => frames(machine, count)?,
-        Some(name) => {
+        Some(("field", _)) if machine.scene.field().is_none() => return Err(CommandError::NoField),
+        Some(("triangle" | "field", count)) => frames(machine, count.unwrap_or(FRAMES))?,
+        Some((name, Some(_))) => {
+            return Err(CommandError::Kernel {
+                name,
+                expected: &["triangle", "field"],
+            });
+        }
+        Some(("sine", None)) => bench::sine(&mut print),
+        Some(("object", None)) => bench::object(&mut print),
+        #[cfg(feature = "peers")]
+        Some(("attitude", None)) => bench::attitude(&mut print),
+        #[cfg(feature = "peers")]
+        Some(("geometry", None)) => bench::geometry(&mut print),
+        #[cfg(feature = "peers")]
+        Some(("gesture", None)) => bench::gesture(&mut print),
+        #[cfg(feature = "peers")]
+        Some(("kernels", None)) => bench::kernels(&mut print),
+        Some((name, None)) => {
             return Err(CommandError::Kernel {
                 name,
                 expected: KERNELS,

@@ -1,7 +1,7 @@
 //! Experiment: the attitude on the soft core. It measures the cycles per sample and compares each attitude, bit for bit, with
 //! the one that the host computes by the same code.
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use glint::board::{self, Board, Route, built_firmware};
 use glint::console::Console;
 use glint::imu::log::Entry;
@@ -79,6 +79,7 @@ pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
 pub fn replays(source: &Source, samples: u64) -> Result<[Replay; 2]> {
     let firmware = built_firmware(Some(&source.firmware()))?;
     let verilated = replay("virtual", board::verilated(&firmware)?, samples / 10)?;
+    ensure!(verilated.cycles.is_some(), "no cycles in the reply");
     let emulated = replay("emulated", board::emulated(&firmware)?, samples)?;
     Ok([
         verilated,
