@@ -106,6 +106,9 @@ pub struct Row {
 /// Number of measurements whose times are known: more than the firmware has not taken yet.
 const KNOWN: usize = 64;
 
+/// Number of statuses of which one, at least, should have no measurement that the firmware has not taken yet.
+const POLLS: u32 = 24;
+
 /// Times of the last measurements of the chip, and their number.
 struct Measured {
     count: u64,
@@ -231,17 +234,24 @@ impl Bench {
         })
     }
 
+    /// Number by which the chip's measurements exceed the samples of a status that has just been read.
+    fn excess(&self, status: &Status) -> Result<u64> {
+        Ok(self.count()?.saturating_sub(status.samples))
+    }
+
     /// What the firmware says about the newest sample, and the number by which the chip's measurements exceed the samples. Some
-    /// measurements have not been taken yet, so the smallest of several numbers counts.
+    /// measurements have not been taken yet, so the smallest of several numbers counts. That of the returned status is one of them:
+    /// its last sample is then a measurement that the chip has made.
     fn newest(&mut self) -> Result<(Status, u64)> {
-        let mut ahead = u64::MAX;
-        for _ in 0..12 {
-            let status = self.status()?;
-            ahead = ahead.min(self.count()?.saturating_sub(status.samples));
+        let mut status = self.status()?;
+        let mut ahead = self.excess(&status)?;
+        for _ in 1..POLLS {
             let wait = cycles(&mut self.board, 10) / 3;
             self.board.inner().run(wait);
+            status = self.status()?;
+            ahead = ahead.min(self.excess(&status)?);
         }
-        Ok((self.status()?, ahead))
+        Ok((status, ahead))
     }
 
     fn row(&mut self, seconds: f64, commit: &str) -> Result<Row> {
