@@ -175,7 +175,7 @@ impl<D: Device> Wires<D> {
                 self.check(now, edges.scl_rose, HIGH, "high SCL");
                 self.check(now, edges.start, START_HOLD, "start hold");
                 self.edges.scl_fell = now;
-                self.clocks += 1;
+                self.clocks = self.clocks.saturating_add(1);
                 self.fall(now);
             }
             _ => {}
@@ -273,5 +273,66 @@ impl<D: Device> Wires<D> {
         self.chip.set_fault(fault);
         self.clocks = 0;
         self.holds = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A device that only holds SDA low, until the master has sent a clock.
+    struct Stuck;
+
+    impl Device for Stuck {
+        type Fault = ();
+
+        fn number_bytes(&self) -> u8 {
+            1
+        }
+
+        fn set_fault(&mut self, _fault: Option<()>) {}
+
+        fn advance(&mut self, _now: u64) {}
+
+        fn set_addressed(&mut self, _is_addressed: bool) {}
+
+        fn answers(&self, _address: u8) -> bool {
+            false
+        }
+
+        fn acknowledges(&self) -> bool {
+            false
+        }
+
+        fn stretch(&self) -> Option<u64> {
+            None
+        }
+
+        fn is_stuck(&self, clocks: u32) -> bool {
+            clocks == 0
+        }
+
+        fn read(&mut self, _register: u16) -> u8 {
+            0
+        }
+
+        fn write(&mut self, _register: u16, _value: u8) {}
+    }
+
+    /// A sensor at 1,000 samples a second sends 2^32 clocks in 8.3 hours.
+    #[test]
+    fn the_number_of_clocks_stays_at_its_largest() {
+        let mut wires = Wires::new(Stuck);
+        wires.clocks = u32::MAX - 1;
+        for (number, scl) in [false, true, false, true, false, true]
+            .into_iter()
+            .enumerate()
+        {
+            let now = 2_000 * (number as u64 + 1);
+            assert_eq!(wires.update(now, scl, true), (scl, true));
+        }
+        assert_eq!(wires.clocks, u32::MAX);
+        wires.set_fault(None);
+        assert_eq!(wires.update(20_000, true, true), (true, false));
     }
 }
