@@ -57,7 +57,28 @@ pub struct Image {
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<Image> {
-    compile(board, features, true, features)
+    let optimisation = if features.contains(&PEERS) {
+        Optimisation::Speed
+    } else {
+        Optimisation::Profile
+    };
+    compile(board, features, true, features, optimisation)
+}
+
+/// Compiles the firmware of the report's kernels, which fills the SRAM of the soft core more than any other, and checks that it fits.
+/// Unlike [`build`] it optimises as for the standard firmware, and so shares the compiled crates of that.
+///
+/// # Errors
+/// As [`build`].
+pub fn check_peers() -> Result<Image> {
+    let suffixes = [PEERS, "check"];
+    compile(
+        Board::Virtual,
+        &suffixes,
+        true,
+        &[PEERS],
+        Optimisation::Profile,
+    )
 }
 
 /// Builds the firmware for `board` with the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`, or
@@ -74,11 +95,29 @@ pub fn build_for(board: Board, scenes: &[Scene], features: &[&str]) -> Result<Im
     let needs = Needs::of(scenes);
     let parts = needs.features.iter().map(|feature| feature.name);
     let parts: Vec<_> = parts.chain(features.iter().copied()).collect();
-    compile(board, &names, false, &parts)
+    compile(board, &names, false, &parts, Optimisation::Profile)
+}
+
+/// The feature with kernels of other crates.
+const PEERS: &str = "peers";
+
+/// How a firmware is optimised.
+#[derive(Clone, Copy, PartialEq)]
+enum Optimisation {
+    /// As the Cargo profile says: a part of the crates for size.
+    Profile,
+    /// All crates for speed.
+    Speed,
 }
 
 /// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name.
-fn compile(board: Board, suffixes: &[&str], has_default: bool, features: &[&str]) -> Result<Image> {
+fn compile(
+    board: Board,
+    suffixes: &[&str],
+    has_default: bool,
+    features: &[&str],
+    optimisation: Optimisation,
+) -> Result<Image> {
     let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
         Board::Virtual | Board::Urbana => &["glint"],
@@ -101,7 +140,7 @@ fn compile(board: Board, suffixes: &[&str], has_default: bool, features: &[&str]
     }
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
-    if features.contains(&"peers") {
+    if optimisation == Optimisation::Speed {
         // Benchmarked functions of other crates that are generic are compiled in the firmware's crate, so it gets the same
         // optimization level as those crates.
         for package in ["glint-firmware", "\"*\""] {

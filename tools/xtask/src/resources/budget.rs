@@ -4,12 +4,12 @@ use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 use std::fs;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::blocks::{ROWS, SOC};
 use super::number::number;
-use super::route::{REFERENCE, Rates};
+use super::route::{REFERENCE, Rate};
 use super::size::{Resource, Size};
 use crate::paths;
 
@@ -26,6 +26,56 @@ pub struct Budget {
     own: Limits,
     /// Limits of single blocks, by the block's name.
     block: BTreeMap<String, BlockLimits>,
+    /// Clock rate of the soft core.
+    pub reference: ReferenceRate,
+}
+
+/// The clock rate of the soft core with the first seed of the placer, which a version of nextpnr always finds.
+#[derive(Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceRate {
+    /// The rate in MHz.
+    pub mhz: f64,
+    /// The version of nextpnr.
+    pub nextpnr: String,
+}
+
+impl ReferenceRate {
+    /// Checks that a rate of a block comes from the same version of nextpnr, without which the two cannot be compared.
+    ///
+    /// # Errors
+    /// It is another version.
+    pub fn check_version(&self, rate: &Rate) -> Result<()> {
+        ensure!(
+            rate.nextpnr == self.nextpnr,
+            "gateware/budget.toml has the rate of {REFERENCE} by nextpnr {}, and {} was measured by {}: expected the same; \
+             `cargo xtask resources --route {REFERENCE}` measures it",
+            self.nextpnr,
+            rate.name,
+            rate.nextpnr
+        );
+        Ok(())
+    }
+
+    /// Checks that a measured rate of the soft core is this one.
+    ///
+    /// # Errors
+    /// It is another rate.
+    pub fn check(&self, measured: &Rate) -> Result<()> {
+        let found = Self {
+            mhz: measured.seeds.first().copied().unwrap_or_default(),
+            nextpnr: measured.nextpnr.clone(),
+        };
+        ensure!(
+            *self == found,
+            "{REFERENCE}: gateware/budget.toml has {} MHz by nextpnr {}, measured {} MHz by nextpnr {}",
+            self.mhz,
+            self.nextpnr,
+            found.mhz,
+            found.nextpnr
+        );
+        Ok(())
+    }
 }
 
 /// Limits of a single block.
@@ -137,12 +187,12 @@ impl Budget {
             .collect()
     }
 
-    /// Lists the blocks below their least ratios.
-    pub fn shortfalls(&self, rates: &Rates) -> Vec<Shortfall> {
-        let blocks = rates.blocks.iter();
+    /// Lists the blocks below their least ratios to `reference`, the soft core's rate in MHz.
+    pub fn shortfalls(&self, blocks: &[Rate], reference: f64) -> Vec<Shortfall> {
         blocks
+            .iter()
             .filter_map(|rate| {
-                let (minimum, measured) = (self.ratio(&rate.name)?, rates.ratio(rate));
+                let (minimum, measured) = (self.ratio(&rate.name)?, rate.mhz / reference);
                 let block = rate.name.clone();
                 (measured < minimum).then_some(Shortfall {
                     block,
@@ -184,6 +234,7 @@ pub mod tests {
     pub const BUDGET: &str =
         "device = { lut = 32600, ff = 65200, dsp48 = 120, ramb36 = 75, slices = 8150 }
         own = { path = 9 }
+        reference = { mhz = 90.0, nextpnr = '0.11' }
         [block]
         setup = { lut = 1234, ramb36 = 3, ratio = 1.25 }
         band_buffer = { path = 8 }
@@ -211,11 +262,33 @@ pub mod tests {
         let mut rates = rates();
         rates.blocks.push(rate("scanout", 1.0));
         assert_eq!(budget("1.25").routed(), ["setup"]);
-        assert_eq!(budget("1.25").shortfalls(&rates), []);
+        let reference = rates.reference.mhz;
+        assert_eq!(budget("1.25").shortfalls(&rates.blocks, reference), []);
         assert_eq!(
-            budget("1.26").shortfalls(&rates)[0].to_string(),
+            budget("1.26").shortfalls(&rates.blocks, reference)[0].to_string(),
             "setup: ratio to vexriscv: at least 1.26, measured 1.25"
         );
+    }
+
+    #[test]
+    fn the_rate_of_the_soft_core_is_the_measured_one_of_the_same_nextpnr() {
+        let reference = |mhz, nextpnr: &str| ReferenceRate {
+            mhz,
+            nextpnr: nextpnr.to_owned(),
+        };
+        // Its rate with the first seed is 90.0.
+        let measured = rate(REFERENCE, 81.0);
+        assert!(reference(90.0, "0.11").check(&measured).is_ok());
+        for stale in [reference(90.1, "0.11"), reference(90.0, "0.12")] {
+            let error = stale.check(&measured).unwrap_err().to_string();
+            assert!(
+                error.ends_with("measured 90 MHz by nextpnr 0.11"),
+                "{error}"
+            );
+        }
+        let block = rate("setup", 1.0);
+        assert!(reference(90.0, "0.11").check_version(&block).is_ok());
+        assert!(reference(90.0, "0.12").check_version(&block).is_err());
     }
 
     #[test]

@@ -100,18 +100,27 @@ impl Seeds {
     }
 }
 
-/// Places and routes the soft core and blocks, two at a time.
+/// Places and routes blocks, two at a time.
 ///
 /// # Errors
 /// A block cannot be measured.
-pub fn measure(blocks: VecDeque<String>, seeds: Seeds) -> Result<Rates> {
-    let mut names = blocks;
-    names.retain(|name| name != REFERENCE);
-    names.push_front(REFERENCE.to_owned());
+pub fn measure_blocks(names: VecDeque<String>, seeds: Seeds) -> Result<Vec<Rate>> {
     let mut rates = two_at_a_time(names, |name| {
         Rate::parse(&measured_line("clock rate", seeds.options(), name)?)
     })?;
     sort_by_row(&mut rates, |rate| &rate.name);
+    Ok(rates)
+}
+
+/// Places and routes the soft core and blocks with all seeds.
+///
+/// # Errors
+/// A block cannot be measured.
+pub fn measure(blocks: VecDeque<String>) -> Result<Rates> {
+    let mut names = blocks;
+    names.retain(|name| name != REFERENCE);
+    names.push_front(REFERENCE.to_owned());
+    let mut rates = measure_blocks(names, Seeds::All)?;
     let at = rates.iter().position(|rate| rate.name == REFERENCE);
     let reference = rates.remove(at.context("the soft core is measured")?);
     Ok(Rates {

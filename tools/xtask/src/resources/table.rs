@@ -243,7 +243,7 @@ pub fn json(measured: &Measured, budget: &Budget) -> Value {
             })
             .collect();
         json["routed"] = routed.into();
-        json["shortfalls"] = json!(budget.shortfalls(rates));
+        json["shortfalls"] = json!(budget.shortfalls(&rates.blocks, rates.reference.mhz));
     }
     json
 }
