@@ -109,7 +109,8 @@ fn is_present(package: &str) -> bool {
             let program = "echo 'int main() { return 0; }' | clang++ -fprofile-generate -x c++ -o /dev/null -";
             run::succeeds(Command::new("sh").args(["-c", program]))
         }
-        "llvm" => run::succeeds(Command::new("llvm-profdata").arg("--version")),
+        // The program itself has no option for its version.
+        "llvm" => run::succeeds(Command::new("llvm-profdata").args(["merge", "--version"])),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
         program => run::succeeds(Command::new(program).arg("--version")),
     }
@@ -180,4 +181,17 @@ pub fn python_environment() -> Result<()> {
     )
     .context("the Python packages: expected access to PyPI")?;
     fs::write(&stamp, requirements).with_context(|| format!("writing {}", stamp.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tests run after the set-up, which would install a package again and again whose program is not recognised.
+    #[test]
+    fn no_package_is_missing_after_the_setup() {
+        for (package, _) in PACKAGES {
+            assert!(is_present(package), "{package}");
+        }
+    }
 }
