@@ -1,7 +1,7 @@
 """Clock rates of a module by place and route on an ECP5 FPGA, with open tools.
 
-The rate itself says little about a chip of another family: what counts is its ratio to the soft core's, by the same tools in
-the same run. A wrapper makes a flip-flop of every port of the module, so that the ports need no pads, and every path between
+The rate itself says little about a chip of another family: what counts is its ratio to the soft core's, by the same
+tools. A wrapper makes a flip-flop of every port of the module, so that the ports need no pads, and every path between
 a port and a register counts:
 
        serial_in --> [input flip-flops: a shift register] --> module --> [output flip-flops] --> [XOR chain] --> serial_out
