@@ -15,6 +15,12 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SectionKind};
 use crate::gateware::Board;
 use crate::{paths, run};
 
+/// Package of the firmware.
+const FIRMWARE: &str = "glint-firmware";
+
+/// Feature with kernels of other crates.
+const PEERS: &str = "peers";
+
 /// Rust target of the soft core: RV32IM without an operating system.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
@@ -57,28 +63,22 @@ pub struct Image {
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<Image> {
-    let optimisation = if features.contains(&PEERS) {
-        Optimisation::Speed
+    let for_speed: &[&str] = if features.contains(&PEERS) {
+        &[FIRMWARE, "\"*\""]
     } else {
-        Optimisation::Profile
+        &[]
     };
-    compile(board, features, true, features, optimisation)
+    compile(board, features, true, features, for_speed)
 }
 
-/// Compiles the firmware of the report's kernels, which fills the SRAM of the soft core more than any other, and checks that it fits.
-/// Unlike [`build`] it optimises as for the standard firmware, and so shares the compiled crates of that.
+/// Checks that the firmware of the report's kernels compiles and fits the memory: it fills the SRAM of the soft core more than any other.
+/// Unlike [`build`] it takes the other crates as the standard firmware has them. The code in the SRAM is of the firmware's crate.
 ///
 /// # Errors
 /// As [`build`].
 pub fn check_peers() -> Result<Image> {
     let suffixes = [PEERS, "check"];
-    compile(
-        Board::Virtual,
-        &suffixes,
-        true,
-        &[PEERS],
-        Optimisation::Profile,
-    )
+    compile(Board::Virtual, &suffixes, true, &[PEERS], &[FIRMWARE])
 }
 
 /// Builds the firmware for `board` with the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`, or
@@ -95,28 +95,17 @@ pub fn build_for(board: Board, scenes: &[Scene], features: &[&str]) -> Result<Im
     let needs = Needs::of(scenes);
     let parts = needs.features.iter().map(|feature| feature.name);
     let parts: Vec<_> = parts.chain(features.iter().copied()).collect();
-    compile(board, &names, false, &parts, Optimisation::Profile)
+    compile(board, &names, false, &parts, &[])
 }
 
-/// The feature with kernels of other crates.
-const PEERS: &str = "peers";
-
-/// How a firmware is optimised.
-#[derive(Clone, Copy, PartialEq)]
-enum Optimisation {
-    /// As the Cargo profile says: a part of the crates for size.
-    Profile,
-    /// All crates for speed.
-    Speed,
-}
-
-/// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name.
+/// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name, and the
+/// packages `for_speed` are optimised for speed whatever the profile says.
 fn compile(
     board: Board,
     suffixes: &[&str],
     has_default: bool,
     features: &[&str],
-    optimisation: Optimisation,
+    for_speed: &[&str],
 ) -> Result<Image> {
     let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
@@ -129,7 +118,7 @@ fn compile(
     cargo.args([
         "build",
         "--package",
-        "glint-firmware",
+        FIRMWARE,
         "--profile",
         "firmware",
         "--target",
@@ -140,14 +129,11 @@ fn compile(
     }
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
-    if optimisation == Optimisation::Speed {
-        // Benchmarked functions of other crates that are generic are compiled in the firmware's crate, so it gets the same
-        // optimization level as those crates.
-        for package in ["glint-firmware", "\"*\""] {
-            cargo
-                .arg("--config")
-                .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
-        }
+    // Benchmarked functions of other crates that are generic are compiled in the firmware's crate.
+    for package in for_speed {
+        cargo
+            .arg("--config")
+            .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
     }
     // The firmware has a target folder of its own, because cargo locks a target folder during a build.
     cargo
