@@ -36,7 +36,16 @@ impl Provenance {
 }
 
 fn commit() -> String {
-    const MEASURED: [&str; 4] = ["Cargo.lock", "firmware", "gateware", "tools/reference"];
+    const MEASURED: [&str; 8] = [
+        "Cargo.lock",
+        "firmware",
+        "gateware",
+        "tools/emulated-board",
+        "tools/image-sensor",
+        "tools/mpu6050",
+        "tools/reference",
+        "tools/wires",
+    ];
     let git = |arguments: &[&str]| output("git", &[arguments, &["--"], &MEASURED].concat());
     let changed = !git(&["status", "--porcelain"]).is_empty();
     git(&["log", "-1", "--format=%h", "--abbrev=12"]) + if changed { "-dirty" } else { "" }
