@@ -63,8 +63,9 @@ class Proof:
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
-# The longest proofs come first: two run at a time, and a long one should not run alone at the end. Each further clock takes up to as
-# long as all before it: those of the longest end with the clock of the last cover or of the deepest fault of their mutations.
+# The longest proofs come first: two run at a time, and a long one should not run alone at the end. A further clock can double the time,
+# so ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker end with the clock that shows the deepest fault of their
+# mutations.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 35, ("any_product", "any_field")),
     Proof("line_raster", "line_raster_proof", 23),

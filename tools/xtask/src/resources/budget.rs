@@ -48,11 +48,11 @@ impl ReferenceRate {
     pub fn check_version(&self, rate: &Rate) -> Result<()> {
         ensure!(
             rate.nextpnr == self.nextpnr,
-            "gateware/budget.toml has the rate of {REFERENCE} by nextpnr {}, and {} was measured by {}: expected the same; \
-             `cargo xtask resources --route {REFERENCE}` measures it",
-            self.nextpnr,
+            "{}: routed by nextpnr {}, expected {} as for the reference of gateware/budget.toml; `cargo xtask resources --route \
+             {REFERENCE}` measures that again",
             rate.name,
-            rate.nextpnr
+            rate.nextpnr,
+            self.nextpnr
         );
         Ok(())
     }
@@ -68,7 +68,7 @@ impl ReferenceRate {
         };
         ensure!(
             *self == found,
-            "{REFERENCE}: gateware/budget.toml has {} MHz by nextpnr {}, measured {} MHz by nextpnr {}",
+            "{REFERENCE}: the reference is {} MHz by nextpnr {}, expected the measured {} MHz by nextpnr {}",
             self.mhz,
             self.nextpnr,
             found.mhz,
@@ -282,7 +282,7 @@ pub mod tests {
         for stale in [reference(90.1, "0.11"), reference(90.0, "0.12")] {
             let error = stale.check(&measured).unwrap_err().to_string();
             assert!(
-                error.ends_with("measured 90 MHz by nextpnr 0.11"),
+                error.ends_with("expected the measured 90 MHz by nextpnr 0.11"),
                 "{error}"
             );
         }
