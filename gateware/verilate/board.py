@@ -69,7 +69,7 @@ def _compile_model(objects, options, harness_options, kind):
         program, counts, profile = (objects / name for name in ("train", "train.profraw", "train.profdata"))
         compiler.run_linker(["-fprofile-generate", *sorted(objects.glob("*.o"))], program)
         run([program], cwd=objects, LLVM_PROFILE_FILE=str(counts))
-        run(["llvm-profdata", "merge", counts, "-o", profile])
+        run([compiler.PROFILE_MERGER, "merge", counts, "-o", profile])
         compiler.object_of(harness[1], objects).unlink()
         options = [*options, f"-fprofile-use={profile}"]
     compiler.compile_all("compile what runs in each cycle", hot, objects, options)

@@ -14,13 +14,13 @@ const PACKAGES: [(&str, &str); 8] = [
         "keeps the objects of the C library for the BIOS of the next board",
     ),
     ("chromium", "opens the live page in tests"),
-    ("clang", "compiles the verilated SoC"),
+    ("clang-19", "compiles the verilated SoC"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     (
-        "libclang-rt-dev",
+        "libclang-rt-19-dev",
         "counts the branches that the verilated SoC takes",
     ),
-    ("llvm", "prepares these counts for the compiler"),
+    ("llvm-19", "prepares these counts for the compiler"),
     ("make", "builds the LiteX BIOS"),
     ("python3-venv", "holds the Python packages"),
 ];
@@ -105,12 +105,12 @@ fn is_present(package: &str) -> bool {
         "gcc-riscv64-unknown-elf" => {
             run::succeeds(Command::new("riscv64-unknown-elf-gcc").arg("--version"))
         }
-        "libclang-rt-dev" => {
-            let program = "echo 'int main() { return 0; }' | clang++ -fprofile-generate -x c++ -o /dev/null -";
+        "libclang-rt-19-dev" => {
+            let program = "echo 'int main() { return 0; }' | clang++-19 -fprofile-generate -x c++ -o /dev/null -";
             run::succeeds(Command::new("sh").args(["-c", program]))
         }
         // The program itself has no option for its version.
-        "llvm" => run::succeeds(Command::new("llvm-profdata").args(["merge", "--version"])),
+        "llvm-19" => run::succeeds(Command::new("llvm-profdata-19").args(["merge", "--version"])),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
         program => run::succeeds(Command::new(program).arg("--version")),
     }
