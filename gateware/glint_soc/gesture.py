@@ -6,6 +6,7 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import ClockSignal, Instance, ResetSignal, Signal
 from migen.fhdl.specials import Tristate
 
+from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
 from .parameters import Parameter
@@ -217,6 +218,9 @@ class GestureEngine(LiteXModule):
             self.counters.events])
 
         wires = {name: Signal() for name in ("scl", "sda")}
+        camera, state = self._camera.fields, self._status.fields
+        self.clock_control = ClockControl(
+            control.enable | state.running | state.waiting | pads.pclk | camera.clock | ~camera.scl | ~camera.sda)
         self.specials += Instance("gesture_engine", name="gesture_core",
             p_MOMENTS          = int(moments),
             p_CLOCK_DIVIDER    = divider,

@@ -6,6 +6,7 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import ClockSignal, Instance, ResetSignal, Signal
 from migen.fhdl.specials import Tristate
 
+from .clock_control import ClockControl
 from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
@@ -107,6 +108,8 @@ class I2CMaster(LiteXModule):
             i_sda_in        = wires["sda_in"],
             o_sda_out       = wires["sda_out"],
         )
+        self.clock_control = ClockControl(
+            self._status.fields.busy | self._rounds.fields.repeats | ~wires["scl_in"] | ~wires["sda_in"])
         add_sources(platform, "i2c_engine")
         if hasattr(pads, "scl_in"):
             self.comb += [

@@ -7,8 +7,9 @@ from operator import or_
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRField, CSRStatus, CSRStorage
 from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePulse
-from migen import Case, Cat, Constant, If, Instance, Mux, ResetSignal, Signal
+from migen import Case, Cat, ClockSignal, Constant, If, Instance, Mux, ResetSignal, Signal
 
+from .clock_control import ClockControl
 from .counters import Counters
 from .fields import FLAT_FIELDS, KIND_BITS, NAMES, has_octants, mask
 from .packed import Package, Struct
@@ -81,10 +82,7 @@ def build(text, lanes=None):
 
 
 class Raymarcher(LiteXModule):
-    """Draws distance fields into the frames of a triangle engine's raster pass.
-
-    `clk` is the block's clock and must be driven: by the system clock, or by that clock gated with `clock_enable`.
-    """
+    """Draws distance fields into the frames of the raster pass of `engine`, a triangle engine."""
 
     def __init__(self, platform, fields, engine):
         self._ident = CSRStatus(32, name="ident", reset=IDENT, description="`MARC` in ASCII; 0 where the block is absent.")
@@ -197,8 +195,6 @@ class Raymarcher(LiteXModule):
 
         # # #
 
-        self.clk = Signal()
-        self.clock_enable = Signal()
         enable, stereo, prepass = (getattr(self._control.fields, name) for name in ("enable", "stereo", "prepass"))
         busy, was_busy = self._status.fields.busy, Signal()
         error = self._status.fields.error
@@ -231,10 +227,9 @@ class Raymarcher(LiteXModule):
         if fields.prepass:
             registers += [*offset, self._cone_spread]
         self.parameters = PassParameters(registers)
-        # Control of this block's gated clock. The clock runs while the block is enabled and the triangle engine's clock runs,
-        # and after writes to tables and spheres. Then it runs for 31 clocks more, because the last events come some clocks
-        # after the end of a pass, and all events must be 0 when it stops.
-        lingers, working = Signal(5), Signal()
+        # The parameters are copied although the block is disabled.
+        self.clock_control = ClockControl(
+            engine.raster_load | self.parameters.loading | (enable & engine.clock_control.enable))
         self.comb += [
             If(not_built | too_deep, error.eq(1)).Elif((stereo != 0) & int(not fields.stereo), error.eq(2)).Elif(
                 prepass & int(not fields.prepass), error.eq(3)),
@@ -242,19 +237,14 @@ class Raymarcher(LiteXModule):
             engine.field_loading.eq(self.parameters.loading),
             engine.field.enable.eq(enable & (error == 0)),
             engine.field.compose.eq(stereo),
-            working.eq(ResetSignal("sys") | self._table.re | self._sphere.re | (enable & engine.clock_enable)),
-            self.clock_enable.eq(working | (lingers != 0)),
             self.ev.field.trigger.eq(was_busy & ~busy),
         ]
-        self.sync += [
-            was_busy.eq(busy),
-            If(working, lingers.eq(31)).Elif(lingers != 0, lingers.eq(lingers - 1)),
-        ]
+        self.sync += was_busy.eq(busy)
         eye = Signal()
         self.comb += engine.field.halves.eq(Mux(stereo == 0, 0b11, Mux(eye, 0b10, 0b01)))
         self.specials += Instance("raymarcher", name="raymarcher",
             **{f"p_{name}": value for name, value in fields.parameters().items()},
-            i_clk            = self.clk,
+            i_clk            = ClockSignal("sys"),
             i_rst            = ResetSignal("sys"),
             i_restart        = engine.field.restart,
             i_start          = engine.field.start,

@@ -2,7 +2,7 @@
 
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
 from litex.soc.interconnect.wishbone import Wishbone2CSR
-from migen import Cat, NextState, Signal, log2_int
+from migen import Cat, ClockDomainsRenamer, NextState, Signal, log2_int
 
 
 class RegisterBank(CSRBank):
@@ -14,7 +14,8 @@ class RegisterBank(CSRBank):
 
         bus ─▶ is this the window? ─▶ flip-flops ─▶ LiteX's bank ─▶ data
 
-    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX.
+    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX. A bank is in the clock
+    domain `clock_domain` of its registers, if they have this attribute.
     """
 
     def __init__(self, description, address=0, bus=None, paging=0x800, ordering="big"):
@@ -36,6 +37,8 @@ class RegisterBank(CSRBank):
             access.we.eq(bus.we),
             access.re.eq(bus.re),
         ]
+        if domain := getattr(description[0], "clock_domain", None):
+            ClockDomainsRenamer(domain)(self)
 
 
 class RegisterBridge(Wishbone2CSR):

@@ -120,8 +120,11 @@ class GlintSoC(SoCCore):
     def do_finalize(self):
         # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.
         for name, _, window, bank in self.csr_bankarray.banks:
-            if parameters := getattr(getattr(self, name, None), "parameters", None):
+            block = getattr(self, name, None)
+            if parameters := getattr(block, "parameters", None):
                 self.comb += parameters.connect(bank, window)
+            if control := getattr(block, "clock_control", None):
+                self.comb += control.accessed.eq(bank.bus.adr[log2_int(CSR_PAGING // 4):] == window)
 
     def _inputs(self, name, bits):
         """The input pins `name` with `bits` bits: those that the board lacks are 0."""

@@ -10,6 +10,7 @@ from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal, l
 
 from . import constants
 from .constants import DESCRIPTOR_BYTES
+from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
 from .parameters import Parameter, PassParameters
@@ -44,8 +45,7 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
-    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. The parent drives `clk` with the clock of
-    `sys`, or with that clock gated by `clock_enable`. `main_ram` is the region that the ports reach. `sizes` are the picture
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach. `sizes` are the picture
     sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
     raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two
     writers; the registers are the same. Then `depths` may be left out too: the memory of the depths of a band.
@@ -216,19 +216,9 @@ class TriangleEngine(LiteXModule):
 
         # # #
 
-        # Control of the gated clock: the triangle engine is clocked while `working` is high and for 31 clocks after that.
-        self.clk = Signal()
-        self.clock_enable = Signal()
-        recovering, linger = Signal(), Signal(5)
-        working = Signal()
-        self.comb += [
-            working.eq(ResetSignal("sys") | recovering | self._control.fields.cancel
-                       | self._status.fields.geometry_busy | self._status.fields.raster_busy),
-            self.clock_enable.eq(working | (linger != 0)),
-        ]
-        # The clock runs on after a pass, because the last events reach the counters some clocks later.
-        self.sync += If(working, linger.eq(31)).Elif(linger != 0, linger.eq(linger - 1))
-
+        recovering = Signal()
+        self.clock_control = ClockControl(
+            recovering | self._control.fields.cancel | self._status.fields.geometry_busy | self._status.fields.raster_busy)
         self.parameters = PassParameters(
             [self._mesh, self._mesh_bytes, self._geometry_descriptors, self._descriptor_limit, self._geometry_lists, self._list_shift,
              self._exceptions, self._exception_limit, self._scale_shift, *chain(*rows.values(), *translation.values()),
@@ -346,7 +336,7 @@ class TriangleEngine(LiteXModule):
             p_FIELDS          = int(fields),
             p_LINES           = int(lines),
             p_DEPTHS          = int(depths),
-            i_clk             = self.clk,
+            i_clk             = ClockSignal("sys"),
             i_rst             = ResetSignal("sys"),
             i_cancel          = cancel,
             o_status          = status.value,

@@ -81,8 +81,6 @@ class Ulx3sSoC(GlintSoC):
                           depths=depths, fields=fields, sys_clk_freq=sys_clk_freq, mode=CEA_640X480)
         self.sdrphy = GENSDRPHY(platform.request("sdram"), sys_clk_freq)
         self.add_dram(self.sdrphy, MT48LC16M16(sys_clk_freq, "1:1"))
-        for name in {"triangle", "raymarch"} & self.blocks:
-            self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
         if "gesture" in self.blocks:
             platform.add_period_constraint(self.gesture.pclk, 1e9 / PIXEL_CLOCK)
         self.comb += platform.request("wifi_gpio0").eq(1)

@@ -106,8 +106,6 @@ class UrbanaSoC(GlintSoC):
         # of the memory does not read.
         self.ddrphy.settings.rtt_nom = "40ohm"
         self.add_dram(self.ddrphy, MT41K64M16(sys_clk_freq, "1:4"))
-        for name in {"triangle", "raymarch"} & self.blocks:
-            self.comb += getattr(self, name).clk.eq(self.crg.cd_sys.clk)
         if "gesture" in self.blocks:
             self._constrain_camera(platform)
         if "scanout" in self.blocks:

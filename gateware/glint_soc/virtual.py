@@ -8,7 +8,7 @@ from litedram.phy.model import SDRAMPHYModel
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
 from litex.build.sim.common import sim_special_overrides
 from litex.gen import LiteXModule
-from migen import Cat, ClockDomain, Instance, Mux, Signal
+from migen import Cat, ClockDomain, ClockDomainsRenamer, Instance, Mux, Signal
 from migen.fhdl.specials import Memory
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
@@ -108,12 +108,7 @@ class VirtualSoC(GlintSoC):
         self.rom.mem.init = None
         self.sram.mem.init = None
         self.add_dram(self.ddrphy, module)
-        # A gated clock saves the simulation time of idle blocks, half of the total.
-        add_sources(platform, "clock_gate")
-        for name in sorted({"triangle", "raymarch"} & self.blocks):
-            block = getattr(self, name)
-            self.specials += Instance("clock_gate", name=f"{name}_clock",
-                i_clk=self.crg.cd_sys.clk, i_enable=block.clock_enable, o_gated=block.clk)
+        self._gate_clocks(platform)
         # These pins and those of the video exist in every build, so that one harness fits all builds.
         for block, pins in (("gesture", "camera"), ("flash", "flash")):
             if block not in self.blocks:
@@ -122,6 +117,20 @@ class VirtualSoC(GlintSoC):
         if "scanout" in self.blocks:
             self.comb += [getattr(pads, name).eq(getattr(self.scanout.video, name))
                           for name in ("hsync", "vsync", "de", "r", "g", "b")]
+
+    def _gate_clocks(self, platform):
+        """Stops the clocks of idle blocks, which saves most of their simulation time."""
+        add_sources(platform, "clock_gate")
+        for name, block in list(vars(self).items()):
+            if control := getattr(block, "clock_control", None):
+                domain = ClockDomain(name)
+                setattr(self, f"cd_{name}", domain)
+                self.comb += domain.rst.eq(self.crg.cd_sys.rst)
+                self.specials += Instance("clock_gate", name=f"{name}_clock",
+                    i_clk=self.crg.cd_sys.clk, i_enable=control.enable, o_gated=domain.clk)
+                ClockDomainsRenamer(name)(block)
+                for register in block.get_csrs():
+                    register.clock_domain = name
 
     def _prepare_banks(self):
         """Gives the memory of each DDR3 bank a name that the harness can rely on, and lets it write whole words."""

@@ -1,0 +1,27 @@
+"""When a block needs its clock, for a board that stops the clock of idle blocks."""
+
+from litex.gen import LiteXModule
+from migen import If, ResetSignal, Signal
+
+_LINGER = 31
+"""Clocks after the last work: the longest way of an event to its counter, and of an access through a register bank, are shorter."""
+
+
+class ClockControl(LiteXModule):
+    """Control of the clock of a block, its registers included.
+
+    The block's `working` is high while its state changes by itself, or by its pins. The SoC drives `accessed`, which is high while the
+    register bus shows an address of the block. While `enable` is low, the domain `sys` of the block may stand still.
+    """
+
+    def __init__(self, working):
+        self.accessed, self.enable = Signal(), Signal()
+
+        # # #
+
+        awake, linger = Signal(), Signal(max=_LINGER + 1)
+        self.comb += [
+            awake.eq(ResetSignal("sys") | working | self.accessed),
+            self.enable.eq(awake | (linger != 0)),
+        ]
+        self.sync += If(awake, linger.eq(_LINGER)).Elif(linger != 0, linger.eq(linger - 1))
