@@ -16,7 +16,7 @@ PROFILED, QUICK, WAVEFORMS = "profiled", "quick", "waveforms"
 """Kinds of the library: compiled for speed, compiled once with little optimisation, and able to write waveforms."""
 
 _SOC = GATEWARE.parent / "tools" / "virtual-board" / "soc"
-_VERILATE = ["--no-timing", "--flatten", "--x-assign", "fast", "--x-initial", "fast", _SOC / "soc.vlt"]
+_VERILATE = ["--no-timing", "--flatten", "--public-ignore", "--x-assign", "fast", "--x-initial", "fast", _SOC / "soc.vlt"]
 
 
 def build(folder, kind=PROFILED):
