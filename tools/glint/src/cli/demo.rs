@@ -205,11 +205,7 @@ impl DemoArguments {
 
     /// Writes an animation of one turn of the camera around the shown model to `path`. Returns the mean number of cycles
     /// of a frame.
-    fn orbit(
-        &self,
-        renderer: &mut BoardRenderer<SimulatedBoard>,
-        path: &Path,
-    ) -> anyhow::Result<u64> {
+    fn orbit<B: Board>(&self, renderer: &mut BoardRenderer<B>, path: &Path) -> anyhow::Result<u64> {
         let console = renderer.console();
         console.command("backend gateware")?;
         console.command(&size_command(ORBIT_SIZE))?;
@@ -241,9 +237,9 @@ impl DemoArguments {
 
     /// Writes an animation to `path`, in which the camera moves towards the sponge and around it. Returns the mean number of
     /// cycles that a frame takes.
-    fn sponge(
+    fn sponge<B: Board>(
         &self,
-        renderer: &mut BoardRenderer<SimulatedBoard>,
+        renderer: &mut BoardRenderer<B>,
         path: &Path,
     ) -> anyhow::Result<u64> {
         let lens = camera(Turns(0))?;
@@ -253,11 +249,6 @@ impl DemoArguments {
             quality: Quality::default(),
             prepass: false,
         };
-        let console = renderer.console();
-        console.command(&size_command(SIZE))?;
-        // No command has set another option of fields on this board so far, so all other options have their defaults.
-        console.command(&format!("stereo {EYES}"))?;
-        console.command(&format!("field {SPONGE}"))?;
         let mut cycles = 0;
         let mut images = Vec::new();
         for number in 0..self.sponge {
@@ -265,12 +256,12 @@ impl DemoArguments {
             let between = |from: f64, to: f64| format!("{:.3}", from + (to - from) * part);
             // The camera's distance, azimuth and polar angle in this frame.
             let place = [between(3.2, 2.2), between(15.0, 60.0), between(80.0, 55.0)];
-            let stats = renderer.render_after(&[&format!("camera {}", place.join(" "))])?;
             let view = view::spherical(&place.join(","))?.with_lens_of(&lens);
             let frame = Frame {
                 stereo: Some(EYES),
                 ..Frame::new(Subject::Field(subject), view, SIZE)
             };
+            let stats = renderer.show(&frame, Route::Memory, &mut |_, _| {})?;
             let image = Image {
                 colour: renderer.colour(SIZE, Route::Memory, &mut |_, _| {})?,
                 ..Image::empty(SIZE)
@@ -313,8 +304,8 @@ fn write_picture(
 
 /// Shows a built-in scene on the board with flat shading, which the gateware has in every build, checks that its picture equals that
 /// of the bit-exact model, and writes it to `path`. Returns the number of cycles of the frame.
-fn show_scene(
-    renderer: &mut BoardRenderer<SimulatedBoard>,
+fn show_scene<B: Board>(
+    renderer: &mut BoardRenderer<B>,
     name: &str,
     path: &Path,
 ) -> anyhow::Result<u64> {
@@ -457,4 +448,40 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
         ))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each part of the tour states all that its pictures depend on: what the parts before it have set does not matter.
+    #[test]
+    fn pictures_after_a_mesh_are_the_models() {
+        let firmware = built_firmware(None).unwrap();
+        let mut board = board::emulated(&firmware).unwrap();
+        let mut console = Console::new(&mut board);
+        console.greet().unwrap();
+        let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
+        let model = load("teapot", false).unwrap();
+        let subject = Subject::mesh(Mesh::new_checked(&model.mesh).unwrap());
+        let frame = Frame::new(subject, camera(azimuth(0)).unwrap(), SIZE);
+        renderer
+            .show(&frame, Route::Memory, &mut |_, _| {})
+            .unwrap();
+
+        let folder = tempfile::tempdir().unwrap();
+        let tour = DemoArguments {
+            models: Vec::new(),
+            out: folder.path().to_owned(),
+            firmware: None,
+            orbit: 2,
+            sponge: 2,
+        };
+        let path = |name: &str| folder.path().join(name);
+        tour.orbit(&mut renderer, &path("orbit.png")).unwrap();
+        tour.sponge(&mut renderer, &path("sponge.png")).unwrap();
+        for name in SCENES {
+            show_scene(&mut renderer, name, &path(&format!("{name}.png"))).unwrap();
+        }
+    }
 }
