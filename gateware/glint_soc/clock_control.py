@@ -3,8 +3,8 @@
 from litex.gen import LiteXModule
 from migen import If, ResetSignal, Signal
 
-_LINGER = 31
-"""Clocks after the last work: the longest way of an event to its counter, and of an access through a register bank, are shorter."""
+LINGER = 31
+"""Clocks after the last work. The way of an event to its counter and that of an access through a register bank are shorter."""
 
 
 class ClockControl(LiteXModule):
@@ -19,9 +19,9 @@ class ClockControl(LiteXModule):
 
         # # #
 
-        awake, linger = Signal(), Signal(max=_LINGER + 1)
+        awake, linger = Signal(), Signal(max=LINGER + 1)
         self.comb += [
             awake.eq(ResetSignal("sys") | working | self.accessed),
             self.enable.eq(awake | (linger != 0)),
         ]
-        self.sync += If(awake, linger.eq(_LINGER)).Elif(linger != 0, linger.eq(linger - 1))
+        self.sync += If(awake, linger.eq(LINGER)).Elif(linger != 0, linger.eq(linger - 1))

@@ -9,9 +9,12 @@ from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStatus
 from migen import Array, If, Memory, Mux, Signal
 
+from .clock_control import LINGER
 from .packed import Struct
 
 _BITS = 32
+_DELAY = 3
+"""Most clocks from an event to its counter, beside the wait for the counter's turn."""
 
 
 class Counters(LiteXModule):
@@ -42,6 +45,8 @@ class Counters(LiteXModule):
         # # #
 
         count = len(members)
+        if count + _DELAY > LINGER:
+            raise ValueError(f"{count} counters: expected at most {LINGER - _DELAY}, because the clock of an idle block stops")
         words = Memory(_BITS, count)
         total, read = words.get_port(write_capable=True, async_read=True), words.get_port(async_read=True)
         self.specials += words, total, read

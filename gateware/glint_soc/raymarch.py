@@ -227,7 +227,7 @@ class Raymarcher(LiteXModule):
         if fields.prepass:
             registers += [*offset, self._cone_spread]
         self.parameters = PassParameters(registers)
-        # The parameters are copied although the block is disabled.
+        # Parameters are copied while the block is disabled too.
         self.clock_control = ClockControl(
             engine.raster_load | self.parameters.loading | (enable & engine.clock_control.enable))
         self.comb += [

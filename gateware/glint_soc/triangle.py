@@ -45,10 +45,10 @@ class TriangleEngine(LiteXModule):
     """Draws meshes, in two passes that may run at the same time for two frames.
 
     `readers` are three native 128-bit LiteDRAM read ports (triangles, vertices, raster), `writers` four write ports
-    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach. `sizes` are the picture
-    sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the input `field` for a
-    raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it uses the last two
-    writers; the registers are the same. Then `depths` may be left out too: the memory of the depths of a band.
+    (descriptors, lists, frame in even and in odd banks), all in the domain `sys`. `main_ram` is the region that the ports reach.
+    `sizes` are the picture sizes of this build, bit k for the size of code k. `smooth` builds smooth shading, `fields` builds the
+    input `field` for a raymarcher, `lines` the line engine. Without `triangles` the engine draws fields only, and of the ports it
+    uses the last two writers; the registers are the same. Then `depths` may be left out too: the memory of the depths of a band.
     """
 
     def __init__(self, platform, readers, writers, main_ram, sizes, triangles=True, smooth=False, fields=False, lines=False,
