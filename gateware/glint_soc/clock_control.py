@@ -10,8 +10,8 @@ LINGER = 31
 class ClockControl(LiteXModule):
     """Control of the clock of a block, its registers included.
 
-    The block's `working` is high while its state changes by itself, or by its pins. The SoC drives `accessed`, which is high while the
-    register bus shows an address of the block. While `enable` is low, the domain `sys` of the block may stand still.
+    `working`: the block computes, or its pins may change its state. `accessed`: the register bus shows an address of the block; the SoC
+    drives this input. While `enable` is low, the clock of the block's domain `sys` may stop.
     """
 
     def __init__(self, working):

@@ -100,14 +100,13 @@ class PassParameters(LiteXModule):
                 loads += len(copy)
                 self.sync += If(moves, copy.eq(wider))
 
-    def connect(self, bank, window):
-        """Returns the statements that connect the memory with the block's register bank, which LiteX puts into the window of this
-        number."""
+    def connect(self, bank):
+        """Returns the statements that connect the memory with the block's register bank."""
         address, bus = self._write.adr, bank.bus
         numbers = [bank.simple_csrs.index(register.simple_csrs[0]) for register in self._order]
         return [
             address.eq(bus.adr),
             self._write.dat_w.eq(bus.dat_w),
-            self._write.we.eq(bus.we & (bus.adr[len(address):] == window)),
+            self._write.we.eq(bus.we & bank.addressed),
             Case(self._turn, {turn: self._read.adr.eq(number) for turn, number in enumerate(numbers)}),
         ]

@@ -14,24 +14,25 @@ class RegisterBank(CSRBank):
 
         bus ─▶ is this the window? ─▶ flip-flops ─▶ LiteX's bank ─▶ data
 
-    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX. A bank is in the clock
-    domain `clock_domain` of its registers, if they have this attribute.
+    Data of a read come two clocks after the access, and a write has its effect one clock later than in LiteX. `addressed` is high while
+    `bus` shows an address of the bank. A bank is in the clock domain `clock_domain` of its registers, if they have this attribute.
     """
 
     def __init__(self, description, address=0, bus=None, paging=0x800, ordering="big"):
         access, selected = Interface.like(bus), Signal()
         CSRBank.__init__(self, description, 1, access, paging, ordering)
-        self.bus = bus
+        self.bus, self.addressed = bus, Signal()
 
         # # #
 
         number = Signal(log2_int(paging // 4))
         self.comb += [
+            self.addressed.eq(bus.adr[len(number):] == address),
             access.adr.eq(Cat(number, selected)),
             bus.dat_r.eq(access.dat_r),
         ]
         self.sync += [
-            selected.eq(bus.adr[len(number):] == address),
+            selected.eq(self.addressed),
             number.eq(bus.adr),
             access.dat_w.eq(bus.dat_w),
             access.we.eq(bus.we),

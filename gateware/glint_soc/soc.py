@@ -119,12 +119,12 @@ class GlintSoC(SoCCore):
 
     def do_finalize(self):
         # LiteX makes the register banks, and numbers the registers, only when it finalizes the SoC.
-        for name, _, window, bank in self.csr_bankarray.banks:
+        for name, _, _, bank in self.csr_bankarray.banks:
             block = getattr(self, name, None)
             if parameters := getattr(block, "parameters", None):
-                self.comb += parameters.connect(bank, window)
+                self.comb += parameters.connect(bank)
             if control := getattr(block, "clock_control", None):
-                self.comb += control.accessed.eq(bank.bus.adr[log2_int(CSR_PAGING // 4):] == window)
+                self.comb += control.accessed.eq(bank.addressed)
 
     def _inputs(self, name, bits):
         """The input pins `name` with `bits` bits: those that the board lacks are 0."""

@@ -121,8 +121,8 @@ class VirtualSoC(GlintSoC):
     def _gate_clocks(self, platform):
         """Stops the clocks of idle blocks: the simulation takes a quarter of the time.
 
-        What counts clocks freely, such as the turns of an arbiter, stops as well, so the cycles of a pass differ from those with clocks
-        that always run as they differ by the time of its start: by less than 1 %.
+        Free-running counters, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about 1 % from
+        those with clocks that never stop, as they differ with the time of its start.
         """
         add_sources(platform, "clock_gate")
         for name, block in list(vars(self).items()):
