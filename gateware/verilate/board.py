@@ -1,7 +1,7 @@
 """Builds the SoC of the virtual board as a shared library, which the crate `virtual-board` loads.
 
 For speed the model is compiled twice: a first build counts how often the BIOS takes each branch, and the second build, compiled with
-these counts, needs a fifth less time for a cycle. A library for a few frames is compiled once.
+these counts, needs a tenth less time for a cycle. A library for a few frames is compiled once.
 """
 
 import shutil
