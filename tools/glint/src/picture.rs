@@ -1,6 +1,5 @@
 //! Drawn frames in memory and in files.
 
-use glint_core::mesh::Rgb565;
 use glint_core::picture::Size;
 use glint_model::DepthScale;
 use std::io::{self, Write};
@@ -33,37 +32,9 @@ impl Image {
         }
     }
 
-    /// Converts the colours to 8 bits a channel by bit replication, like the gateware's video output.
+    /// The colours with 8 bits a channel.
     pub fn picture(&self) -> Picture {
-        let rgb = self
-            .colour
-            .iter()
-            .flat_map(|&colour| Rgb565(colour).to_rgb888())
-            .collect();
-        Picture::new(self.width as usize, self.height as usize, rgb)
-    }
-
-    /// The picture with one pixel for each `factor`×`factor` pixels: the mean of their channels of 8 bits, rounded to nearest. Pixels
-    /// beyond the last whole block are left out.
-    pub fn reduced(&self, factor: usize) -> Picture {
-        let factor = factor.max(1);
-        let (wide, whole) = (self.width as usize, self.picture());
-        let (width, height) = (wide / factor, self.height as usize / factor);
-        let count = (factor * factor) as u32;
-        let mean = |x: usize, y: usize, channel: usize| {
-            let rows = (y * factor..(y + 1) * factor)
-                .map(|row| &whole.rgb()[3 * (row * wide + x * factor)..][..3 * factor]);
-            let sum: u32 = rows
-                .flat_map(|row| row.iter().skip(channel).step_by(3))
-                .map(|&value| u32::from(value))
-                .sum();
-            ((sum + count / 2) / count) as u8
-        };
-        let rgb = (0..height).flat_map(|y| {
-            let mean = &mean;
-            (0..width).flat_map(move |x| (0..3).map(move |channel| mean(x, y, channel)))
-        });
-        Picture::new(width, height, rgb.collect())
+        Picture::from_rgb565(self.width as usize, self.height as usize, &self.colour)
     }
 
     /// Writes the distance along the camera's axis n in world units, as one little-endian f32 a pixel. A pixel without a surface,
@@ -173,26 +144,4 @@ pub fn write_animation(
     let mut animation = Animation::png(out, size, images.len() as u32, images_per_second)?;
     images.iter().try_for_each(|image| animation.add(image))?;
     animation.finish()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Image;
-
-    /// Blocks of 2×2 pixels: all black, all white, and one white of four.
-    #[test]
-    fn a_reduced_picture_has_the_means() {
-        let image = Image {
-            width: 6,
-            height: 2,
-            colour: vec![
-                0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, //
-                0, 0, 0xFFFF, 0xFFFF, 0, 0,
-            ],
-            depth: Vec::new(),
-        };
-        let rgb = [[0; 3], [255; 3], [64; 3]].concat();
-        assert_eq!(image.reduced(2).rgb(), rgb);
-        assert_eq!(image.reduced(1).rgb(), image.picture().rgb());
-    }
 }

@@ -1,6 +1,8 @@
-//! Pictures that the monitor captures.
+//! Pictures as monitors show them.
 
 use std::io::Write;
+
+use glint_core::mesh::Rgb565;
 
 /// Reason why a picture is not an enlarged RGB565 frame.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -31,14 +33,14 @@ pub enum PictureError {
         /// Red, green and blue of the pixel.
         found: [u8; 3],
     },
-    /// A colour that bit replication of RGB565 cannot produce.
+    /// A colour that is not of RGB565, widened by bit replication.
     #[error("pixel {x}, {y}: expected the RGB565 colour {expected:?}, found {found:?}")]
     Colour {
         /// Column of the pixel.
         x: usize,
         /// Line of the pixel.
         y: usize,
-        /// The colour that bit replication produces from the upper bits of the pixel.
+        /// The nearest colour of RGB565, widened.
         expected: [u8; 3],
         /// Red, green and blue of the pixel.
         found: [u8; 3],
@@ -62,6 +64,19 @@ impl Picture {
     pub fn new(width: usize, height: usize, rgb: Vec<u8>) -> Self {
         assert_eq!(rgb.len(), 3 * width * height, "three bytes a pixel");
         Self { width, height, rgb }
+    }
+
+    /// Creates a picture from the RGB565 colours of every pixel, by bit replication like the gateware's video output.
+    ///
+    /// # Panics
+    /// When the number of colours does not match the size.
+    #[must_use]
+    pub fn from_rgb565(width: usize, height: usize, colours: &[u16]) -> Self {
+        let mut rgb = Vec::with_capacity(3 * colours.len());
+        for &colour in colours {
+            rgb.extend(Rgb565(colour).to_rgb888());
+        }
+        Self::new(width, height, rgb)
     }
 
     /// Number of pixels of a line.
@@ -128,8 +143,8 @@ impl Picture {
                     });
                 }
                 if (x, y) == (left, top) {
-                    let colour = to_rgb565(found);
-                    let expected = from_rgb565(colour);
+                    let colour = Rgb565::from_rgb888(found);
+                    let expected = colour.to_rgb888();
                     if found != expected {
                         return Err(PictureError::Colour {
                             x,
@@ -138,11 +153,34 @@ impl Picture {
                             found,
                         });
                     }
-                    frame.push(colour);
+                    frame.push(colour.0);
                 }
             }
         }
         Ok(frame)
+    }
+
+    /// The picture with one pixel for each `factor`×`factor` pixels: the mean of their channels, rounded to nearest. Pixels beyond the
+    /// last whole block are left out.
+    #[must_use]
+    pub fn reduced(&self, factor: usize) -> Self {
+        let factor = factor.max(1);
+        let (width, height) = (self.width / factor, self.height / factor);
+        let count = (factor * factor) as u32;
+        let mut rgb = Vec::with_capacity(3 * width * height);
+        for y in 0..height {
+            for x in 0..width {
+                let mut sums = [0; 3];
+                for row in y * factor..(y + 1) * factor {
+                    for column in x * factor..(x + 1) * factor {
+                        let pixel = self.pixel(column, row);
+                        sums = std::array::from_fn(|i| sums[i] + u32::from(pixel[i]));
+                    }
+                }
+                rgb.extend(sums.map(|sum| ((sum + count / 2) / count) as u8));
+            }
+        }
+        Self::new(width, height, rgb)
     }
 
     /// Writes the picture as a PNG file.
@@ -160,19 +198,6 @@ impl Picture {
     }
 }
 
-/// Packs the upper bits of each channel: red in bits 15:11, green in 10:5, blue in 4:0.
-fn to_rgb565([r, g, b]: [u8; 3]) -> u16 {
-    u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
-}
-
-/// Widens each channel to 8 bits by bit replication.
-fn from_rgb565(colour: u16) -> [u8; 3] {
-    let five = |shift: u16| (colour >> shift & 0x1f) as u8;
-    let six = (colour >> 5 & 0x3f) as u8;
-    let widen = |channel: u8| channel << 3 | channel >> 2;
-    [widen(five(11)), six << 2 | six >> 4, widen(five(0))]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -183,19 +208,11 @@ mod tests {
             .map(|i| (i as u16).wrapping_mul(0x9e37))
             .collect();
         let (wide, high) = (width * scale, height * scale);
-        let rgb = (0..wide * high)
-            .flat_map(|i| from_rgb565(frame[i / wide / scale * width + i % wide / scale]))
+        let colours: Vec<u16> = (0..wide * high)
+            .map(|i| frame[i / wide / scale * width + i % wide / scale])
             .collect();
-        (frame, Picture::new(wide, high, rgb))
-    }
-
-    #[test]
-    fn every_rgb565_colour_survives_a_round_trip() {
-        for colour in 0..=u16::MAX {
-            assert_eq!(to_rgb565(from_rgb565(colour)), colour);
-        }
-        assert_eq!(from_rgb565(0xffff), [255; 3]);
-        assert_eq!(from_rgb565(0x8410), [0x84, 0x82, 0x84]);
+        let picture = Picture::from_rgb565(wide, high, &colours);
+        (frame, picture)
     }
 
     #[test]
@@ -232,7 +249,7 @@ mod tests {
             Err(PictureError::Colour {
                 x: 1,
                 y: 0,
-                expected: [0xff, 0, 0],
+                expected: [0xf7, 0, 0],
                 found: [0xf8, 0, 0]
             })
         );
@@ -251,5 +268,18 @@ mod tests {
                 })
             );
         }
+    }
+
+    /// Blocks of 2×2 pixels: all black, all white, and one white of four.
+    #[test]
+    fn a_reduced_picture_has_the_means() {
+        let colours = [
+            0, 0, 0xFFFF, 0xFFFF, 0xFFFF, 0, //
+            0, 0, 0xFFFF, 0xFFFF, 0, 0,
+        ];
+        let picture = Picture::from_rgb565(6, 2, &colours);
+        let rgb = [[0; 3], [255; 3], [64; 3]].concat();
+        assert_eq!(picture.reduced(2).rgb(), rgb);
+        assert_eq!(picture.reduced(1), picture);
     }
 }

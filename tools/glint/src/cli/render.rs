@@ -217,7 +217,7 @@ impl RenderArguments {
             scene,
         )?;
         remarks(frame, &stats)?.iter().for_each(warn);
-        out.write(|out| image.reduced(factor).write_png(out))?;
+        out.write(|out| image.picture().reduced(factor).write_png(out))?;
         if let Some(out) = depth {
             let first = frame.drawn()?.next();
             let scale = first.map(|frame| frame.constants()).transpose()?;
