@@ -63,11 +63,7 @@ pub struct Image {
 /// # Errors
 /// The firmware does not compile, or exceeds the SoC's memory.
 pub fn build(board: Board, features: &[&str]) -> Result<Image> {
-    let for_speed: &[&str] = if features.contains(&PEERS) {
-        &[FIRMWARE, "\"*\""]
-    } else {
-        &[]
-    };
+    let for_speed = features.contains(&PEERS).then_some("profile.firmware");
     compile(board, features, true, features, for_speed)
 }
 
@@ -78,7 +74,8 @@ pub fn build(board: Board, features: &[&str]) -> Result<Image> {
 /// As [`build`].
 pub fn check_peers() -> Result<Image> {
     let suffixes = [PEERS, "check"];
-    compile(Board::Virtual, &suffixes, true, &[PEERS], &[FIRMWARE])
+    let for_speed = format!("profile.firmware.package.{FIRMWARE}");
+    compile(Board::Virtual, &suffixes, true, &[PEERS], Some(&for_speed))
 }
 
 /// Builds the firmware for `board` with the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`, or
@@ -95,17 +92,17 @@ pub fn build_for(board: Board, scenes: &[Scene], features: &[&str]) -> Result<Im
     let needs = Needs::of(scenes);
     let parts = needs.features.iter().map(|feature| feature.name);
     let parts: Vec<_> = parts.chain(features.iter().copied()).collect();
-    compile(board, &names, false, &parts, &[])
+    compile(board, &names, false, &parts, None)
 }
 
 /// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name, and the
-/// packages `for_speed` are optimised for speed whatever the profile says.
+/// part `for_speed` of the Cargo profile has optimisation for speed.
 fn compile(
     board: Board,
     suffixes: &[&str],
     has_default: bool,
     features: &[&str],
-    for_speed: &[&str],
+    for_speed: Option<&str>,
 ) -> Result<Image> {
     let main_ram = main_ram(board)?;
     let names: &[&str] = match board {
@@ -130,10 +127,8 @@ fn compile(
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
     // Benchmarked functions of other crates that are generic are compiled in the firmware's crate.
-    for package in for_speed {
-        cargo
-            .arg("--config")
-            .arg(format!("profile.firmware.package.{package}.opt-level = 3"));
+    if let Some(part) = for_speed {
+        cargo.arg("--config").arg(format!("{part}.opt-level = 3"));
     }
     // The firmware has a target folder of its own, because cargo locks a target folder during a build.
     cargo
