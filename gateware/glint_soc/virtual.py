@@ -1,17 +1,18 @@
-"""The virtual board: the SoC with plain pins for a harness, and LiteDRAM's model of the DDR3 memory."""
+"""The virtual board: the SoC with plain pins for a harness, and a model of the DDR3 memory."""
 
 import os
 import re
 
+from litedram.core.bankmachine import BankMachine
 from litedram.modules import MT41K64M16
-from litedram.phy.model import SDRAMPHYModel
 from litex.build.generic_platform import GenericPlatform, Pins, Subsignal
 from litex.build.sim.common import sim_special_overrides
 from litex.gen import LiteXModule
-from migen import Cat, ClockDomain, ClockDomainsRenamer, Instance, Mux, Signal
-from migen.fhdl.specials import Memory
+from migen import ClockDomain, ClockDomainsRenamer, Instance, Signal
 from migen.genlib.resetsync import AsyncResetSynchronizer
 
+from .clock_control import ClockControl
+from .memory_model import MemoryModel
 from .rtl import add_sources
 from .soc import SYS_CLK_FREQ, GlintSoC
 
@@ -102,8 +103,7 @@ class VirtualSoC(GlintSoC):
         GlintSoC.__init__(self, platform, CRG(platform), build_id, blocks, uart_name="sim", smooth=smooth, depths=depths,
                           fields=fields, sys_clk_freq=sys_clk_freq)
         module = MT41K64M16(sys_clk_freq, "1:4")
-        self.ddrphy = SDRAMPHYModel(module=module, data_width=16, clk_freq=sys_clk_freq)
-        self._prepare_banks()
+        self.ddrphy = MemoryModel(module, data_width=16, clk_freq=sys_clk_freq)
         # The memories have no initial contents, because `$readmemh` would tie the build to a path. The harness loads the ROM.
         self.rom.mem.init = None
         self.sram.mem.init = None
@@ -119,44 +119,31 @@ class VirtualSoC(GlintSoC):
                           for name in ("hsync", "vsync", "de", "r", "g", "b")]
 
     def _gate_clocks(self, platform):
-        """Stops the clocks of idle blocks: the simulation takes a quarter of the time.
+        """Stops the clocks of idle blocks and of idle banks of the memory: the simulation takes a quarter of the time.
 
-        Free-running counters, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about 1 % from
-        those with clocks that never stop, as they differ with the time of its start.
+        Free-running counters of blocks, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about
+        1 % from those with clocks that never stop, as they differ with the time of its start.
         """
         add_sources(platform, "clock_gate")
         for name, block in list(vars(self).items()):
             if control := getattr(block, "clock_control", None):
-                domain = ClockDomain(name)
-                setattr(self, f"cd_{name}", domain)
-                self.comb += domain.rst.eq(self.crg.cd_sys.rst)
-                self.specials += Instance("clock_gate", name=f"{name}_clock",
-                    i_clk=self.crg.cd_sys.clk, i_enable=control.enable, o_gated=domain.clk)
-                ClockDomainsRenamer(name)(block)
+                self._gate_clock(name, block, control.enable)
                 for register in block.get_csrs():
                     register.clock_domain = name
+        banks = [module for _, module in self.sdram.controller._submodules if isinstance(module, BankMachine)]
+        for number, bank in enumerate(banks):
+            control = ClockControl(bank.req.valid | bank.req.lock | bank.refresh_req)
+            setattr(self, f"bank{number}_clock_control", control)
+            self._gate_clock(f"bank{number}", bank, control.enable)
 
-    def _prepare_banks(self):
-        """Gives the memory of each DDR3 bank a name that the harness can rely on, and lets it write whole words."""
-        # Reads the private `_fragment`, because get_fragment() would remove the module from its parent's fragment.
-        banks = [special for _, module in self.ddrphy._submodules for special in module._fragment.specials
-                 if isinstance(special, Memory)]
-        for number, memory in enumerate(sorted(banks, key=lambda memory: memory.duid)):
-            memory.name_override = f"ddr3_bank{number}"
-            self._write_words(memory)
-
-    def _write_words(self, memory):
-        """Replaces the write port of a memory, which writes single bytes, by one that merges bytes into the word and writes that: the
-        simulation checks each write enable in each cycle."""
-        port = next(port for port in memory.ports if port.we is not None)
-        size = port.we_granularity
-        enables, data = port.we, port.dat_w
-        port.we, port.dat_w, port.we_granularity = Signal(), Signal(memory.width), memory.width
-        before = memory.get_port(async_read=True)
-        self.specials += before
-        merged = (Mux(enable, data[size * i:size * (i + 1)], before.dat_r[size * i:size * (i + 1)])
-                  for i, enable in enumerate(enables))
-        self.comb += [before.adr.eq(port.adr), port.we.eq(enables != 0), port.dat_w.eq(Cat(*merged))]
+    def _gate_clock(self, name, module, enable):
+        """Clocks a module by a domain of the given name, which stops while `enable` is low."""
+        domain = ClockDomain(name)
+        setattr(self, f"cd_{name}", domain)
+        self.comb += domain.rst.eq(self.crg.cd_sys.rst)
+        self.specials += Instance("clock_gate", name=f"{name}_clock",
+            i_clk=self.crg.cd_sys.clk, i_enable=enable, o_gated=domain.clk)
+        ClockDomainsRenamer(name)(module)
 
     def init_rom(self, name, contents=(), auto_size=True):
         """Leaves the ROM empty and at its full size: the harness loads the BIOS or another program."""

@@ -30,6 +30,7 @@ import register_bus  # noqa: E402
 import registers  # noqa: E402
 import memory_bridge  # noqa: E402
 import memory_crossbar  # noqa: E402
+import memory_model  # noqa: E402
 import netlist  # noqa: E402
 import parameters  # noqa: E402
 import route  # noqa: E402
@@ -95,6 +96,7 @@ def test():
         **{f"register banks: {name}": action for name, action in register_bus.CHECKS.items()},
         **{f"memory bridge: {name}": action for name, action in memory_bridge.CHECKS.items()},
         **{f"memory crossbar: {name}": action for name, action in memory_crossbar.CHECKS.items()},
+        **{f"memory model: {name}": action for name, action in memory_model.CHECKS.items()},
         **{f"Yosys' table of {name}": action for name, action in tables.CHECKS.items()},
         **{f"sizes: {name}": action for name, action in size.CHECKS.items()},
         **{f"netlists: {name}": action for name, action in netlist.CHECKS.items()},

@@ -3,7 +3,6 @@
 #include "soc.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <deque>
 #include <vector>
@@ -30,13 +29,6 @@ constexpr uint32_t CLOCK_UNIT = 250'000;
 constexpr uint32_t PIXEL_TICKS = 74'250'000 / CLOCK_UNIT;
 constexpr uint32_t PIXEL_PERIOD = CONFIG_CLOCK_FREQUENCY / CLOCK_UNIT;
 static_assert(CONFIG_CLOCK_FREQUENCY % CLOCK_UNIT == 0 && PIXEL_TICKS < PIXEL_PERIOD);
-
-// LiteDRAM maps addresses ROW_BANK_COL: above the 16 bytes of a word come 7 bits of column, 3 of bank, 13 of row.
-// A bank's memory is indexed by row and column.
-constexpr size_t WORD_BYTES = 16;
-constexpr size_t COLUMN_BITS = 7;
-constexpr size_t BANK_BITS = 3;
-constexpr size_t RUN_BYTES = WORD_BYTES << COLUMN_BITS;  // Contiguous bytes in one bank.
 
 // Levels of the image sensor's port in a period of PCLK, as for soc_camera_send, and the first bit of its SCCB wires in soc_outputs.
 constexpr uint16_t CAMERA_STILL = 1 << 10;
@@ -199,30 +191,11 @@ struct Soc : Harness {
         std::memcpy(rom, bytes, std::min(length, sizeof rom));
     }
 
-    // Divides the `length` bytes of DDR3 from `offset` on into runs that are contiguous in a bank, and calls `copy(memory, at,
-    // count)` for each run: its address in the bank's memory, its position in the `length` bytes, and its number of bytes.
-    template <typename Copy>
-    void for_each_run(size_t offset, size_t length, Copy copy) {
-        auto *root = top.rootp;
-        const std::array banks = {
-            &root->glint_virtual__DOT__ddr3_bank0, &root->glint_virtual__DOT__ddr3_bank1,
-            &root->glint_virtual__DOT__ddr3_bank2, &root->glint_virtual__DOT__ddr3_bank3,
-            &root->glint_virtual__DOT__ddr3_bank4, &root->glint_virtual__DOT__ddr3_bank5,
-            &root->glint_virtual__DOT__ddr3_bank6, &root->glint_virtual__DOT__ddr3_bank7,
-        };
-        static_assert(banks.size() == 1 << BANK_BITS);
-        static_assert(sizeof *banks[0] * banks.size() == MAIN_RAM_SIZE);
-        size_t done = 0;
-        while (done < length) {
-            const size_t at = offset + done;
-            const size_t bank = at / RUN_BYTES % banks.size();
-            const size_t row = at / RUN_BYTES / banks.size();
-            const size_t within = at % RUN_BYTES;
-            const size_t count = std::min(length - done, RUN_BYTES - within);
-            auto *memory = reinterpret_cast<uint8_t *>(banks[bank]->m_storage);
-            copy(memory + row * RUN_BYTES + within, done, count);
-            done += count;
-        }
+    // The contents of DDR3, which lie in the order of their addresses.
+    uint8_t *ddr() const {
+        auto &memory = top.rootp->glint_virtual__DOT__ddr3.m_storage;
+        static_assert(sizeof memory == MAIN_RAM_SIZE);
+        return reinterpret_cast<uint8_t *>(memory);
     }
 
     // Empties both caches of the CPU, while no line is filled: see soc_ddr_write.
@@ -298,15 +271,11 @@ void soc_instructions_clear(Soc *soc) { soc->instructions.clear(); }
 
 int soc_filling(const Soc *soc) { return soc->filling(); }
 void soc_ddr_read(Soc *soc, uint32_t offset, uint8_t *bytes, size_t length) {
-    soc->for_each_run(offset, length, [bytes](const uint8_t *memory, size_t at, size_t count) {
-        std::memcpy(bytes + at, memory, count);
-    });
+    std::memcpy(bytes, soc->ddr() + offset, length);
 }
 
 void soc_ddr_write(Soc *soc, uint32_t offset, const uint8_t *bytes, size_t length) {
-    soc->for_each_run(offset, length, [bytes](uint8_t *memory, size_t at, size_t count) {
-        std::memcpy(memory, bytes + at, count);
-    });
+    std::memcpy(soc->ddr() + offset, bytes, length);
     soc->drop_caches();
 }
 

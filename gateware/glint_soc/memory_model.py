@@ -1,0 +1,84 @@
+"""The DDR3 memory of the virtual board, with its PHY, as LiteDRAM's controller sees both."""
+
+from litedram.phy.dfi import Interface
+from litedram.phy.model import get_sdram_phy_settings
+from litex.gen import LiteXModule
+from migen import Cat, If, Memory, Mux, Signal, log2_int
+
+# Levels of ras_n, cas_n and we_n, from the lowest bit on, that make a command.
+_ACTIVATE, _READ, _WRITE = 0b110, 0b101, 0b001
+
+
+class MemoryModel(LiteXModule):
+    """Memory behind the DFI port `dfi`, with the phases and latencies of LiteDRAM's own model of a PHY.
+
+    That model has a memory with its data path for each bank. This one has a single memory, which makes the virtual board faster and whose
+    words lie in the order of their addresses: row, bank, column. It relies on the controller in two ways: a cycle has at most one
+    command of each kind, and a bank is open when a row of it is read or written.
+    """
+
+    def __init__(self, module, data_width, clk_freq):
+        self.module = module
+        self.settings = settings = get_sdram_phy_settings(module.memtype, data_width, clk_freq)
+        geometry = module.geom_settings
+        self.dfi = Interface(geometry.addressbits, geometry.bankbits, settings.nranks, settings.dfi_databits, settings.nphases)
+
+        # # #
+
+        phases = self.dfi.phases
+        width = settings.dfi_databits*settings.nphases
+        columns_of_word = log2_int(width//data_width)
+        activate, activated_bank, activated_row = self._command(_ACTIVATE)
+        read, read_bank, read_column = self._command(_READ)
+        write, write_bank, write_column = self._command(_WRITE)
+
+        rows = Memory(geometry.rowbits, 2**geometry.bankbits)
+        opening, *opened = rows.get_port(write_capable=True), rows.get_port(async_read=True), rows.get_port(async_read=True)
+        self.specials += rows, opening, *opened
+        self.comb += [opening.adr.eq(activated_bank), opening.dat_w.eq(activated_row), opening.we.eq(activate)]
+
+        # The harness finds the memory by its name.
+        memory = Memory(width, 2**(geometry.rowbits + geometry.bankbits + geometry.colbits - columns_of_word), name="ddr3")
+        reading, before, writing = memory.get_port(async_read=True), memory.get_port(async_read=True), memory.get_port(write_capable=True)
+        self.specials += memory, reading, before, writing
+
+        def address(port, bank, column):
+            self.comb += port.adr.eq(bank)
+            return Cat(column[columns_of_word:geometry.colbits], bank, port.dat_r)
+
+        # The data of a read leave `read_latency` cycles after it, those of a write come `write_latency` cycles after it.
+        data = Signal(width)
+        self.comb += reading.adr.eq(address(opened[0], read_bank, read_column)), If(read, data.eq(reading.dat_r))
+        self.comb += [
+            Cat(*(phase.rddata for phase in phases)).eq(self._delayed(data, settings.read_latency)),
+            Cat(*(phase.rddata_valid for phase in phases)).eq(self._delayed(read, settings.read_latency)),
+        ]
+        place = Signal(len(writing.adr))
+        self.comb += [
+            place.eq(address(opened[1], write_bank, write_column)),
+            writing.we.eq(self._delayed(write, settings.write_latency)),
+            writing.adr.eq(self._delayed(place, settings.write_latency)),
+            before.adr.eq(writing.adr),
+        ]
+        # Writes whole words, because the simulation checks each write enable in each cycle.
+        new = Cat(*(phase.wrdata for phase in phases))
+        is_kept = Cat(*(phase.wrdata_mask for phase in phases))
+        merged = (Mux(is_kept[i], before.dat_r[8*i:8*(i + 1)], new[8*i:8*(i + 1)]) for i in range(width//8))
+        self.comb += If(writing.we, writing.dat_w.eq(Cat(*merged)))
+
+    def _command(self, levels):
+        """Returns whether a phase has the command with these levels, and its bank and address."""
+        phases = self.dfi.phases
+        issued, bank, address = Signal(), Signal.like(phases[0].bank), Signal.like(phases[0].address)
+        for phase in phases:
+            self.comb += If(~phase.cs_n & (Cat(phase.ras_n, phase.cas_n, phase.we_n) == levels),
+                issued.eq(1), bank.eq(phase.bank), address.eq(phase.address))
+        return issued, bank, address
+
+    def _delayed(self, signal, cycles):
+        """Returns the value that `signal` had some cycles ago."""
+        for _ in range(cycles):
+            after = Signal.like(signal)
+            self.sync += after.eq(signal)
+            signal = after
+        return signal
