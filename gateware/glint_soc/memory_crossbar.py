@@ -7,6 +7,8 @@ from litedram.core.crossbar import LiteDRAMCrossbar
 from migen import Array, Cat, If, Mux, Replicate, Signal
 from migen.genlib import roundrobin
 
+from .delay import delayed
+
 
 class MemoryCrossbar(LiteDRAMCrossbar):
     """Replaces LiteDRAM's crossbar, whose ports it offers (`get_port`).
@@ -101,23 +103,15 @@ class MemoryCrossbar(LiteDRAMCrossbar):
         writers, writer = [], 0
         for port, ended in zip(ports, answered):
             if port.mode != "write":
-                self.comb += port.rdata.valid.eq(self._delayed(ended & done_read, self.read_latency))
+                self.comb += port.rdata.valid.eq(delayed(self, ended & done_read, self.read_latency))
                 self.comb += port.rdata.data.eq(controller.rdata)
             if port.mode != "read":
-                self.comb += port.wdata.ready.eq(self._delayed(ended & done_write, self.write_latency))
+                self.comb += port.wdata.ready.eq(delayed(self, ended & done_write, self.write_latency))
                 writer |= Mux(ended, len(writers), 0)
                 writers.append(port)
         # Memory ignores data and strobes that no port writes, so they may be those of any port.
-        writer = self._delayed(writer, self.write_latency)
+        writer = delayed(self, writer, self.write_latency)
         self.comb += [
             controller.wdata.eq(Array(port.wdata.data for port in writers)[writer]),
             controller.wdata_we.eq(Array(port.wdata.we for port in writers)[writer]),
         ]
-
-    def _delayed(self, value, clocks):
-        """Returns `value` as it was `clocks` ago."""
-        for _ in range(clocks):
-            later = Signal.like(value)
-            self.sync += later.eq(value)
-            value = later
-        return value

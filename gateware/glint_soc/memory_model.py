@@ -5,6 +5,8 @@ from litedram.phy.model import get_sdram_phy_settings
 from litex.gen import LiteXModule
 from migen import Cat, If, Memory, Mux, Signal, log2_int
 
+from .delay import delayed
+
 # Levels of ras_n, cas_n and we_n, from the lowest bit on, that make a command.
 _ACTIVATE, _READ, _WRITE = 0b110, 0b101, 0b001
 
@@ -33,31 +35,32 @@ class MemoryModel(LiteXModule):
         write, write_bank, write_column = self._command(_WRITE)
 
         rows = Memory(geometry.rowbits, 2**geometry.bankbits)
-        opening, *opened = rows.get_port(write_capable=True), rows.get_port(async_read=True), rows.get_port(async_read=True)
-        self.specials += rows, opening, *opened
+        opening = rows.get_port(write_capable=True)
+        self.specials += rows, opening
         self.comb += [opening.adr.eq(activated_bank), opening.dat_w.eq(activated_row), opening.we.eq(activate)]
+
+        def address(bank, column):
+            """The address of a word in the open row of its bank."""
+            row = rows.get_port(async_read=True)
+            self.specials += row
+            self.comb += row.adr.eq(bank)
+            return Cat(column[columns_of_word:geometry.colbits], bank, row.dat_r)
 
         # The harness finds the memory by its name.
         memory = Memory(width, 2**(geometry.rowbits + geometry.bankbits + geometry.colbits - columns_of_word), name="ddr3")
         reading, before, writing = memory.get_port(async_read=True), memory.get_port(async_read=True), memory.get_port(write_capable=True)
         self.specials += memory, reading, before, writing
 
-        def address(port, bank, column):
-            self.comb += port.adr.eq(bank)
-            return Cat(column[columns_of_word:geometry.colbits], bank, port.dat_r)
-
         # The data of a read leave `read_latency` cycles after it, those of a write come `write_latency` cycles after it.
-        data = Signal(width)
-        self.comb += reading.adr.eq(address(opened[0], read_bank, read_column)), If(read, data.eq(reading.dat_r))
+        data, place = Signal(width), Signal(len(writing.adr))
         self.comb += [
-            Cat(*(phase.rddata for phase in phases)).eq(self._delayed(data, settings.read_latency)),
-            Cat(*(phase.rddata_valid for phase in phases)).eq(self._delayed(read, settings.read_latency)),
-        ]
-        place = Signal(len(writing.adr))
-        self.comb += [
-            place.eq(address(opened[1], write_bank, write_column)),
-            writing.we.eq(self._delayed(write, settings.write_latency)),
-            writing.adr.eq(self._delayed(place, settings.write_latency)),
+            reading.adr.eq(address(read_bank, read_column)),
+            If(read, data.eq(reading.dat_r)),
+            Cat(*(phase.rddata for phase in phases)).eq(delayed(self, data, settings.read_latency)),
+            Cat(*(phase.rddata_valid for phase in phases)).eq(delayed(self, read, settings.read_latency)),
+            place.eq(address(write_bank, write_column)),
+            writing.we.eq(delayed(self, write, settings.write_latency)),
+            writing.adr.eq(delayed(self, place, settings.write_latency)),
             before.adr.eq(writing.adr),
         ]
         # Writes whole words, because the simulation checks each write enable in each cycle.
@@ -67,18 +70,10 @@ class MemoryModel(LiteXModule):
         self.comb += If(writing.we, writing.dat_w.eq(Cat(*merged)))
 
     def _command(self, levels):
-        """Returns whether a phase has the command with these levels, and its bank and address."""
+        """Returns whether a phase issues the command with these levels, and the bank and address of the command."""
         phases = self.dfi.phases
         issued, bank, address = Signal(), Signal.like(phases[0].bank), Signal.like(phases[0].address)
         for phase in phases:
             self.comb += If(~phase.cs_n & (Cat(phase.ras_n, phase.cas_n, phase.we_n) == levels),
                 issued.eq(1), bank.eq(phase.bank), address.eq(phase.address))
         return issued, bank, address
-
-    def _delayed(self, signal, cycles):
-        """Returns the value that `signal` had some cycles ago."""
-        for _ in range(cycles):
-            after = Signal.like(signal)
-            self.sync += after.eq(signal)
-            signal = after
-        return signal
