@@ -119,7 +119,7 @@ class VirtualSoC(GlintSoC):
                           for name in ("hsync", "vsync", "de", "r", "g", "b")]
 
     def _gate_clocks(self, platform):
-        """Stops the clocks of idle blocks and of idle banks of the memory: the simulation takes a quarter of the time.
+        """Stops the clocks of idle blocks, and of idle banks of LiteDRAM, which the simulation then does not evaluate.
 
         Free-running counters of blocks, such as the turns of an arbiter, stop with their clock. So the cycles of a pass differ by about
         1 % from those with clocks that never stop, as they differ with the time of its start.
