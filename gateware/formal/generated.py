@@ -45,7 +45,8 @@ class _Crossbar(Module):
 def write(source, folder):
     """Writes the crossbar in the file `source`, `memory_crossbar.py` or a mutation of it, as the Verilog module `memory_crossbar`
     to `folder`, and returns the path."""
-    module = _Crossbar(runpy.run_path(str(source))["MemoryCrossbar"])
+    # The name puts a mutation into the package too, so that it finds the modules that it imports.
+    module = _Crossbar(runpy.run_path(str(source), run_name="glint_soc.memory_crossbar")["MemoryCrossbar"])
     path = folder / "memory_crossbar.v"
     path.write_text(str(verilog.convert(module, module.ios, name="memory_crossbar")))
     return path
