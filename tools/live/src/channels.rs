@@ -51,7 +51,8 @@ impl Channels {
     }
 
     /// The way to a board with the motion sensor and the hand of `motion`.
-    pub(crate) fn to_board(motion: Option<Arc<Motion>>) -> (Self, Receiver<Request>) {
+    #[must_use]
+    pub fn to_board(motion: Option<Arc<Motion>>) -> (Self, Receiver<Request>) {
         let (requests, queue) = sync_channel(MAX_REQUESTS);
         let channels = Self {
             hub: Hub::default(),

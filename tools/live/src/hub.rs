@@ -61,9 +61,18 @@ impl State {
 }
 
 impl Queue {
+    /// Adds a message. A queue above the limit is emptied, and its viewer is closed by the next [`Hub::take`].
     fn push(&mut self, message: Message) {
         self.bytes += message.length();
-        self.messages.push_back(message);
+        if self.is_behind() {
+            self.messages = VecDeque::new();
+        } else {
+            self.messages.push_back(message);
+        }
+    }
+
+    fn is_behind(&self) -> bool {
+        self.bytes > MAX_WAITING
     }
 }
 
@@ -140,7 +149,7 @@ impl Hub {
     pub fn take(&self, id: Id) -> Option<Vec<Message>> {
         let mut state = self.lock();
         let queue = state.viewers.get_mut(&id)?;
-        if queue.bytes > MAX_WAITING {
+        if queue.is_behind() {
             return None;
         }
         queue.bytes = 0;
@@ -260,6 +269,7 @@ mod tests {
         for _ in 0..65 {
             hub.send_console(&line);
         }
+        assert!(hub.lock().viewers[&id].messages.is_empty());
         assert!(hub.take(id).is_none());
     }
 }

@@ -5,7 +5,7 @@ use glint_live::viewer::Reason;
 use glint_live::{Channels, Message as ToPage, Viewer};
 use std::io::ErrorKind;
 use std::net::TcpStream;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, WebSocket};
@@ -13,8 +13,28 @@ use tungstenite::{Bytes, Error, Message, WebSocket};
 /// Longest wait for a message from the page, after which the messages for the page are sent.
 const LOOK: Duration = Duration::from_millis(4);
 
+/// How long a page may be silent. Browsers answer a ping without the page's script.
+#[derive(Clone, Copy)]
+pub struct Patience {
+    /// Silence after which the page gets a ping.
+    pub quiet: Duration,
+    /// Silence after which the connection is closed, so that a page out of reach does not keep control.
+    pub lost: Duration,
+}
+
+/// The silence that a page on a slow network may have.
+pub const PATIENCE: Patience = Patience {
+    quiet: Duration::from_secs(10),
+    lost: Duration::from_secs(30),
+};
+
 /// Serves a page whose request has been accepted; `rest` was received after the request.
-pub fn serve(stream: TcpStream, rest: Vec<u8>, channels: &Channels) -> tungstenite::Result<()> {
+pub fn serve(
+    stream: TcpStream,
+    rest: Vec<u8>,
+    channels: &Channels,
+    patience: Patience,
+) -> tungstenite::Result<()> {
     stream.set_read_timeout(Some(LOOK))?;
     stream.set_write_timeout(Some(LOOK))?;
     let config = WebSocketConfig::default()
@@ -24,7 +44,7 @@ pub fn serve(stream: TcpStream, rest: Vec<u8>, channels: &Channels) -> tungsteni
     let Some(mut viewer) = Viewer::join(channels) else {
         return close(&mut socket, "expected at most 16 open pages");
     };
-    let result = exchange(&mut socket, &mut viewer, channels);
+    let result = exchange(&mut socket, &mut viewer, channels, patience);
     viewer.leave(channels);
     match result? {
         Some(reason) => close(&mut socket, reason),
@@ -37,9 +57,20 @@ fn exchange(
     socket: &mut WebSocket<TcpStream>,
     viewer: &mut Viewer,
     channels: &Channels,
+    patience: Patience,
 ) -> tungstenite::Result<Option<Reason>> {
     let mut is_sent = true;
+    let mut heard = Instant::now();
+    let mut is_asked = false;
     loop {
+        let silence = heard.elapsed();
+        if silence >= patience.lost {
+            return Ok(Some("the page does not answer"));
+        }
+        if silence >= patience.quiet && !is_asked {
+            is_done(socket.write(Message::Ping(Bytes::new())))?;
+            is_asked = true;
+        }
         // Pictures that come while the last one is on its way replace each other.
         if is_sent {
             let Some(messages) = channels.hub.take(viewer.id()) else {
@@ -59,6 +90,8 @@ fn exchange(
             }
             Err(error) => return Err(error),
         };
+        heard = Instant::now();
+        is_asked = false;
         let received = match &message {
             Message::Text(text) => viewer.receive_text(text, channels),
             Message::Binary(bytes) => viewer.receive_bytes(bytes, channels),
@@ -100,4 +133,41 @@ fn close(socket: &mut WebSocket<TcpStream>, reason: Reason) -> tungstenite::Resu
     };
     socket.close(Some(frame))?;
     socket.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::net::TcpListener;
+    use std::thread::scope;
+
+    const SHORT: Patience = Patience {
+        quiet: Duration::from_millis(50),
+        lost: Duration::from_millis(200),
+    };
+
+    #[test]
+    fn a_page_that_does_not_answer_is_closed_and_one_that_does_is_not() {
+        let (channels, _requests) = Channels::to_board(None);
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let open = || TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let serve = || serve(listener.accept().unwrap().0, Vec::new(), &channels, SHORT);
+
+        let silent = open();
+        serve().unwrap();
+        assert!(!channels.hub.has_viewers());
+        drop(silent);
+
+        let stream = open();
+        scope(|threads| {
+            // Ends with the stream.
+            threads.spawn(serve);
+            let mut page = WebSocket::from_raw_socket(stream, Role::Client, None);
+            let pings = SHORT.lost.as_millis() / SHORT.quiet.as_millis() + 1;
+            for _ in 0..pings {
+                while !matches!(page.read().unwrap(), Message::Ping(_)) {}
+            }
+            drop(page);
+        });
+    }
 }

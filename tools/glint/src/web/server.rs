@@ -1,6 +1,6 @@
 //! Listens for browsers, checks their requests, and serves the files of the page.
 
-use super::connection;
+use super::connection::{self, PATIENCE};
 use crate::board::BoardError;
 use glint_live::files::{FILES, File, SCRIPT};
 use glint_live::hub::MAX_VIEWERS;
@@ -151,7 +151,7 @@ fn serve(mut stream: TcpStream, shared: &Shared) -> tungstenite::Result<()> {
         (Ok(Answer::Socket), Ok((request, rest))) => match create_response(&request) {
             Ok(response) => {
                 write_response(&mut stream, &response)?;
-                connection::serve(stream, rest, &shared.channels)
+                connection::serve(stream, rest, &shared.channels, PATIENCE)
             }
             Err(error) => {
                 let text = format!("expected a WebSocket request: {error}\n");
