@@ -5,16 +5,24 @@ const RETRY_MS = 1000;
 // or bytes.
 export function startLink({ opened, received, closed }) {
   let socket;
+  let isOpen = false;
 
   function connect() {
     const address = new URL("socket", location.href);
     address.protocol = "ws:";
     socket = new WebSocket(address);
     socket.binaryType = "arraybuffer";
-    socket.addEventListener("open", opened);
+    socket.addEventListener("open", () => {
+      isOpen = true;
+      opened();
+    });
     socket.addEventListener("message", ({ data }) => received(data));
     socket.addEventListener("close", ({ reason }) => {
-      closed(`The board's program has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`);
+      const wasOpen = isOpen;
+      isOpen = false;
+      closed(wasOpen
+        ? `The board's program has closed the connection${reason ? `: ${reason}` : ""}. Trying again.`
+        : "The board's program does not answer. If it was started again, open the address that it prints now. Trying again.");
       setTimeout(connect, RETRY_MS);
     });
   }

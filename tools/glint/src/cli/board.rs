@@ -1,7 +1,7 @@
 //! `glint board`.
 
 use super::common::{LineArguments, bad_value};
-use super::messages::{say, warn};
+use super::messages::{note, say, warn};
 use super::output::Output;
 use super::progress::{show_simulation, spinner};
 use super::terminal::talk;
@@ -109,6 +109,16 @@ impl BoardArguments {
         };
         let url = server.url()?;
         say(&url)?;
+        if address.ip().is_unspecified() {
+            let host = if address.is_ipv4() {
+                "127.0.0.1"
+            } else {
+                "[::1]"
+            };
+            note(format_args!(
+                "on another device, open it with this machine's address in place of {host}"
+            ));
+        }
         if let Some(ready) = ready {
             ready.write(|out| writeln!(out, "{url}"))?;
         }

@@ -6,7 +6,7 @@ use glint_live::files::{FILES, File, SCRIPT};
 use glint_live::hub::MAX_VIEWERS;
 use glint_live::{Channels, Live, session};
 use std::io::{self, Read, Write};
-use std::net::{IpAddr, SocketAddr, TcpListener, TcpStream};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
@@ -68,16 +68,19 @@ impl Server {
         })
     }
 
-    /// The address of the page, with the token that opens it.
+    /// The address of the page on this machine, with the token that opens it.
     ///
     /// # Errors
     /// The system does not tell the port.
     pub fn url(&self) -> io::Result<String> {
-        Ok(format!(
-            "http://{}/{}/",
-            self.listener.local_addr()?,
-            self.token
-        ))
+        let mut address = self.listener.local_addr()?;
+        // Not every browser opens an unspecified address.
+        match address.ip() {
+            IpAddr::V4(ip) if ip.is_unspecified() => address.set_ip(Ipv4Addr::LOCALHOST.into()),
+            IpAddr::V6(ip) if ip.is_unspecified() => address.set_ip(Ipv6Addr::LOCALHOST.into()),
+            _ => {}
+        }
+        Ok(format!("http://{address}/{}/", self.token))
     }
 
     /// Serves the page of the board `name`, which runs its firmware, until `stop` is set.
@@ -343,6 +346,8 @@ mod tests {
     #[test]
     fn a_server_on_all_addresses_accepts_each_of_them_but_no_name() {
         let all = "0.0.0.0:80".parse().unwrap();
+        let url = Server::bind("0.0.0.0:0".parse().unwrap()).unwrap().url();
+        assert!(url.unwrap().starts_with("http://127.0.0.1:"));
         assert!(is_host("192.168.1.7", all) && is_host("[fe80::1]:80", all));
         assert!(!is_host("rebound.example", all) && !is_host("192.168.1.7:81", all));
     }
