@@ -1,5 +1,5 @@
 // Curves over time: of a frame, of the engines' cycles, of the attitude.
-const SAMPLES = 240;
+const SHOWN_MS = 60_000;
 const COLOURS = ["#3a9bff", "#ff8a3c", "#3fbf7f"];
 const CURVES = [
   { id: "time", unit: "ms", names: ["frame"], values: ({ stats }) => [stats && (stats.cycles / stats.clock) * 1000] },
@@ -14,33 +14,34 @@ function angles([w, x, y, z]) {
   return [yaw, pitch, roll].map((angle) => (angle * 180) / Math.PI);
 }
 
-function draw(canvas, series) {
+// Draws the values of samples over the time before `now`.
+function draw(canvas, samples, now, count) {
   const context = canvas.getContext("2d");
   const { width, height } = canvas;
-  const all = series.flat().filter(Number.isFinite);
+  const all = samples.flatMap(({ found }) => found).filter(Number.isFinite);
   const [low, high] = [Math.min(0, ...all), Math.max(1e-6, ...all)];
   context.clearRect(0, 0, width, height);
-  series.forEach((values, number) => {
+  for (let number = 0; number < count; number++) {
     context.strokeStyle = COLOURS[number];
     context.lineWidth = 2;
     context.beginPath();
-    values.forEach((value, i) => {
-      if (Number.isFinite(value)) context.lineTo((i / (SAMPLES - 1)) * width, height - 3 - ((value - low) / (high - low)) * (height - 6));
-    });
+    for (const { at, found } of samples) {
+      const value = found[number];
+      if (Number.isFinite(value)) context.lineTo(width * (1 - (now - at) / SHOWN_MS), height - 3 - ((value - low) / (high - low)) * (height - 6));
+    }
     context.stroke();
-  });
+  }
 }
 
 export function startCurves() {
-  const curves = CURVES.map((curve) => ({ ...curve, series: curve.names.map(() => []), figure: document.getElementById(`curve-${curve.id}`) }));
+  const curves = CURVES.map((curve) => ({ ...curve, samples: [], figure: document.getElementById(`curve-${curve.id}`) }));
   return (sample) => {
-    for (const { figure, names, unit, values, series } of curves) {
+    const now = performance.now();
+    for (const { figure, names, unit, values, samples } of curves) {
       const found = values(sample);
-      series.forEach((list, number) => {
-        list.push(found[number] ?? NaN);
-        if (list.length > SAMPLES) list.shift();
-      });
-      draw(figure.querySelector("canvas"), series);
+      samples.push({ at: now, found });
+      while (now - samples[0].at > SHOWN_MS) samples.shift();
+      draw(figure.querySelector("canvas"), samples, now, names.length);
       const texts = names.map((name, number) => {
         const text = document.createElement("span");
         text.style.borderColor = COLOURS[number];

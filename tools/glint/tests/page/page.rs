@@ -231,8 +231,14 @@ fn a_board_in_a_browser() {
         std::fs::write(documented(), browser.picture(&page)).unwrap();
     }
 
-    // A second page sees the same picture, and cannot steer.
+    // A second page, on a narrow display, sees the same picture, and cannot steer.
     let second = browser.open(&served.url);
+    browser.call(
+        Some(&second),
+        "Emulation.setDeviceMetricsOverride",
+        serde_json::json!({ "width": 320, "height": 640, "deviceScaleFactor": 1, "mobile": true }),
+    );
+    browser.wait(&second, "document.documentElement.scrollWidth === 320");
     browser.wait(&second, "document.body.dataset.holder === 'other'");
     wait_for_picture(&mut browser, &second, &mut board);
     browser.wait(&second, "document.getElementById('line').disabled");
