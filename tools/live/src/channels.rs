@@ -1,6 +1,6 @@
 //! The way of messages between the pages and the session.
 
-use crate::hub::Hub;
+use crate::hub::{Hub, Id};
 use crate::inputs::Inputs;
 use crate::live::Live;
 use crate::message::ToPage;
@@ -63,12 +63,12 @@ impl Channels {
         (channels, queue)
     }
 
-    /// Passes a request to the session; it is dropped, with a notice, if too many wait.
-    pub fn request(&self, request: Request) {
+    /// Passes a request of a viewer to the session; it is dropped, with a notice, if too many wait.
+    pub fn request(&self, id: Id, request: Request) {
         // The session ends with the program.
         if let Err(TrySendError::Full(_)) = self.requests.try_send(request) {
             self.hub
-                .notify("the board is busy: a command was dropped", true);
+                .notify_one(id, "the board is busy: a command was dropped");
         }
     }
 }

@@ -182,6 +182,19 @@ impl Hub {
         self.send(&ToPage::Notice { text, is_error });
     }
 
+    /// Sends a message to one viewer.
+    pub fn send_one(&self, id: Id, message: &ToPage) {
+        if let Some(queue) = self.lock().viewers.get_mut(&id) {
+            queue.push(message.encoded());
+        }
+    }
+
+    /// Tells one viewer that something has failed.
+    pub fn notify_one(&self, id: Id, text: impl Into<String>) {
+        let (text, is_error) = (text.into(), true);
+        self.send_one(id, &ToPage::Notice { text, is_error });
+    }
+
     /// Sends output of the console to all viewers.
     pub fn send_console(&self, bytes: &[u8]) {
         let text = String::from_utf8_lossy(bytes).into_owned();

@@ -71,6 +71,8 @@ pub enum ToPage {
         commands: Vec<Entry>,
         /// Meshes and scenes.
         scenes: Vec<String>,
+        /// Forms of the argument of the command `field`, with parameters in capital letters.
+        fields: Vec<String>,
     },
     /// Output of the console.
     Console {
@@ -92,6 +94,13 @@ pub enum ToPage {
         stats: Value,
         /// Attitude of the motion sensor as a quaternion w, x, y, z.
         attitude: Option<[f64; 4]>,
+    },
+    /// The attitude of the motion sensor and the place of the hand that pages have set last.
+    Motion {
+        /// As in [`FromPage::Turn`].
+        attitude: [f64; 4],
+        /// As in [`FromPage::Hand`].
+        hand: Option<[f64; 2]>,
     },
     /// Reply to `help COMMAND`.
     Help {

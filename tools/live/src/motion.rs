@@ -1,5 +1,6 @@
 //! The motion sensor that the page turns, and the hand that it moves in front of the camera.
 
+use crate::message::ToPage;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
 use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
@@ -68,6 +69,12 @@ impl Motion {
             self.lock().hand = place;
         }
         is_inside
+    }
+
+    /// The attitude and the place that pages have set last.
+    pub fn message(&self) -> ToPage {
+        let Wanted { attitude, hand } = *self.lock();
+        ToPage::Motion { attitude, hand }
     }
 
     /// A motion sensor that the page turns.

@@ -1,6 +1,6 @@
 //! Runs the board, its console and its transfers for the page.
 
-use crate::channels::{Channels, Request};
+use crate::channels::{Channels, MAX_REQUESTS, Request};
 use crate::hub::Hub;
 use crate::inputs::Inputs;
 use crate::live::Live;
@@ -11,7 +11,9 @@ use glint_board::{Board, BoardError, Frame, Memory, read_in_steps};
 use glint_core::console::PROMPT;
 use glint_core::picture::Size;
 use serde_json::Value;
+use std::collections::VecDeque;
 use std::io;
+use std::mem::discriminant;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -100,8 +102,8 @@ pub struct Session<'a> {
     board: Watched<'a>,
     hub: &'a Hub,
     requests: Receiver<Request>,
-    /// A transfer that waits for the end of a command.
-    waiting: Option<Request>,
+    /// Requests that wait for the end of a command, in their order.
+    waiting: VecDeque<Request>,
     /// Time of the last measurement.
     sampled: Duration,
     /// Number of uploads, which tells one transfer from the next.
@@ -133,7 +135,7 @@ impl<'a> Session<'a> {
             },
             hub: &channels.hub,
             requests,
-            waiting: None,
+            waiting: VecDeque::new(),
             uploads: 0,
             end: Vec::new(),
         };
@@ -154,23 +156,20 @@ impl<'a> Session<'a> {
         let mut output = Vec::new();
         self.board.read(&mut output, LOOK_MS)?;
         self.pass(&mut output)?;
-        let next = self
-            .waiting
-            .take()
-            .or_else(|| self.requests.try_recv().ok());
         if !self.is_idle() {
-            // The user's keys go to the program that runs, as on a terminal.
-            match next {
-                Some(Request::Command(line)) => self.type_line(&line)?,
-                Some(Request::Interrupt) => self.board.write(INTERRUPT)?,
-                Some(transfer @ (Request::Upload(_) | Request::Picture)) => {
-                    self.waiting = Some(transfer);
+            return match self.requests.try_recv() {
+                // The user's keys go to the program that runs, as on a terminal.
+                Ok(Request::Command(line)) => self.type_line(&line),
+                Ok(Request::Interrupt) => self.board.write(INTERRUPT),
+                Ok(request) => {
+                    self.keep(request);
+                    Ok(())
                 }
-                Some(Request::Help(_)) | None => {}
-            }
-            return Ok(());
+                Err(_) => Ok(()),
+            };
         }
-        match next {
+        let next = self.waiting.pop_front();
+        match next.or_else(|| self.requests.try_recv().ok()) {
             Some(Request::Command(line)) => self.type_line(&line),
             Some(Request::Help(command)) => {
                 self.ask(|console, hub| send_help(console, hub, command))
@@ -187,6 +186,18 @@ impl<'a> Session<'a> {
                 Ok(())
             }
             Some(Request::Interrupt) | None => Ok(()),
+        }
+    }
+
+    /// Keeps a request until the console waits for a command. A newer model or picture replaces the one before. A description above
+    /// the limit is dropped: pages ask again.
+    fn keep(&mut self, request: Request) {
+        self.waiting.retain(|earlier| match (earlier, &request) {
+            (Request::Help(earlier), Request::Help(command)) => earlier != command,
+            _ => discriminant(earlier) != discriminant(&request),
+        });
+        if self.waiting.len() < MAX_REQUESTS || !matches!(request, Request::Help(_)) {
+            self.waiting.push_back(request);
         }
     }
 
@@ -255,7 +266,16 @@ impl<'a> Session<'a> {
             |line: &String| Some(line.strip_prefix("scene ")?.split(' ').next()?.to_owned());
         let scenes = optional(console.command("scene"))?;
         let scenes = scenes.iter().filter_map(scene).collect();
-        hub.send(&ToPage::Lists { commands, scenes });
+        // The last line of the description names the argument and its forms: `FIELD: off or sphere:R or ...`.
+        let help = optional(console.command("help field"))?;
+        let forms = help.last().and_then(|line| line.split_once(": "));
+        let forms = forms.into_iter().flat_map(|(_, forms)| forms.split(" or "));
+        let fields = forms.map(str::to_owned).collect();
+        hub.send(&ToPage::Lists {
+            commands,
+            scenes,
+            fields,
+        });
         Ok(())
     }
 }

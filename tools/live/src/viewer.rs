@@ -3,16 +3,14 @@
 use crate::channels::{Channels, Request};
 use crate::hub::{Hub, Id};
 use crate::message::FromPage;
+use glint_core::console::LINE_MAX;
 use glint_mesh::convert::Options;
 use glint_mesh::model;
-
-/// Maximum length of a line for the console.
-const MAX_LINE: usize = 200;
 
 /// Maximum size of a file for an upload in bytes.
 const MAX_UPLOAD: usize = 64 << 20;
 
-/// Maximum length of a file's name.
+/// Maximum number of characters of a file's name.
 const MAX_NAME: usize = 100;
 
 /// The reason to close a page's connection.
@@ -35,7 +33,9 @@ impl Viewer {
     /// Adds a page. Returns `None` if there are too many.
     pub fn join(channels: &Channels) -> Option<Self> {
         let id = channels.hub.join()?;
-        Some(Self { id, upload: None })
+        let viewer = Self { id, upload: None };
+        viewer.tell_motion(channels);
+        Some(viewer)
     }
 
     /// The number of the page at the hub.
@@ -45,10 +45,33 @@ impl Viewer {
 
     /// Removes the page.
     pub fn leave(self, channels: &Channels) {
+        self.release(channels);
+        channels.hub.leave(self.id);
+    }
+
+    /// Gives control up, with the buttons.
+    fn release(&self, channels: &Channels) {
         if channels.hub.has_control(self.id) {
             channels.inputs.press(0);
+            channels.hub.release_control(self.id);
         }
-        channels.hub.leave(self.id);
+    }
+
+    /// Tells the page where the motion sensor and the hand are.
+    fn tell_motion(&self, channels: &Channels) {
+        if let Some(motion) = &channels.motion {
+            channels.hub.send_one(self.id, &motion.message());
+        }
+    }
+
+    /// Checks a line for the console. Returns whether it is one; otherwise the page is told why not.
+    fn is_line(&self, line: &str, channels: &Channels) -> bool {
+        let is_line = line.len() <= LINE_MAX && !line.chars().any(char::is_control);
+        if !is_line {
+            let expected = "expected a line of at most 640 bytes without control characters";
+            channels.hub.notify_one(self.id, expected);
+        }
+        is_line
     }
 
     /// Acts on a text from the page.
@@ -60,20 +83,25 @@ impl Viewer {
             serde_json::from_str(text).map_err(|_| "expected a message of docs/live-page.md")?;
         let hub: &Hub = &channels.hub;
         match message {
-            FromPage::Take => hub.take_control(self.id),
-            FromPage::Release => hub.release_control(self.id),
+            FromPage::Take => {
+                hub.take_control(self.id);
+                self.tell_motion(channels);
+            }
+            FromPage::Release => self.release(channels),
             FromPage::Help { command } => {
-                check_line(&command)?;
-                channels.request(Request::Help(command));
+                if self.is_line(&command, channels) {
+                    channels.request(self.id, Request::Help(command));
+                }
             }
             // Messages of a page that has lost control are on their way for some time.
             _ if !hub.has_control(self.id) => {}
             FromPage::Command { line } => {
-                check_line(&line)?;
-                channels.request(Request::Command(line));
+                if self.is_line(&line, channels) {
+                    channels.request(self.id, Request::Command(line));
+                }
             }
-            FromPage::Interrupt => channels.request(Request::Interrupt),
-            FromPage::Picture => channels.request(Request::Picture),
+            FromPage::Interrupt => channels.request(self.id, Request::Interrupt),
+            FromPage::Picture => channels.request(self.id, Request::Picture),
             FromPage::Buttons { pressed } => channels.inputs.press(pressed),
             FromPage::Switches { on } => channels.inputs.switch(on),
             FromPage::Turn { attitude } => {
@@ -87,9 +115,9 @@ impl Viewer {
                 return is_set.then_some(()).ok_or("expected a place in the frame");
             }
             FromPage::Upload { name, bytes } => {
-                if bytes == 0 || bytes > MAX_UPLOAD || name.len() > MAX_NAME {
+                if bytes == 0 || bytes > MAX_UPLOAD || name.chars().count() > MAX_NAME {
                     let expected =
-                        "expected a file of 1 byte to 64 MiB with a name of at most 100 bytes";
+                        "expected a file of 1 byte to 64 MiB with a name of at most 100 characters";
                     return Err(expected);
                 }
                 let data = Vec::new();
@@ -114,19 +142,12 @@ impl Viewer {
             && let Some(file) = self.upload.take()
         {
             match model::of_file(&file.name, file.data, Options::default()) {
-                Ok(model) => channels.request(Request::Upload(model.mesh)),
-                Err(error) => channels.hub.notify(error.to_string(), true),
+                Ok(model) => channels.request(self.id, Request::Upload(model.mesh)),
+                Err(error) => channels.hub.notify_one(self.id, error.to_string()),
             }
         }
         Ok(())
     }
-}
-
-fn check_line(line: &str) -> Result<(), Reason> {
-    if line.len() > MAX_LINE || line.chars().any(char::is_control) {
-        return Err("expected a line of at most 200 characters");
-    }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -135,6 +156,7 @@ mod tests {
     use crate::channels::MAX_REQUESTS;
     use crate::inputs::Inputs;
     use crate::message::Message;
+    use crate::motion::Motion;
     use std::sync::Arc;
 
     fn upload(bytes: usize) -> String {
@@ -153,7 +175,6 @@ mod tests {
     fn values_out_of_range_close_the_page() {
         let (channels, queue) = Channels::to_board(Some(Arc::default()));
         let mut viewer = Viewer::join(&channels).unwrap();
-        let command = |line: &str| format!(r#"{{"type":"command","line":"{line}"}}"#);
         for refused in [
             "{",
             r#"{"type":"other"}"#,
@@ -164,8 +185,6 @@ mod tests {
             r#"{"type":"hand","place":[0.5,1.5]}"#,
             &upload(0),
             &upload(MAX_UPLOAD + 1),
-            &command(&"x".repeat(MAX_LINE + 1)),
-            &command("\\u0003"),
         ] {
             assert!(
                 viewer.receive_text(refused, &channels).is_err(),
@@ -177,6 +196,47 @@ mod tests {
         viewer.receive_bytes(&[1, 2], &channels).unwrap();
         assert!(viewer.receive_bytes(&[3, 4], &channels).is_err());
         assert!(queue.try_recv().is_err(), "the board gets nothing");
+    }
+
+    #[test]
+    fn a_line_that_the_console_does_not_take_is_reported() {
+        let (channels, queue) = Channels::to_board(None);
+        let mut viewer = Viewer::join(&channels).unwrap();
+        for line in ["x".repeat(LINE_MAX + 1), "ü".repeat(400), "\\t".into()] {
+            for (kind, member) in [("command", "line"), ("help", "command")] {
+                let text = format!(r#"{{"type":"{kind}","{member}":"{line}"}}"#);
+                viewer.receive_text(&text, &channels).unwrap();
+                assert!(is_told(&viewer, &channels, "at most 640 bytes"), "{text}");
+            }
+        }
+        assert_eq!(LINE_MAX, 640, "as the notice says");
+        assert!(queue.try_recv().is_err());
+    }
+
+    /// The next page with control gets no button that the last one held, and learns where sensor and hand are.
+    #[test]
+    fn control_passes_on_with_released_buttons_and_the_motion() {
+        let motion = Arc::<Motion>::default();
+        let (channels, _queue) = Channels::to_board(Some(motion));
+        let (mut first, mut second) = (
+            Viewer::join(&channels).unwrap(),
+            Viewer::join(&channels).unwrap(),
+        );
+        for text in [
+            r#"{"type":"buttons","pressed":1}"#,
+            r#"{"type":"turn","attitude":[0,1,0,0]}"#,
+            r#"{"type":"hand","place":[0.25,0.5]}"#,
+            r#"{"type":"release"}"#,
+        ] {
+            first.receive_text(text, &channels).unwrap();
+        }
+        channels.hub.take(second.id());
+        let take = r#"{"type":"take"}"#;
+        second.receive_text(take, &channels).unwrap();
+        let expected = r#""attitude":[0.0,1.0,0.0,0.0],"hand":[0.25,0.5]"#;
+        assert!(is_told(&second, &channels, expected));
+        channels.inputs.take();
+        assert_eq!(channels.inputs.take().buttons, 0);
     }
 
     #[test]

@@ -23,6 +23,7 @@ export function startConsole(send) {
   const hint = document.getElementById("hint");
   const history = [];
   const helps = new Map();
+  let asked = new Set();
   let commands = [];
   let place = 0;
   let raw = "";
@@ -41,7 +42,9 @@ export function startConsole(send) {
     log.textContent = "";
   }
 
-  function run(line) {
+  function run(typed) {
+    // Tabs, and halves of characters that a limit of the browser has cut.
+    const line = typed.replace(/[\t\p{Surrogate}]/gu, " ");
     if (line.trim() === "") return;
     if (history.at(-1) !== line) history.push(line);
     place = history.length;
@@ -66,8 +69,8 @@ export function startConsole(send) {
       return;
     }
     hint.textContent = helps.get(name)?.join("\n") ?? command.text;
-    if (!helps.has(name) && input.value.includes(" ")) {
-      helps.set(name, [command.text]);
+    if (!asked.has(name) && input.value.includes(" ")) {
+      asked.add(name);
       send({ type: "help", command: name });
     }
   }
@@ -112,5 +115,10 @@ export function startConsole(send) {
     showHint();
   });
 
-  return { show, clear, run, showHelp, setCommands: (list) => (commands = list) };
+  function setCommands(list) {
+    commands = list;
+    asked = new Set(helps.keys());
+  }
+
+  return { show, clear, run, showHelp, setCommands };
 }

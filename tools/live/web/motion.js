@@ -20,7 +20,7 @@ function rotated([w, x, y, z], point) {
   return product(product([w, x, y, z], [0, ...point]), [w, -x, -y, -z]).slice(1);
 }
 
-export function startMotion(send) {
+export function startMotion(send, notify) {
   const sensor = document.getElementById("sensor");
   const hand = document.getElementById("hand");
   const use = document.getElementById("device");
@@ -83,15 +83,27 @@ export function startMotion(send) {
 
   // The angles of a device are turns about z, then x, then y.
   function follow({ alpha, beta, gamma }) {
-    if (alpha === null || !isMine()) return;
+    if (alpha === null) return;
+    clearTimeout(patience);
+    if (!isMine()) return;
     const [z, x, y] = [alpha, beta, gamma].map((angle) => (angle * Math.PI) / 180);
     turn(product(product(about(2, z), about(0, x)), about(1, y)));
   }
+  // Browsers do not tell why there are no events.
+  let patience;
+  function fail() {
+    use.checked = false;
+    removeEventListener("deviceorientation", follow);
+    notify("This device does not tell its orientation. Expected a device with a sensor, a page of https or localhost, and permission.");
+  }
   use.addEventListener("change", async () => {
+    clearTimeout(patience);
     removeEventListener("deviceorientation", follow);
     if (!use.checked) return;
-    const answer = await globalThis.DeviceOrientationEvent?.requestPermission?.();
-    if (answer === undefined || answer === "granted") addEventListener("deviceorientation", follow);
+    const answer = await globalThis.DeviceOrientationEvent?.requestPermission?.().catch(() => "denied");
+    if (answer !== undefined && answer !== "granted") return fail();
+    patience = setTimeout(fail, 1000);
+    addEventListener("deviceorientation", follow);
   });
 
   function drawHand() {
@@ -130,6 +142,15 @@ export function startMotion(send) {
   });
   document.getElementById("away").addEventListener("click", () => moveHand(null));
 
+  // Shows the attitude and the hand that were set last, maybe by another page.
+  function showLast(motion) {
+    attitude = motion.attitude;
+    place = motion.hand;
+    drawSensor();
+    drawHand();
+  }
+
   drawSensor();
   drawHand();
+  return { show: showLast };
 }

@@ -11,25 +11,33 @@ const element = (id) => document.getElementById(id);
 let holder = "nobody";
 let sendData;
 
+// Messages that begin something new: the notice of what was before goes.
+const BEGINNINGS = ["command", "picture", "upload"];
+
 function send(message) {
+  if (BEGINNINGS.includes(message.type)) notify("");
   sendData(JSON.stringify(message));
 }
 
-function notify(text) {
-  element("notice").textContent = text;
-  element("notice").hidden = text === "";
+// Shows a notice, in place of the last one; an empty text shows none.
+function notify(text, isError = true) {
+  const notice = element("notice");
+  notice.role = isError ? "alert" : "status";
+  notice.textContent = text;
+  notice.hidden = text === "";
 }
 
 const console_ = startConsole(send);
 const panel = startPanel(send);
 const showProgress = startUpload(send, (bytes) => sendData(bytes), notify);
 const showSample = startCurves();
-startMotion(send);
+const motion = startMotion(send, notify);
 
 const HOLDERS = { you: "You have control.", other: "Another page has control; this one shows.", nobody: "No page has control." };
 
 // Shows who has control. Without it the controls are disabled.
 function setHolder(found) {
+  if (found !== holder) panel.release();
   holder = found;
   const isMine = holder === "you";
   document.body.dataset.holder = holder;
@@ -49,10 +57,11 @@ function showBoard({ name, has_pins, is_shared }) {
   document.body.classList.toggle("alone", !is_shared);
 }
 
-function showLists({ commands, scenes }) {
+function showLists({ commands, scenes, fields }) {
   console_.setCommands(commands);
   element("scenes").replaceChildren(...scenes.map((name) => choice(name, `scene ${name}`)));
-  if (commands.some(({ name }) => name === "field")) send({ type: "help", command: "field" });
+  const usual = fields.map((form) => PARAMETERS[form] ?? form.replace("DEPTH", PARAMETERS.DEPTH)).filter((form) => !/[A-Z]/.test(form));
+  element("fields").replaceChildren(...usual.map((field) => choice(field.split(":")[0], `field ${field}`)));
 }
 
 // A button that sends a command.
@@ -72,25 +81,17 @@ const PARAMETERS = {
   "moving:R,ORBIT[,DEGREES]": "moving:0.3,0.4", "union:A+B": "union:sphere:0.4+box:0.6,0.2,0.2", "smooth:K,A+B": "smooth:0.2,sphere:0.4+box:0.6,0.2,0.2",
 };
 
-// Shows the fields of a reply to `help field`.
-function showHelp(help) {
-  console_.showHelp(help);
-  if (help.command !== "field") return;
-  const forms = help.lines.at(-1)?.split(": ").slice(1).join(": ").split(" or ") ?? [];
-  const fields = forms.map((form) => PARAMETERS[form] ?? form.replace("DEPTH", PARAMETERS.DEPTH)).filter((form) => !/[A-Z]/.test(form));
-  element("fields").replaceChildren(...fields.map((field) => choice(field.split(":")[0], `field ${field}`)));
-}
-
 const HANDLERS = {
   board: showBoard,
   lists: showLists,
   console: ({ text }) => console_.show(text),
-  help: showHelp,
+  motion: motion.show,
+  help: console_.showHelp,
   progress: showProgress,
   sample: showSample,
   pins: panel.show,
   control: ({ holder }) => setHolder(holder),
-  notice: ({ text }) => notify(text),
+  notice: ({ text, is_error }) => notify(text, is_error),
 };
 
 setHolder("nobody");

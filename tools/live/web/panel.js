@@ -89,5 +89,8 @@ export function startPanel(send) {
     buttons.forEach((button, bit) => button.setAttribute("aria-pressed", Boolean((pins.buttons >> bit) & 1)));
   }
 
-  return { show };
+  // Forgets the pressed buttons, which are released when control passes on.
+  const release = () => (pressed = 0);
+
+  return { show, release };
 }

@@ -3,6 +3,7 @@
 
 mod alone;
 mod browser;
+mod busy;
 mod page;
 mod rates;
 mod refusals;

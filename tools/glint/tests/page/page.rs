@@ -99,6 +99,7 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
     drop_a_mesh(browser, page, &mut board);
     command_both(browser, page, &mut board, &["render"]);
     wait_for_picture(browser, page, &mut board);
+    browser.wait(page, "document.getElementById('notice').hidden");
 
     command_both(
         browser,
@@ -125,7 +126,15 @@ fn complete_and_repeat(browser: &mut Browser, page: &Page) {
     );
     browser.press(page, "ArrowUp", "");
     browser.wait(page, "document.getElementById('line').value === 'render'");
-    browser.evaluate(page, "document.getElementById('line').value = ''; 0");
+    // A pasted line may have tabs.
+    browser.evaluate(
+        page,
+        "document.getElementById('line').value = 'leds\\t2'; document.getElementById('command').requestSubmit()",
+    );
+    browser.wait(
+        page,
+        "document.getElementById('leds').ariaLabel === 'LEDs lit: 1'",
+    );
 }
 
 /// Uses switches, LEDs and buttons.
@@ -198,8 +207,11 @@ fn move_the_hand(browser: &mut Browser, page: &Page) {
 fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<EmulatedBoard>) {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let name = "corner.obj";
-    let file =
-        format!("const data = new DataTransfer(); data.items.add(new File([{mesh:?}], '{name}'))");
+    // The page takes the mesh from among other files.
+    let file = format!(
+        "const data = new DataTransfer(); data.items.add(new File(['newmtl a'], 'corner.mtl')); \
+         data.items.add(new File([{mesh:?}], '{name}'))"
+    );
     let event = "new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true })";
     browser.evaluate(
         page,
@@ -207,7 +219,7 @@ fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<Em
     );
     browser.wait(
         page,
-        "document.getElementById('notice').textContent.startsWith('the model is shown')",
+        "(({ role, textContent }) => role === 'status' && textContent.startsWith('the model is shown'))(document.getElementById('notice'))",
     );
     let model = glint::model::of_file(name, mesh.into(), Options::default()).unwrap();
     let mut console = Console::new(board);

@@ -4,7 +4,7 @@ use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket};
@@ -82,7 +82,9 @@ impl Drop for Served {
 
 /// Reads texts until one contains `wanted`, and returns it.
 pub fn wait_for(socket: &mut WebSocket<TcpStream>, wanted: &str) -> String {
+    let end = Instant::now() + 3 * PATIENCE;
     loop {
+        assert!(Instant::now() < end, "{wanted} has not come");
         if let Message::Text(text) = socket.read().unwrap()
             && text.contains(wanted)
         {
