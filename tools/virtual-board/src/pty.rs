@@ -20,6 +20,9 @@ const SLICE: u64 = 2000;
 /// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
+/// Largest number of bytes that wait for a program to read them. Above it the older half is lost: nobody may be reading.
+const UNREAD: usize = 1 << 20;
+
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
 type Task<B> = Box<dyn FnOnce(&mut B) + Send>;
 
@@ -154,10 +157,71 @@ fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> 
             Err(error) if is_passing(&error) => {}
             Err(error) => panic!("writing the virtual board's terminal: {error}"),
         }
+        if output.len() > UNREAD {
+            output.drain(..output.len() - UNREAD / 2);
+        }
     }
 }
 
 /// Whether the error only means that nothing can be transferred now, so that the thread goes on.
 fn is_passing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A board whose program prints a number after the other.
+    #[derive(Default)]
+    struct Talker {
+        cycles: u64,
+        number: u32,
+        end: u32,
+    }
+
+    impl Uart for Talker {
+        fn run(&mut self, cycles: u64) {
+            self.cycles += cycles;
+        }
+
+        fn cycles(&self) -> u64 {
+            self.cycles
+        }
+
+        fn clock_hz(&self) -> u32 {
+            1_000_000_000
+        }
+
+        fn uart_write(&mut self, _bytes: &[u8]) {}
+
+        fn uart_queued(&self) -> usize {
+            0
+        }
+
+        fn uart_read(&mut self, output: &mut Vec<u8>) {
+            let last = self.end.min(self.number + 10_000);
+            for number in self.number..last {
+                output.extend(format!("{number:7}\n").bytes());
+            }
+            self.number = last;
+        }
+    }
+
+    #[test]
+    fn what_nobody_reads_is_lost_and_the_newest_is_kept() {
+        let pty = Pty::start(Talker::default()).unwrap();
+        let end = 1_000_000;
+        pty.with(move |talker| talker.end = end);
+        while pty.with(|talker| talker.number) < end {}
+        let mut terminal = File::open(pty.path()).unwrap();
+        let (mut text, mut buffer) = (Vec::new(), [0; 4096]);
+        let last = format!("{:7}\n", end - 1);
+        while !text.ends_with(last.as_bytes()) {
+            let count = terminal.read(&mut buffer).unwrap();
+            text.extend_from_slice(&buffer[..count]);
+        }
+        let found = text.len();
+        assert!((UNREAD / 2..2 * UNREAD).contains(&found), "{found} bytes");
+    }
 }
