@@ -71,6 +71,8 @@ impl EmulatedBoard {
                 self.cpu.reset();
             }
         }
+        // The last instruction may have waited for the bus, past the time of events.
+        self.bus.devices.advance(self.cycles, &mut self.bus.ram);
     }
 
     /// Runs until `done` returns true, but at most about `limit` cycles; calls `done` every 1000 cycles. Returns whether `done`
