@@ -1,7 +1,7 @@
 //! Decoded instructions of the memories that programs run from.
 
 use litex_pac::Memory;
-use litex_pac::memories::{MAIN_RAM, ROM, SRAM};
+use litex_pac::memories::{FLASH, MAIN_RAM, ROM, SRAM};
 
 use crate::decode::Instruction;
 
@@ -18,12 +18,12 @@ pub struct Code {
     pages: Vec<Option<Box<Page>>>,
     /// Numbers of the pages that are present.
     present: Vec<usize>,
-    /// The page of an address without memory, never decoded.
+    /// The page of all addresses without memory: nothing can be decoded there, so it stays as it is.
     nowhere: Box<Page>,
 }
 
-/// The memories, and the place of the first page of each.
-const MEMORIES: [Memory; 3] = [MAIN_RAM, ROM, SRAM];
+/// The memories that [`Bus::memory_word`](crate::bus::Bus::memory_word) reads, in the order of their pages.
+const MEMORIES: [Memory; 4] = [MAIN_RAM, ROM, SRAM, FLASH];
 
 fn pages(memory: Memory) -> usize {
     memory.size.div_ceil(PAGE) as usize
