@@ -320,7 +320,8 @@ impl I2c {
         if self.state == State::Failed || !self.rounds.repeats() || last {
             self.events.raise(ENDED);
         }
-        self.rounds_done = if last { 0 } else { self.rounds_done + 1 };
+        // Four bits: a batch may have become shorter than the rounds of it that are done.
+        self.rounds_done = if last { 0 } else { (self.rounds_done + 1) & 15 };
         if !self.rounds.repeats() {
             self.rounds_done = 0;
         }
@@ -370,13 +371,19 @@ impl Device for I2c {
                 self.clear(now);
             }
             offset::ROUNDS => {
-                let before = self.rounds.repeats();
+                let before = self.rounds;
                 self.rounds = Rounds::from_bits(value);
+                let period = u64::from(self.rounds.period());
                 if !self.rounds.repeats() {
                     self.round = u64::MAX;
                     self.rounds_done = 0;
-                } else if !before {
-                    self.round = now + u64::from(self.rounds.period()) + 1;
+                } else if before.repeats() {
+                    // The counter of 24 bits goes on. A period that it has passed already ends after it has wrapped.
+                    let counts_from = self.round - u64::from(before.period());
+                    let left = counts_from.wrapping_add(period).wrapping_sub(now + 1);
+                    self.round = now + 1 + (left & 0xff_ffff);
+                } else {
+                    self.round = now + period + 1;
                 }
             }
             offset::EV_PENDING => self.events.clear(value),
@@ -410,5 +417,57 @@ impl Device for I2c {
 
     fn interrupt(&self) -> bool {
         self.events.interrupt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Cycles of a round.
+    const ROUND: u64 = 2000;
+
+    /// A master in which rounds of a start and a stop begin at the cycle 0.
+    fn started(rounds: Rounds) -> (I2c, MainMemory) {
+        let (mut i2c, mut ram) = (I2c::new(), MainMemory::new());
+        for operation in [Operation::Start, Operation::Stop] {
+            let command = Command::default().with_operation(operation);
+            i2c.write(offset::COMMAND, command.bits(), 0, &mut ram);
+        }
+        i2c.write(offset::ROUNDS, rounds.bits(), 0, &mut ram);
+        i2c.write(offset::EV_ENABLE, ENDED, 0, &mut ram);
+        (i2c, ram)
+    }
+
+    fn rounds(period: u64, batch: u8) -> Rounds {
+        let rounds = Rounds::default().with_repeats(true);
+        rounds.with_period(period as u32 - 1).with_batch(batch)
+    }
+
+    #[test]
+    fn the_count_of_rounds_wraps_when_a_batch_becomes_shorter() {
+        let (mut i2c, mut ram) = started(rounds(ROUND, 3));
+        let end = |round: u64| (round + 1) * ROUND - 1;
+        i2c.advance(end(2), &mut ram);
+        i2c.write(offset::ROUNDS, rounds(ROUND, 0).bits(), end(2), &mut ram);
+        // Two of the rounds count, and the count has four bits.
+        i2c.advance(end(16), &mut ram);
+        assert!(!i2c.interrupt());
+        i2c.advance(end(17), &mut ram);
+        assert!(i2c.interrupt());
+        i2c.advance(end(300), &mut ram);
+        assert_eq!(i2c.error, Error::None);
+    }
+
+    #[test]
+    fn the_time_since_the_last_round_counts_on_when_the_period_changes() {
+        let (mut i2c, mut ram) = started(rounds(5 * ROUND, 0));
+        i2c.write(offset::ROUNDS, rounds(ROUND, 0).bits(), 1000, &mut ram);
+        assert_eq!(i2c.round, ROUND);
+        i2c.advance(ROUND, &mut ram);
+        i2c.write(offset::ROUNDS, rounds(500, 0).bits(), 3000, &mut ram);
+        assert_eq!(i2c.round, ROUND + 500 + (1 << 24));
+        i2c.write(offset::ROUNDS, rounds(1001, 0).bits(), 3000, &mut ram);
+        assert_eq!(i2c.round, 3001);
     }
 }
