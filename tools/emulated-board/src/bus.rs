@@ -10,6 +10,12 @@ use crate::devices::{Devices, REGISTERS};
 /// Clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
+/// Words of a line of the CPU's caches, which are filled by an access to the bus for each word.
+const LINE: u32 = 8;
+
+/// Addresses from here on pass by the data cache.
+const IO: u32 = 0x8000_0000;
+
 /// Value that a load from an unused address returns.
 const UNUSED: u32 = u32::MAX;
 
@@ -88,7 +94,16 @@ impl Bus {
                 cycles: 0,
                 device: true,
             },
-            _ => self.time_out(),
+            _ if address < IO => self.time_out(LINE),
+            _ => self.time_out(1),
+        }
+    }
+
+    /// Loads the word at `address`, a multiple of 4, where no memory is, as an instruction. The instruction cache has all addresses.
+    pub fn fetch(&mut self, address: u32, now: u64) -> Access {
+        match place(address) {
+            Place::Unused => self.time_out(LINE),
+            _ => self.load(address, now),
         }
     }
 
@@ -117,15 +132,16 @@ impl Bus {
                     device: true,
                 }
             }
-            Place::Unused => self.time_out(),
+            Place::Unused => self.time_out(1),
         }
     }
 
-    fn time_out(&mut self) -> Access {
-        self.devices.count_bus_error();
+    /// The result of `accesses` to unused addresses.
+    fn time_out(&mut self, accesses: u32) -> Access {
+        self.devices.count_bus_errors(accesses);
         Access {
             value: UNUSED,
-            cycles: TIMEOUT,
+            cycles: u64::from(accesses) * TIMEOUT,
             device: false,
         }
     }

@@ -216,7 +216,7 @@ impl Cpu {
                         continue;
                     }
                     // The bus answers after a time-out, with a word that is no instruction.
-                    let access = bus.load(pc, now);
+                    let access = bus.fetch(pc, now);
                     waited += access.cycles;
                     now += access.cycles + CYCLES;
                     exception!(cause::ILLEGAL, access.value);

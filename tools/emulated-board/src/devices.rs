@@ -229,8 +229,8 @@ impl Devices {
         }
     }
 
-    /// Counts an access to an unused address.
-    pub fn count_bus_error(&mut self) {
-        self.controller.count_bus_error();
+    /// Counts `accesses` to unused addresses.
+    pub fn count_bus_errors(&mut self, accesses: u32) {
+        self.controller.count_bus_errors(accesses);
     }
 }

@@ -1,6 +1,7 @@
 //! Small programs on the whole board, for what the firmware never does.
 
 use emulated_board::EmulatedBoard;
+use litex_pac::ctrl;
 use litex_pac::memories::{FLASH, MAIN_RAM};
 use virtual_flash::Flash;
 
@@ -16,6 +17,12 @@ const PAGE: u32 = 4096;
 
 /// Addresses that no memory and no register has, where the CPU caches what it loads, and where it does not.
 const UNUSED: u32 = 0x2000_0000;
+const UNUSED_IO: u32 = 0x9000_0000;
+/// Clock cycles until the bus answers an access to one of these.
+const TIMEOUT: u32 = 1_000_000;
+
+const MTVEC: u32 = 0x305;
+const MCYCLE: u32 = 0xb00;
 
 fn lui(rd: u32, value: u32) -> u32 {
     value & 0xffff_f000 | rd << 7 | 0x37
@@ -38,8 +45,17 @@ fn jump(rs1: u32) -> u32 {
     rs1 << 15 | 0x67
 }
 
+fn csrw(csr: u32, rs1: u32) -> u32 {
+    csr << 20 | rs1 << 15 | 1 << 12 | 0x73
+}
+
+fn csrr(rd: u32, csr: u32) -> u32 {
+    csr << 20 | 2 << 12 | rd << 7 | 0x73
+}
+
 /// `jal` back by one instruction, or to itself.
 const BACK: u32 = 0xffdf_f06f;
+const LOOP: u32 = 0x0000_006f;
 
 fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
@@ -84,5 +100,46 @@ fn each_page_of_the_flash_runs_its_own_code() {
         board.plug_flash(Flash::new(bytes(&words)));
         board.run(100);
         assert_eq!(result(&board, 0), value);
+    }
+}
+
+/// Stores the count of bus errors and the cycle at two places from `place` on.
+fn store_errors(place: u32) -> [u32; 5] {
+    [
+        lui(A0, ctrl::Ctrl::BASE as u32),
+        lw(A1, ctrl::offset::BUS_ERRORS, A0),
+        sw(A1, 4 * place, A2),
+        csrr(A1, MCYCLE),
+        sw(A1, 4 * place + 4, A2),
+    ]
+}
+
+#[test]
+fn an_access_that_fills_a_line_of_a_cache_is_eight_on_the_bus() {
+    let accesses = [
+        (lui(A0, UNUSED), lw(A1, 4, A0), 8),
+        (lui(A0, UNUSED), sw(A1, 4, A0), 1),
+        (lui(A0, UNUSED_IO), lw(A1, 4, A0), 1),
+        (lui(A0, UNUSED_IO), sw(A1, 4, A0), 1),
+        // Ones are no instruction, and the handler is the next one here.
+        (lui(A0, UNUSED), jump(A0), 8),
+        (lui(A0, UNUSED_IO), jump(A0), 8),
+    ];
+    let mut program = vec![lui(A2, RESULTS)];
+    program.extend(store_errors(0));
+    for ((address, access, _), place) in accesses.into_iter().zip(1..) {
+        let handler = MAIN_RAM.base + 4 * (program.len() as u32 + 5);
+        program.extend([lui(A0, handler), addi(A0, A0, handler % PAGE)]);
+        program.extend([csrw(MTVEC, A0), address, access]);
+        program.extend(store_errors(2 * place));
+    }
+    program.push(LOOP);
+    let mut board = started(&program);
+    board.run(30_000_000);
+    for ((_, access, count), place) in accesses.into_iter().zip(1..) {
+        let difference =
+            |word: u32| result(&board, 2 * place + word) - result(&board, 2 * place - 2 + word);
+        assert_eq!(difference(0), count, "{access:#010x}");
+        assert_eq!(difference(1) / TIMEOUT, count, "{access:#010x}");
     }
 }

@@ -26,9 +26,9 @@ impl Controller {
         }
     }
 
-    /// Counts an access to an unused address.
-    pub fn count_bus_error(&mut self) {
-        self.bus_errors = self.bus_errors.saturating_add(1);
+    /// Counts `accesses` to unused addresses.
+    pub fn count_bus_errors(&mut self, accesses: u32) {
+        self.bus_errors = self.bus_errors.saturating_add(accesses);
     }
 }
 

@@ -14,3 +14,4 @@ mod scan_out;
 mod selftest;
 mod sensor;
 mod switching;
+mod unused;

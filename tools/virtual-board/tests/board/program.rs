@@ -21,7 +21,7 @@ pub fn started(name: &str, symbols: &[(&str, u32)]) -> VirtualBoard {
 }
 
 /// Assembles a program; returns its image.
-fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
+pub fn assemble(name: &str, symbols: &[(&str, u32)]) -> Vec<u8> {
     let _files = FILES.lock().expect("no other test fails here");
     let source = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("tests/board/programs")

@@ -1,0 +1,39 @@
+# Accesses addresses that no memory and no register has, and leaves after each the count of bus errors and the cycle at RESULTS, after the
+# last a word that is not 0.
+    .option norelax
+    .option arch, +zicsr
+    .macro store
+    lw   t0, 0(s0)
+    sw   t0, 0(s1)
+    csrr t0, mcycle
+    sw   t0, 4(s1)
+    addi s1, s1, 8
+    .endm
+
+    # The trap of ones, which are no instruction, goes on behind the jump.
+    .macro jump to
+    la   t0, after_\@
+    csrw mtvec, t0
+    jr   \to
+    .balign 4
+after_\@:
+    store
+    .endm
+
+    li   s0, BUS_ERRORS
+    li   s1, RESULTS
+    li   s2, UNUSED
+    li   s3, UNUSED_IO
+    store
+    lw   t0, 4(s2)
+    store
+    sw   t0, 4(s2)
+    store
+    lw   t0, 4(s3)
+    store
+    sw   t0, 4(s3)
+    store
+    jump s3
+    sw   s1, 0(s1)
+again:
+    j    again

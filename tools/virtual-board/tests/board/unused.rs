@@ -1,0 +1,72 @@
+//! Accesses to unused addresses: the emulated board counts and waits as the verilated SoC does.
+
+use emulated_board::EmulatedBoard;
+use litex_pac::ctrl;
+use litex_pac::memories::MAIN_RAM;
+use virtual_board::{Start, VirtualBoard};
+
+use crate::program::assemble;
+
+/// Where the program leaves its results.
+const RESULTS: u32 = MAIN_RAM.base + 0x1000;
+/// Number of accesses, and of words that the program leaves: two before the first access, two after each, and one at the end.
+const ACCESSES: usize = 5;
+const WORDS: usize = 2 * ACCESSES + 3;
+
+/// Clock cycles until the bus answers an access.
+const TIMEOUT: u32 = 1_000_000;
+/// Cycles between two looks at the results, and the most for all of them.
+const SLICE: u64 = 500_000;
+const LIMIT: u64 = 40_000_000;
+
+/// For each access the errors that the bus has counted, and the number of time-outs that it took. `run` runs a board for some cycles and
+/// reads the results.
+fn counts(mut run: impl FnMut(u64, &mut [u8])) -> Vec<[u32; 2]> {
+    let mut bytes = [0; 4 * WORDS];
+    for _ in 0..LIMIT / SLICE {
+        run(SLICE, &mut bytes);
+        let (words, _) = bytes.as_chunks();
+        let words: Vec<u32> = words.iter().map(|&word| u32::from_le_bytes(word)).collect();
+        if words[WORDS - 1] != 0 {
+            let pairs = words.as_chunks::<2>().0.windows(2);
+            return pairs
+                .map(|pair| [0, 1].map(|place| pair[1][place] - pair[0][place]))
+                .map(|[count, cycles]| [count, cycles / TIMEOUT])
+                .collect();
+        }
+    }
+    panic!("no results within {LIMIT} cycles");
+}
+
+#[test]
+fn accesses_to_unused_addresses_count_and_wait_alike() {
+    let image = assemble(
+        "unused",
+        &[
+            (
+                "BUS_ERRORS",
+                ctrl::Ctrl::BASE as u32 + ctrl::offset::BUS_ERRORS,
+            ),
+            ("RESULTS", RESULTS),
+            // The data cache has the first of these, and not the second.
+            ("UNUSED", 0x2000_0000),
+            ("UNUSED_IO", 0x9000_0000),
+        ],
+    );
+    let mut emulated = EmulatedBoard::fast(&image).expect("an image that fits");
+    let expected = counts(|cycles, bytes| {
+        emulated.run(cycles);
+        emulated.read_memory(RESULTS, bytes).expect("main memory");
+    });
+    assert_eq!(expected.len(), ACCESSES);
+    let start = Start::Fast { firmware: &image };
+    let mut verilated = VirtualBoard::builder()
+        .start(start)
+        .build()
+        .expect("a virtual board");
+    let found = counts(|cycles, bytes| {
+        verilated.run(cycles);
+        verilated.ddr_read(RESULTS, bytes).expect("main memory");
+    });
+    assert_eq!(found, expected);
+}
