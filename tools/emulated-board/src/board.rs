@@ -60,7 +60,11 @@ impl EmulatedBoard {
             let next = self.bus.devices.advance(self.cycles, &mut self.bus.ram);
             let lines = self.bus.devices.interrupts();
             let limit = next.min(end);
-            let (now, pause) = self.cpu.run(&mut self.bus, self.cycles, limit, lines);
+            let (now, pause) = if self.bus.devices.controller.holds_cpu {
+                (limit, Pause::Ready)
+            } else {
+                self.cpu.run(&mut self.bus, self.cycles, limit, lines)
+            };
             self.cycles = now;
             if pause == Pause::Asleep && now < limit {
                 self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);

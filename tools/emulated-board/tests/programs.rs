@@ -1,8 +1,9 @@
 //! Small programs on the whole board, for what the firmware never does.
 
 use emulated_board::EmulatedBoard;
-use litex_pac::ctrl;
 use litex_pac::memories::{FLASH, MAIN_RAM};
+use litex_pac::register::Value;
+use litex_pac::{ctrl, leds};
 use virtual_flash::Flash;
 
 /// Registers of the programs.
@@ -142,4 +143,26 @@ fn an_access_that_fills_a_line_of_a_cache_is_eight_on_the_bus() {
         assert_eq!(difference(0), count, "{access:#010x}");
         assert_eq!(difference(1) / TIMEOUT, count, "{access:#010x}");
     }
+}
+
+#[test]
+fn a_held_cpu_halts_and_the_devices_go_on() {
+    let hold = ctrl::Reset::default().with_cpu_rst(true);
+    let mut board = started(&[
+        lui(A0, leds::Leds::BASE as u32),
+        addi(A1, 0, 5),
+        sw(A1, leds::offset::OUT, A0),
+        lui(A0, ctrl::Ctrl::BASE as u32),
+        addi(A1, 0, hold.bits()),
+        sw(A1, ctrl::offset::RESET, A0),
+        lui(A2, RESULTS),
+        sw(A1, 0, A2),
+        LOOP,
+    ]);
+    board.run(100);
+    let (instructions, blankings) = (board.instructions(), board.blankings());
+    board.run(5_000_000);
+    assert_eq!((board.instructions(), board.leds()), (instructions, 5));
+    assert!(board.blankings() > blankings + 1 && board.cycles() >= 5_000_100);
+    assert_eq!(result(&board, 0), 0);
 }

@@ -14,6 +14,8 @@ pub struct Controller {
     bus_errors: u32,
     /// Whether the CPU has asked for a reset of the SoC.
     pub reset: bool,
+    /// Whether the CPU is held in reset.
+    pub holds_cpu: bool,
 }
 
 impl Controller {
@@ -23,6 +25,7 @@ impl Controller {
             scratch: SCRATCH,
             bus_errors: 0,
             reset: false,
+            holds_cpu: false,
         }
     }
 
@@ -45,7 +48,9 @@ impl Device for Controller {
         match offset {
             ctrl::offset::RESET => {
                 let reset = ctrl::Reset::from_bits(value);
-                self.reset |= reset.soc_rst() || reset.cpu_rst();
+                self.reset |= reset.soc_rst();
+                // Only a pulse resets the SoC; this bit stays, and no CPU is left to clear it.
+                self.holds_cpu = reset.cpu_rst();
             }
             ctrl::offset::SCRATCH => self.scratch = value,
             _ => {}
