@@ -120,11 +120,8 @@ impl Device for Timer {
                 _ => now + period - (now - self.zero) % period,
             };
         }
-        // The level falls in the cycle after.
-        let level = self.count(now) == 0;
-        if !level {
-            self.events.set_level(ZERO, false);
-        }
+        // The level falls in the cycle after, or stays high without a reload.
+        self.events.set_level(ZERO, self.count(now) == 0);
         self.zero
     }
 
@@ -177,5 +174,29 @@ mod tests {
         assert_eq!(timer.advance(125, &mut ram), 133);
         assert_eq!(timer.read(offset::EV_STATUS, 133), ZERO);
         assert_eq!(timer.read(offset::EV_STATUS, 134), 0);
+    }
+
+    #[test]
+    fn a_count_that_stays_at_zero_is_one_event() {
+        let (mut timer, mut ram) = enabled(10, 0);
+        timer.advance(110, &mut ram);
+        timer.write(offset::EV_PENDING, ZERO, 111, &mut ram);
+        for (register, value) in [(offset::EN, 1), (offset::RELOAD, 20)] {
+            timer.write(register, value, 112, &mut ram);
+            assert!(!timer.interrupt());
+        }
+        timer.advance(timer.zero, &mut ram);
+        assert!(timer.interrupt());
+    }
+
+    #[test]
+    fn each_period_is_an_event() {
+        let (mut timer, mut ram) = enabled(3, 9);
+        for _ in 0..3 {
+            let zero = timer.zero;
+            timer.advance(zero, &mut ram);
+            assert!(timer.interrupt());
+            timer.write(offset::EV_PENDING, ZERO, zero, &mut ram);
+        }
     }
 }
