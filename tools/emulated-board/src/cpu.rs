@@ -130,6 +130,8 @@ impl Cpu {
         }
         macro_rules! exception {
             ($cause:expr, $value:expr) => {{
+                // An instruction that traps takes time, but does not retire.
+                waited += CYCLES;
                 pc = csrs.exception($cause, $value, pc);
                 continue;
             }};
@@ -341,7 +343,7 @@ impl Cpu {
 /// Why [`Cpu::run_page`] returned, and the cycle after its last instruction.
 struct End {
     now: u64,
-    /// Cycles of these that were time-outs of the bus.
+    /// Cycles of these in which no instruction retired: time-outs of the bus, and traps.
     waited: u64,
     reason: Reason,
 }

@@ -24,6 +24,8 @@ const TIMEOUT: u32 = 1_000_000;
 
 const MTVEC: u32 = 0x305;
 const MCYCLE: u32 = 0xb00;
+const MINSTRET: u32 = 0xb02;
+const ECALL: u32 = 0x0000_0073;
 
 fn lui(rd: u32, value: u32) -> u32 {
     value & 0xffff_f000 | rd << 7 | 0x37
@@ -165,4 +167,23 @@ fn a_held_cpu_halts_and_the_devices_go_on() {
     assert_eq!((board.instructions(), board.leds()), (instructions, 5));
     assert!(board.blankings() > blankings + 1 && board.cycles() >= 5_000_100);
     assert_eq!(result(&board, 0), 0);
+}
+
+#[test]
+fn an_instruction_that_traps_does_not_count() {
+    let handler = MAIN_RAM.base + 4 * 6;
+    let mut board = started(&[
+        lui(A2, RESULTS),
+        lui(A0, handler),
+        addi(A0, A0, handler % PAGE),
+        csrw(MTVEC, A0),
+        csrr(A0, MINSTRET),
+        ECALL,
+        csrr(A1, MINSTRET),
+        sw(A0, 0, A2),
+        sw(A1, 4, A2),
+        LOOP,
+    ]);
+    board.run(100);
+    assert_eq!(result(&board, 1) - result(&board, 0), 1);
 }
