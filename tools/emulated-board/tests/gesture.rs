@@ -261,7 +261,9 @@ fn a_small_picture_is_that_of_a_whole_frame() {
     assert!(bench.run(2 * FRAME));
     let request = Snapshot::default().with_step(2).with_start(true);
     for is_colour in [false, true] {
-        bench.set(offset::SNAPSHOT, request.with_colour(is_colour).bits());
+        let request = request.with_colour(is_colour).bits();
+        bench.set(offset::SNAPSHOT, request);
+        assert_eq!(bench.read(offset::SNAPSHOT), request);
         let state = SnapshotState::from_bits(bench.read(offset::SNAPSHOT_STATE));
         assert!(!state.ready());
         for _ in 0..3 {

@@ -43,6 +43,9 @@ enum State {
 pub struct I2c {
     /// The sensor on the bus, if there is one.
     pub sensor: Option<Wires>,
+    /// The registers `command` and `control`, as they were written last.
+    command: u32,
+    control: u32,
     commands: VecDeque<Command>,
     answers: VecDeque<u8>,
     rounds: Rounds,
@@ -71,6 +74,8 @@ impl I2c {
     pub fn new() -> Self {
         Self {
             sensor: None,
+            command: 0,
+            control: 0,
             commands: VecDeque::new(),
             answers: VecDeque::new(),
             rounds: Rounds::default(),
@@ -343,6 +348,8 @@ impl Device for I2c {
                 Some(byte) => Answer::default().with_byte(byte).with_valid(true).bits(),
                 None => 0,
             },
+            offset::COMMAND => self.command,
+            offset::CONTROL => self.control,
             offset::ROUNDS => self.rounds.bits(),
             offset::STATUS => {
                 let (scl, sda) = self.wires(now);
@@ -364,11 +371,17 @@ impl Device for I2c {
 
     fn write(&mut self, offset: u32, value: u32, now: u64, _ram: &mut MainMemory) {
         match offset {
-            offset::COMMAND if self.commands.len() < Block::COMMAND_PLACES as usize => {
-                self.commands.push_back(Command::from_bits(value));
+            offset::COMMAND => {
+                self.command = value & 0x7ff;
+                if self.commands.len() < Block::COMMAND_PLACES as usize {
+                    self.commands.push_back(Command::from_bits(value));
+                }
             }
-            offset::CONTROL if Control::from_bits(value).clear() => {
-                self.clear(now);
+            offset::CONTROL => {
+                self.control = value & 1;
+                if Control::from_bits(value).clear() {
+                    self.clear(now);
+                }
             }
             offset::ROUNDS => {
                 let before = self.rounds;
@@ -469,5 +482,14 @@ mod tests {
         assert_eq!(i2c.round, ROUND + 500 + (1 << 24));
         i2c.write(offset::ROUNDS, rounds(1001, 0).bits(), 3000, &mut ram);
         assert_eq!(i2c.round, 3001);
+    }
+
+    #[test]
+    fn registers_read_what_was_written() {
+        let (mut i2c, mut ram) = (I2c::new(), MainMemory::new());
+        i2c.write(offset::COMMAND, 0xffff_fd23, 0, &mut ram);
+        i2c.write(offset::CONTROL, 3, 0, &mut ram);
+        assert_eq!(i2c.read(offset::COMMAND, 0), 0x523);
+        assert_eq!(i2c.read(offset::CONTROL, 0), 1);
     }
 }

@@ -16,6 +16,8 @@ pub struct Timer {
     start: (u64, u32),
     value: u32,
     uptime: u64,
+    /// The registers `update_value` and `uptime_latch`, as they were written last.
+    latches: [u32; 2],
     /// Cycle in which the count becomes 0 next.
     zero: u64,
     events: Events,
@@ -33,6 +35,7 @@ impl Timer {
             start: (0, 0),
             value: 0,
             uptime: 0,
+            latches: [0; 2],
             zero: u64::MAX,
             events,
         }
@@ -69,7 +72,9 @@ impl Device for Timer {
             offset::LOAD => self.load,
             offset::RELOAD => self.reload,
             offset::EN => self.enabled.into(),
+            offset::UPDATE_VALUE => self.latches[0],
             offset::VALUE => self.value,
+            offset::UPTIME_LATCH => self.latches[1],
             offset::UPTIME_CYCLES => (self.uptime >> 32) as u32,
             at if at == offset::UPTIME_CYCLES + 4 => self.uptime as u32,
             offset::EV_STATUS => u32::from(self.count(now) == 0) * ZERO,
@@ -102,8 +107,14 @@ impl Device for Timer {
                 self.enabled = value & 1 != 0;
                 self.restart(now, count);
             }
-            offset::UPDATE_VALUE => self.value = self.count(now),
-            offset::UPTIME_LATCH => self.uptime = now,
+            offset::UPDATE_VALUE => {
+                self.latches[0] = value & 1;
+                self.value = self.count(now);
+            }
+            offset::UPTIME_LATCH => {
+                self.latches[1] = value & 1;
+                self.uptime = now;
+            }
             offset::EV_PENDING => self.events.clear(value),
             offset::EV_ENABLE => self.events.enable(value & ZERO),
             _ => {}
@@ -197,6 +208,15 @@ mod tests {
             timer.advance(zero, &mut ram);
             assert!(timer.interrupt());
             timer.write(offset::EV_PENDING, ZERO, zero, &mut ram);
+        }
+    }
+
+    #[test]
+    fn latches_read_what_was_written() {
+        let (mut timer, mut ram) = (Timer::new(), MainMemory::new());
+        for register in [offset::UPDATE_VALUE, offset::UPTIME_LATCH] {
+            timer.write(register, 3, 100, &mut ram);
+            assert_eq!(timer.read(register, 100), 1);
         }
     }
 }

@@ -30,6 +30,8 @@ pub struct GestureEngine {
     camera: Camera,
     events: Events,
     engine: Box<Engine>,
+    /// The register `snapshot`, as it was written last.
+    snapshot: u32,
     /// The word of the small picture to read next.
     place: u16,
     port: Port,
@@ -63,6 +65,7 @@ impl GestureEngine {
                 .with_sda(true),
             events: Events::default(),
             engine: Box::new(engine),
+            snapshot: 0,
             place: 0,
             port: Port::default(),
             is_running: false,
@@ -251,6 +254,7 @@ impl Device for GestureEngine {
             offset::SUM_Y => results.sums[1],
             offset::BOX_X => BoxX::default().with_first(left).with_last(right).bits(),
             offset::BOX_Y => BoxY::default().with_first(top).with_last(bottom).bits(),
+            offset::SNAPSHOT => self.snapshot,
             offset::SNAPSHOT_STATE => self.snapshot_state().bits(),
             offset::SNAPSHOT_WORD => self.snapshot_word().into(),
             offset::FRAMES => engine.counts.frames,
@@ -279,6 +283,7 @@ impl Device for GestureEngine {
             offset::EV_PENDING => self.events.clear(value),
             offset::EV_ENABLE => self.events.enable(value & frame_event()),
             offset::SNAPSHOT => {
+                self.snapshot = value & 0x1ff;
                 let request = Snapshot::from_bits(value);
                 if request.start() {
                     // A column has five bits that count.
