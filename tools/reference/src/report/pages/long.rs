@@ -29,13 +29,9 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     if !sensor.is_empty() {
         draw(&sensor, folder)?;
     }
-    let commits = [
-        orbit.first().map(|row| &row.commit),
-        uptime.first().map(|row| &row.commit),
-        sensor.first().map(|row| &row.commit),
-    ];
-    let [of_orbit, of_uptime, of_sensor] =
-        commits.map(|commit| commit.cloned().unwrap_or_else(|| "none".to_owned()));
+    let of_orbit = commits(orbit.iter().map(|row| &*row.commit));
+    let of_uptime = commits(uptime.iter().map(|row| &*row.commit));
+    let of_sensor = commits(sensor.iter().map(|row| &*row.commit));
     let page = fill(
         include_str!("long.md"),
         &[
@@ -44,10 +40,20 @@ pub fn rebuild(folder: &Path) -> Result<()> {
             ("uptime", uptime_table(&uptime)),
             ("orbit's commit", of_orbit),
             ("uptime's commit", of_uptime),
-            ("sensor's commit", of_sensor),
+            ("sensor's commits", of_sensor),
         ],
     )?;
     write(&page, &folder.join("long.md"))
+}
+
+/// The commits of rows, in their order, each once after the other.
+fn commits<'a>(of_rows: impl Iterator<Item = &'a str>) -> String {
+    let mut commits: Vec<&str> = of_rows.collect();
+    commits.dedup();
+    match commits.is_empty() {
+        true => "none".to_owned(),
+        false => commits.join(" and "),
+    }
 }
 
 /// Formats the table of the orbit as Markdown.
