@@ -1,4 +1,4 @@
-//! Accesses to unused addresses: the emulated board counts and waits as the verilated SoC does.
+//! Loads and stores at unused addresses: the emulated board counts and waits as the verilated SoC does.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::ctrl;
@@ -10,7 +10,7 @@ use crate::program::assemble;
 /// Where the program leaves its results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
 /// Number of accesses, and of words that the program leaves: two before the first access, two after each, and one at the end.
-const ACCESSES: usize = 5;
+const ACCESSES: usize = 4;
 const WORDS: usize = 2 * ACCESSES + 3;
 
 /// Clock cycles until the bus answers an access.
