@@ -189,8 +189,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Keeps a request until the console waits for a command. A newer model or picture replaces the one before. A description above
-    /// the limit is dropped: pages ask again.
+    /// Keeps a request until the console waits for a command. A newer model or picture replaces the one before. Descriptions above the
+    /// limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting.retain(|earlier| match (earlier, &request) {
             (Request::Help(earlier), Request::Help(command)) => earlier != command,

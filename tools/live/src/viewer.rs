@@ -64,7 +64,7 @@ impl Viewer {
         }
     }
 
-    /// Checks a line for the console. Returns whether it is one; otherwise the page is told why not.
+    /// Returns whether the console takes a line. If not, the page gets a notice with the reason.
     fn is_line(&self, line: &str, channels: &Channels) -> bool {
         let is_line = line.len() <= LINE_MAX && !line.chars().any(char::is_control);
         if !is_line {

@@ -102,7 +102,7 @@ export function startMotion(send, notify) {
     if (!use.checked) return;
     const answer = await globalThis.DeviceOrientationEvent?.requestPermission?.().catch(() => "denied");
     if (answer !== undefined && answer !== "granted") return fail();
-    patience = setTimeout(fail, 1000);
+    patience = setTimeout(fail, 3000);
     addEventListener("deviceorientation", follow);
   });
 

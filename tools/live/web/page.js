@@ -11,11 +11,11 @@ const element = (id) => document.getElementById(id);
 let holder = "nobody";
 let sendData;
 
-// Messages that begin something new: the notice of what was before goes.
-const BEGINNINGS = ["command", "picture", "upload"];
+// Messages after which the last notice is out of date.
+const CLEARING = ["command", "picture", "upload"];
 
 function send(message) {
-  if (BEGINNINGS.includes(message.type)) notify("");
+  if (CLEARING.includes(message.type)) notify("");
   sendData(JSON.stringify(message));
 }
 

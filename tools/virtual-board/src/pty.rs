@@ -20,7 +20,7 @@ const SLICE: u64 = 2000;
 /// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.
 const QUEUE: usize = 4096;
 
-/// Largest number of bytes that wait for a program to read them. Above it the older half is lost: nobody may be reading.
+/// Largest number of bytes of unread output. Above it the older half is dropped, because there may be no reader.
 const UNREAD: usize = 1 << 20;
 
 /// A closure that the board's thread calls between two slices of `SLICE` cycles.
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn what_nobody_reads_is_lost_and_the_newest_is_kept() {
+    fn old_output_without_a_reader_is_dropped() {
         let pty = Pty::start(Talker::default()).unwrap();
         let end = 1_000_000;
         pty.with(move |talker| talker.end = end);

@@ -325,8 +325,9 @@ impl I2c {
         if self.state == State::Failed || !self.rounds.repeats() || last {
             self.events.raise(ENDED);
         }
-        // Four bits: a batch may have become shorter than the rounds of it that are done.
-        self.rounds_done = if last { 0 } else { (self.rounds_done + 1) & 15 };
+        // The count wraps at the width of `batch`, which may have become smaller than the count.
+        let next = Rounds::default().with_batch(self.rounds_done + 1).batch();
+        self.rounds_done = if last { 0 } else { next };
         if !self.rounds.repeats() {
             self.rounds_done = 0;
         }
@@ -391,10 +392,11 @@ impl Device for I2c {
                     self.round = u64::MAX;
                     self.rounds_done = 0;
                 } else if before.repeats() {
-                    // The counter of 24 bits goes on. A period that it has passed already ends after it has wrapped.
+                    // The counter, as wide as `period`, goes on. A period that it has passed already ends after it has wrapped.
                     let counts_from = self.round - u64::from(before.period());
                     let left = counts_from.wrapping_add(period).wrapping_sub(now + 1);
-                    self.round = now + 1 + (left & 0xff_ffff);
+                    let wrap = Rounds::default().with_period(u32::MAX).period();
+                    self.round = now + 1 + (left & u64::from(wrap));
                 } else {
                     self.round = now + period + 1;
                 }
@@ -487,9 +489,11 @@ mod tests {
     #[test]
     fn registers_read_what_was_written() {
         let (mut i2c, mut ram) = (I2c::new(), MainMemory::new());
-        i2c.write(offset::COMMAND, 0xffff_fd23, 0, &mut ram);
+        i2c.write(offset::COMMAND, u32::MAX, 0, &mut ram);
         i2c.write(offset::CONTROL, 3, 0, &mut ram);
-        assert_eq!(i2c.read(offset::COMMAND, 0), 0x523);
+        let command = Command::default().with_operation(Operation::Stop);
+        let command = command.with_argument(0xff).with_more(true);
+        assert_eq!(i2c.read(offset::COMMAND, 0), command.bits());
         assert_eq!(i2c.read(offset::CONTROL, 0), 1);
     }
 }

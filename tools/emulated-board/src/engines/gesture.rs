@@ -283,8 +283,10 @@ impl Device for GestureEngine {
             offset::EV_PENDING => self.events.clear(value),
             offset::EV_ENABLE => self.events.enable(value & frame_event()),
             offset::SNAPSHOT => {
-                self.snapshot = value & 0x1ff;
                 let request = Snapshot::from_bits(value);
+                let stored = Snapshot::default().with_step(request.step());
+                let stored = stored.with_colour(request.colour());
+                self.snapshot = stored.with_start(request.start()).bits();
                 if request.start() {
                     // A column has five bits that count.
                     let step = request.step().min(5);

@@ -110,14 +110,7 @@ impl BoardArguments {
         let url = server.url()?;
         say(&url)?;
         if address.ip().is_unspecified() {
-            let host = if address.is_ipv4() {
-                "127.0.0.1"
-            } else {
-                "[::1]"
-            };
-            note(format_args!(
-                "on another device, open it with this machine's address in place of {host}"
-            ));
+            note("on other devices, replace the host in this address by this machine's address");
         }
         if let Some(ready) = ready {
             ready.write(|out| writeln!(out, "{url}"))?;

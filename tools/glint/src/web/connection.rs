@@ -13,7 +13,7 @@ use tungstenite::{Bytes, Error, Message, WebSocket};
 /// Longest wait for a message from the page, after which the messages for the page are sent.
 const LOOK: Duration = Duration::from_millis(4);
 
-/// How long a page may be silent. Browsers answer a ping without the page's script.
+/// Limits of a page's silence. Browsers answer a ping without the page's script.
 #[derive(Clone, Copy)]
 pub struct Patience {
     /// Silence after which the page gets a ping.
@@ -22,7 +22,7 @@ pub struct Patience {
     pub lost: Duration,
 }
 
-/// The silence that a page on a slow network may have.
+/// Limits for a page on a slow network.
 pub const PATIENCE: Patience = Patience {
     quiet: Duration::from_secs(10),
     lost: Duration::from_secs(30),
@@ -142,8 +142,8 @@ mod tests {
     use std::thread::scope;
 
     const SHORT: Patience = Patience {
-        quiet: Duration::from_millis(50),
-        lost: Duration::from_millis(200),
+        quiet: Duration::from_millis(100),
+        lost: Duration::from_secs(1),
     };
 
     #[test]

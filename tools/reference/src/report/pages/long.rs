@@ -46,7 +46,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("long.md"))
 }
 
-/// The commits of rows, in their order, each once after the other.
+/// Joins the commits of rows, without repeats.
 fn commits<'a>(of_rows: impl Iterator<Item = &'a str>) -> String {
     let mut commits: Vec<&str> = of_rows.collect();
     commits.dedup();
