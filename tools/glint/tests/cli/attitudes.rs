@@ -1,6 +1,6 @@
 //! `glint imu replay` by the model.
 
-use crate::common::{folder, refused, succeed};
+use crate::common::{all_refused, folder, refused, report, succeed};
 
 #[test]
 fn logs_of_a_gyroscope() {
@@ -20,16 +20,16 @@ fn logs_of_a_gyroscope() {
         );
     }
     std::fs::write(folder.join("turn.csv"), &log).unwrap();
-    let replay = |log: &str, more: &[&str]| -> Vec<String> {
-        let arguments = [&["imu", "replay", log, "--out", "o.csv"], more].concat();
-        let mut said = vec![succeed(&folder, &arguments)];
+    let replay = |log: &str, more: &str| -> Vec<String> {
+        let command = format!("imu replay {log} --out o.csv {more}");
+        let mut said = vec![succeed(&folder, &command)];
         let out = std::fs::read_to_string(folder.join("o.csv")).unwrap();
         said.extend(out.lines().map(str::to_owned));
         said
     };
     let numbers =
         |line: &str| -> Vec<f64> { line.split(',').map(|word| word.parse().unwrap()).collect() };
-    let said = replay("turn.csv", &["--still", "0.1", "--json"]);
+    let said = replay("turn.csv", "--still 0.1 --json");
     assert_eq!(said[1], "t_us,w,x,y,z,yaw,pitch,roll");
     assert_eq!(said.len(), 2 + 1092);
     assert_eq!(
@@ -56,10 +56,7 @@ fn logs_of_a_gyroscope() {
 
     // Twice the sample period and half the rate per count give the same attitude. The gap of 10 ms becomes an ordinary step,
     // because the period is fixed.
-    let said = replay(
-        "turn.csv",
-        &["--dt-us", "2000", "--gyro-lsb", "32.8", "--no-tilt"],
-    );
+    let said = replay("turn.csv", "--dt-us 2000 --gyro-lsb 32.8 --no-tilt");
     assert!(
         said[0].starts_with("samples     1092 in 2.182 s: 1091 steps, 0 stale, "),
         "{}",
@@ -73,49 +70,35 @@ fn logs_of_a_gyroscope() {
     // A sensor on its side: gravity gives the roll, unless tilt correction is off.
     let side = "t_us,ax,ay,az,gx,gy,gz\n0,0,4096,0,0,0,0\n1000,0,4096,0,0,0,0\n";
     std::fs::write(folder.join("side.csv"), side).unwrap();
-    let angles = |more: &[&str]| numbers(replay("side.csv", more).last().unwrap())[5..].to_vec();
-    assert_eq!(angles(&[]), [0.0, 0.0, 90.0]);
-    assert_eq!(angles(&["--no-tilt"]), [0.0, 0.0, 0.0]);
+    let angles = |more: &str| numbers(replay("side.csv", more).last().unwrap())[5..].to_vec();
+    assert_eq!(angles(""), [0.0, 0.0, 90.0]);
+    assert_eq!(angles("--no-tilt"), [0.0, 0.0, 0.0]);
 
     std::fs::write(
         folder.join("bad.csv"),
         side.replace("1000,0,4096", "1000,0,4096.5"),
     )
     .unwrap();
-    for (arguments, message) in [
-        (
-            &["bad.csv"][..],
-            "bad.csv: line 3, column ay: expected a whole number from -32768 to 32767, found '4096.5'",
-        ),
-        (
-            &["none.csv"],
-            "none.csv: expected a file to read, found No such file or directory (os error 2)",
-        ),
-        (
-            &["side.csv", "--still", "1"],
-            "side.csv: expected at least 64 samples in the first 1 s, found 2",
-        ),
-        (
-            &["turn.csv", "--still", "0.5"],
-            "turn.csv: line 103: expected a sensor at rest in the first 0.5 s, found gyroscope z of sample 101 is 1476 LSB from the first: expected at most 33, keep it still",
-        ),
-        (
-            &["side.csv", "--gyro-lsb", "0"],
-            "--gyro-lsb: expected a number of LSB per °/s from 8 to 4096, found '0'",
-        ),
-        (
-            &["side.csv", "--accel-lsb", "2g"],
-            "--accel-lsb: expected a whole number of LSB per g from 1024 to 32767, found '2g'",
-        ),
-        (
-            &["side.csv", "--still", "-1"],
-            "--still: expected a number of seconds from 0 to 86400, found '-1'",
-        ),
-    ] {
-        let all = [&["imu", "replay", "--out", "x.csv"], arguments].concat();
-        assert_eq!(refused(&folder, &all), format!("error: {message}"));
-        assert!(!folder.join("x.csv").exists());
-    }
+    all_refused(
+        &folder,
+        "
+        imu replay --out x.csv bad.csv
+            bad.csv: line 3, column ay: expected a whole number from -32768 to 32767, found '4096.5'
+        imu replay --out x.csv none.csv
+            none.csv: expected a file to read, found No such file or directory (os error 2)
+        imu replay --out x.csv side.csv --still 1
+            side.csv: expected at least 64 samples in the first 1 s, found 2
+        imu replay --out x.csv turn.csv --still 0.5
+            turn.csv: line 103: expected a sensor at rest in the first 0.5 s, found gyroscope z of sample 101 is 1476 LSB from the first: expected at most 33, keep it still
+        imu replay --out x.csv side.csv --gyro-lsb 0
+            --gyro-lsb: expected a number of LSB per °/s from 8 to 4096, found '0'
+        imu replay --out x.csv side.csv --accel-lsb 2g
+            --accel-lsb: expected a whole number of LSB per g from 1024 to 32767, found '2g'
+        imu replay --out x.csv side.csv --still -1
+            --still: expected a number of seconds from 0 to 86400, found '-1'
+        ",
+    );
+    assert!(!folder.join("x.csv").exists());
 }
 
 /// `--still 0` is a replay without a calibration, also of a log that begins in motion.
@@ -127,21 +110,16 @@ fn a_rest_of_zero_seconds_is_none() {
         log += &format!("{},0,0,4096,{},20,-5\n", i * 1000, 40 * (i % 50));
     }
     std::fs::write(folder.join("log.csv"), log).unwrap();
-    let replay = |more: &[&str]| {
-        let arguments = ["imu", "replay", "log.csv", "--out", "o.csv", "--json"];
-        let said = succeed(&folder, &[&arguments, more].concat());
-        let summary: serde_json::Value = serde_json::from_str(&said).unwrap();
-        assert!(summary["calibration"].is_null(), "{more:?}: {said}");
+    let replay = |more: &str| {
+        let summary = report(&folder, &format!("imu replay log.csv --out o.csv {more}"));
+        assert!(summary["calibration"].is_null(), "{more}: {summary}");
         std::fs::read_to_string(folder.join("o.csv")).unwrap()
     };
-    let expected = replay(&[]);
+    let expected = replay("");
     for zero in ["0", "0.0"] {
-        assert!(replay(&["--still", zero]) == expected);
+        assert!(replay(&format!("--still {zero}")) == expected);
     }
     // A rest is checked.
-    let rest = [
-        "imu", "replay", "log.csv", "--out", "r.csv", "--still", "0.1",
-    ];
-    let error = refused(&folder, &rest);
+    let error = refused(&folder, "imu replay log.csv --out r.csv --still 0.1");
     assert!(error.contains("keep it still"), "{error}");
 }

@@ -1,13 +1,11 @@
 //! The camera that shows the whole model, and the options of the lens.
 
-use crate::common::{SQUARE, folder, glint, picture, refused, succeed};
-use std::path::Path;
+use crate::common::{SQUARE, drawn, folder, picture, refused, said};
 
 /// The drawn rows and columns of a picture with a black background: the first and the last one of each.
-fn extent(path: &Path) -> [[usize; 2]; 2] {
-    let pixels = picture(path);
-    let drawn = |i: &usize| pixels[3 * i..3 * i + 3] != [0; 3];
-    let drawn: Vec<_> = (0..320 * 180).filter(drawn).collect();
+fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
+    let is_drawn = |i: &usize| pixels[3 * i..3 * i + 3] != [0; 3];
+    let drawn: Vec<_> = (0..320 * 180).filter(is_drawn).collect();
     let range = |of: fn(usize) -> usize| {
         let values = drawn.iter().map(|&i| of(i));
         [values.clone().min().unwrap(), values.max().unwrap()]
@@ -15,25 +13,18 @@ fn extent(path: &Path) -> [[usize; 2]; 2] {
     [range(|i| i / 320), range(|i| i % 320)]
 }
 
-fn height(path: &Path) -> usize {
-    let [[top, bottom], _] = extent(path);
-    bottom + 1 - top
-}
-
 #[test]
 fn the_whole_model_fills_four_fifths_of_the_height() {
     let folder = folder("framing");
-    let out = folder.join("a.png");
     // A sphere fills its own bounding sphere; at another place and size the picture is the same.
     for model in [
-        &["icosphere:20"][..],
-        &["--object", "icosphere:20 scale 0.3 move 1,-1,0.5"],
-        &["--object", "icosphere:20 scale 2"],
-        &["icosphere:20", "--fov", "20"],
-        &["icosphere:20", "--fov", "100"],
+        "icosphere:20",
+        "--object 'icosphere:20 scale 0.3 move 1,-1,0.5'",
+        "--object 'icosphere:20 scale 2'",
+        "icosphere:20 --fov 20",
+        "icosphere:20 --fov 100",
     ] {
-        succeed(&folder, &[&["render", "--out", "a.png"], model].concat());
-        let [[top, bottom], [left, right]] = extent(&out);
+        let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
         for (low, high, all) in [(top, bottom, 180), (left, right, 320)] {
             assert!(
                 (high + 1 - low).abs_diff(144) <= 2,
@@ -47,18 +38,16 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
     }
     // Every model is in the picture as a whole.
     for model in ["cube", "gear", "teapot", "torus-knot", "sponge:2"] {
-        succeed(&folder, &["render", model, "--out", "a.png"]);
-        let [[top, bottom], [left, right]] = extent(&out);
+        let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
         assert!(
             top > 10 && bottom < 169 && left > 10 && right < 309,
             "{model}"
         );
         assert!(bottom - top > 60, "{model}");
     }
-    let zoom = ["render", "icosphere:20", "--out", "a.png", "--zoom", "0.5"];
-    succeed(&folder, &zoom);
-    assert!(height(&out).abs_diff(72) <= 2);
-    let error = refused(&folder, &[&zoom[..5], &["0"]].concat());
+    let [[top, bottom], _] = extent(&drawn(&folder, "render icosphere:20 --zoom 0.5"));
+    assert!((bottom + 1 - top).abs_diff(72) <= 2);
+    let error = refused(&folder, "render icosphere:20 --out b.png --zoom 0");
     assert!(
         error.starts_with("error: --zoom: expected a factor"),
         "{error}"
@@ -85,36 +74,22 @@ fn the_axis_that_is_up() {
     };
     std::fs::write(folder.join("z.obj"), column([0, 1, 2])).unwrap();
     std::fs::write(folder.join("y.obj"), column([1, 2, 0])).unwrap();
-    let drawn = |arguments: &[&str]| {
-        let output = glint(
-            &folder,
-            &[&["render", "--force", "--out", "a.png"], arguments].concat(),
-        );
-        assert!(output.status.success(), "{arguments:?}");
-        let note = String::from_utf8(output.stderr).unwrap();
+    let drawn = |arguments: &str| {
+        let [_, note] = said(&folder, &format!("render --force --out a.png {arguments}"));
         (picture(&folder.join("a.png")), note)
     };
-    let (upright, note) = drawn(&["z.obj", "--up", "z"]);
+    let (upright, note) = drawn("z.obj --up z");
     assert_eq!(note, "");
     let guessed = "note: y is up, as usual in .obj; --up z changes it\n";
-    assert!(drawn(&["y.obj"]) == (upright.clone(), guessed.to_owned()));
-    assert!(drawn(&["y.obj", "--up", "y"]) == (upright.clone(), String::new()));
-    assert!(drawn(&["y.obj", "--up", "z"]).0 != upright);
+    assert!(drawn("y.obj") == (upright.clone(), guessed.to_owned()));
+    assert!(drawn("y.obj --up y") == (upright.clone(), String::new()));
+    assert!(drawn("y.obj --up z").0 != upright);
     std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
-    let error = refused(
-        &folder,
-        &[
-            "render",
-            "--field",
-            "box:1,1,1",
-            "--orthographic",
-            "2",
-            "--out",
-            "a.png",
-        ],
-    );
     assert_eq!(
-        error,
+        refused(
+            &folder,
+            "render --field box:1,1,1 --orthographic 2 --out a.png"
+        ),
         "error: --orthographic: expected a mesh, found a --field"
     );
 }

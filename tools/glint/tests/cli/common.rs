@@ -15,21 +15,31 @@ pub fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// Runs the program with 256 MiB of address space, so that unbounded use of memory fails.
-pub fn glint(folder: &Path, arguments: &[&str]) -> Output {
-    glint_in(folder, arguments, &[])
+/// The words of a command; single quotes join words.
+pub fn words(command: &str) -> Vec<&str> {
+    let parts = command.split('\'').enumerate();
+    let words = parts.flat_map(|(i, part)| match i % 2 {
+        0 => part.split_whitespace().collect(),
+        _ => vec![part],
+    });
+    words.collect()
 }
 
-/// Runs the program with variables of the environment in which it finds its settings.
-pub fn glint_in(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> Output {
-    glint_within(256, folder, arguments, variables)
+/// Runs a command with 256 MiB of address space, so that unbounded use of memory fails.
+pub fn glint(folder: &Path, command: &str) -> Output {
+    glint_in(folder, command, &[])
 }
 
-/// Runs the program with this many MiB of address space.
+/// Runs a command with variables of the environment in which it finds its settings.
+pub fn glint_in(folder: &Path, command: &str, variables: &[(&str, &str)]) -> Output {
+    glint_within(256, folder, command, variables)
+}
+
+/// Runs a command with this many MiB of address space.
 pub fn glint_within(
     mebibytes: u32,
     folder: &Path,
-    arguments: &[&str],
+    command: &str,
     variables: &[(&str, &str)],
 ) -> Output {
     let limited = format!("ulimit -v {}; exec \"$0\" \"$@\"", mebibytes << 10);
@@ -39,32 +49,84 @@ pub fn glint_within(
         .env("XDG_CONFIG_HOME", folder)
         .envs(variables.iter().copied())
         .args(["-c", &limited, env!("CARGO_BIN_EXE_glint")])
-        .args(arguments)
+        .args(words(command))
         .current_dir(folder)
         .output()
         .unwrap()
 }
 
-/// Runs the program, which replaces what it has written before, and returns what it prints.
-pub fn succeed(folder: &Path, arguments: &[&str]) -> String {
-    let output = glint(folder, &[arguments, &["--force"]].concat());
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {error}");
-    String::from_utf8(output.stdout).unwrap()
+/// Runs a command as it stands, and returns what it prints on standard output and on standard error.
+pub fn said(folder: &Path, command: &str) -> [String; 2] {
+    let output = glint(folder, command);
+    let [out, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(output.status.success(), "{command}: {error}");
+    [out, error]
 }
 
-/// Runs the program on input that it must reject; returns its single line of error.
-pub fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = glint(folder, arguments);
+/// Runs a command, which replaces what it has written before, and returns what it prints.
+pub fn succeed(folder: &Path, command: &str) -> String {
+    let [out, _] = said(folder, &format!("{command} --force"));
+    out
+}
+
+/// Runs a command with `--json`, and returns its report.
+pub fn report(folder: &Path, command: &str) -> serde_json::Value {
+    serde_json::from_str(&succeed(folder, &format!("{command} --json"))).unwrap()
+}
+
+/// Runs a command that writes a picture, and returns the picture.
+pub fn drawn(folder: &Path, command: &str) -> Vec<u8> {
+    succeed(folder, &format!("{command} --out a.png"));
+    picture(&folder.join("a.png"))
+}
+
+/// Runs a command on input that it must reject; returns its single line of error.
+pub fn refused(folder: &Path, command: &str) -> String {
+    let output = glint(folder, command);
     let error = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {error}");
-    assert_eq!(error.lines().count(), 1, "{arguments:?}: {error}");
-    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert_eq!(output.status.code(), Some(2), "{command}: {error}");
+    assert_eq!(error.lines().count(), 1, "{command}: {error}");
+    assert!(output.stdout.is_empty(), "{command}");
     assert!(
         error.contains("expected ") && error.contains("found "),
-        "{arguments:?}: {error}"
+        "{command}: {error}"
     );
     error.trim_end().to_owned()
+}
+
+/// Runs commands that must be rejected. Each is a line, with its error on the next line; `…` there stands for any text at the end.
+pub fn all_refused(folder: &Path, cases: &str) {
+    let lines: Vec<&str> = cases.lines().map(str::trim).collect();
+    let lines: Vec<&str> = lines.into_iter().filter(|line| !line.is_empty()).collect();
+    for [command, expected] in lines.as_chunks().0 {
+        let error = refused(folder, command);
+        let error = error.strip_prefix("error: ").unwrap();
+        match expected.strip_suffix('…') {
+            Some(start) => assert!(error.starts_with(start), "{command}: {error}"),
+            None => assert_eq!(error, *expected, "{command}"),
+        }
+    }
+}
+
+/// Writes files that each command, with `FILE` for the name, must reject; `errors` has a line for each file as in [`all_refused`].
+pub fn files_refused<const N: usize>(
+    folder: &Path,
+    commands: [&str; N],
+    files: &[(&str, Vec<u8>)],
+    errors: &str,
+) {
+    let errors: Vec<_> = errors.lines().map(str::trim).collect();
+    let errors: Vec<_> = errors.iter().filter(|line| !line.is_empty()).collect();
+    assert_eq!(errors.len(), files.len());
+    for ((name, contents), error) in files.iter().zip(errors) {
+        std::fs::write(folder.join(name), contents).unwrap();
+        for command in commands {
+            all_refused(
+                folder,
+                &format!("{}\n{error}", command.replace("FILE", name)),
+            );
+        }
+    }
 }
 
 pub const VIEW: &str =

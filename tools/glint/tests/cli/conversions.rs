@@ -1,36 +1,23 @@
 //! `glint model` and `glint convert`.
 
-use crate::common::{SQUARE, folder, glint_within, picture, refused, succeed};
+use crate::common::{SQUARE, all_refused, drawn, folder, glint_within, refused, report, succeed};
 use glint::formats::gltf::example::{TWO_MESHES, as_binary};
 
 #[test]
 fn conversions_by_every_way_agree() {
     let folder = folder("conversions");
     // The model has no face colours, because not every format can store them.
-    succeed(&folder, &["model", "icosphere:4", "straight.glm"]);
+    succeed(&folder, "model icosphere:4 straight.glm");
     for extension in ["obj", "ply"] {
         let between = format!("between.{extension}");
-        succeed(&folder, &["model", "icosphere:4", &between]);
-        succeed(&folder, &["convert", &between, "back.glm"]);
+        succeed(&folder, &format!("model icosphere:4 {between}"));
+        succeed(&folder, &format!("convert {between} back.glm"));
         let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
         assert_eq!(read("straight.glm"), read("back.glm"), "{extension}");
     }
     // STL has neither shared points nor point colours: each face has its own colour, and so its own vertices.
-    succeed(
-        &folder,
-        &["convert", "straight.glm", "between.stl", "--keep-scale"],
-    );
-    let report = succeed(
-        &folder,
-        &[
-            "convert",
-            "between.stl",
-            "back.glm",
-            "--keep-scale",
-            "--json",
-        ],
-    );
-    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    succeed(&folder, "convert straight.glm between.stl --keep-scale");
+    let report = report(&folder, "convert between.stl back.glm --keep-scale");
     assert_eq!(
         (&report["vertices"], &report["triangles"]),
         (&960.into(), &320.into())
@@ -49,46 +36,41 @@ fn gltf_in_both_forms() {
     std::fs::write(folder.join("text.gltf"), text).unwrap();
     std::fs::write(folder.join("with space.bin"), buffer).unwrap();
     for name in ["binary.glb", "text.gltf"] {
-        let report = succeed(&folder, &["convert", name, "out.glm", "--json"]);
-        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let report = report(&folder, &format!("convert {name} out.glm"));
         assert_eq!(
             (&report["points"], &report["triangles"]),
             (&8.into(), &4.into())
         );
         assert_eq!(report["remarks"][0], "points and lines are ignored");
-        succeed(&folder, &["render", name, "--out", "a.png"]);
+        drawn(&folder, &format!("render {name}"));
     }
     std::fs::remove_file(folder.join("with space.bin")).unwrap();
-    assert_eq!(
-        refused(&folder, &["convert", "text.gltf", "out.glm"]),
-        "error: text.gltf: expected the file of a buffer in the folder of the glTF, found 'with%20space.bin'"
-    );
-    assert_eq!(
-        refused(&folder, &["convert", "binary.glb", "out.glb"]),
-        "error: out.glb: expected a name that ends in .obj, .stl, .ply, .glm, found '.glb'"
+    all_refused(
+        &folder,
+        "
+        convert text.gltf out.glm
+            text.gltf: expected the file of a buffer in the folder of the glTF, found 'with%20space.bin'
+        convert binary.glb out.glb
+            out.glb: expected a name that ends in .obj, .stl, .ply, .glm, found '.glb'
+        ",
     );
 }
 
 #[test]
 fn the_order_saves_fetches_and_keeps_the_picture() {
     let folder = folder("orders");
-    succeed(&folder, &["model", "scan:40", "scan.ply"]);
-    let fetches = |out: &str, more: &[&str]| {
-        let arguments = [&["convert", "scan.ply", out, "--json"], more].concat();
-        let report: serde_json::Value =
-            serde_json::from_str(&succeed(&folder, &arguments)).unwrap();
+    succeed(&folder, "model scan:40 scan.ply");
+    let fetches = |out: &str, more: &str| {
+        let report = report(&folder, &format!("convert scan.ply {out} {more}"));
         assert_eq!(report["triangles"], 32_000);
         let a_vertex =
             |key: &str| report[key].as_f64().unwrap() / report["vertices"].as_f64().unwrap();
         (a_vertex("fetches_before"), a_vertex("fetches"))
     };
-    let (before, after) = fetches("ordered.glm", &[]);
+    let (before, after) = fetches("ordered.glm", "");
     assert!(before > 3.0 && after <= 1.15, "{before} {after}");
-    assert_eq!(fetches("kept.glm", &["--keep-order"]), (before, before));
-    let drawn = |mesh: &str| {
-        succeed(&folder, &["render", mesh, "--out", "a.png"]);
-        picture(&folder.join("a.png"))
-    };
+    assert_eq!(fetches("kept.glm", "--keep-order"), (before, before));
+    let drawn = |mesh: &str| drawn(&folder, &format!("render {mesh}"));
     assert!(drawn("ordered.glm") == drawn("kept.glm"));
     assert!(drawn("ordered.glm") == drawn("scan.ply"));
 }
@@ -96,7 +78,7 @@ fn the_order_saves_fetches_and_keeps_the_picture() {
 #[test]
 fn wrong_winding_is_repaired_in_every_format() {
     let folder = folder("winding");
-    succeed(&folder, &["model", "icosphere:4", "whole.obj"]);
+    succeed(&folder, "model icosphere:4 whole.obj");
     let whole = std::fs::read_to_string(folder.join("whole.obj")).unwrap();
     let turn = |(number, line): (usize, &str)| match line.split(' ').collect::<Vec<_>>()[..] {
         ["f", a, b, c] if number % 3 == 0 => format!("f {a} {c} {b}\n"),
@@ -106,13 +88,13 @@ fn wrong_winding_is_repaired_in_every_format() {
     std::fs::write(folder.join("broken.obj"), broken).unwrap();
     for extension in ["glm", "obj", "ply", "stl"] {
         let [whole, repaired] =
-            [("whole", None), ("broken", Some("--fix-winding"))].map(|(input, more)| {
-                let (input, out) = (format!("{input}.obj"), format!("out.{extension}"));
-                let arguments = ["convert", &input, &out, "--keep-scale"].into_iter();
-                let text = succeed(&folder, &arguments.chain(more).collect::<Vec<_>>());
+            [("whole", ""), ("broken", "--fix-winding")].map(|(input, more)| {
+                let out = format!("out.{extension}");
+                let command = format!("convert {input}.obj {out} --keep-scale {more}");
+                let text = succeed(&folder, &command);
                 assert_eq!(
                     text.contains("winding: 107 of 320 faces"),
-                    more.is_some(),
+                    !more.is_empty(),
                     "{text}"
                 );
                 std::fs::read(folder.join(out)).unwrap()
@@ -129,18 +111,17 @@ fn a_material_file_beside_the_mesh() {
         format!("mtllib sub/a.mtl\nusemtl red\n{SQUARE}"),
     )
     .unwrap();
-    let text = succeed(&folder, &["convert", "a.obj", "a.glm"]);
+    let text = succeed(&folder, "convert a.obj a.glm");
     assert!(
         text.contains("note       no material file 'sub/a.mtl' beside the mesh"),
         "{text}"
     );
     std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
-    let text = succeed(&folder, &["convert", "a.obj", "a.glm"]);
+    let text = succeed(&folder, "convert a.obj a.glm");
     assert!(!text.contains("note"), "{text}");
     std::fs::write(folder.join("a.mtl"), "newmtl red\nKd 1 x 0\n").unwrap();
-    let error = refused(&folder, &["convert", "a.obj", "b.glm"]);
     assert_eq!(
-        error,
+        refused(&folder, "convert a.obj b.glm"),
         "error: sub/a.mtl: line 2: expected a number within ±1e30, found 'x'"
     );
 }
@@ -160,8 +141,8 @@ fn concave_polygons_of_8000_corners_load_in_bounded_memory() {
     let face = format!("f{}\n", face.collect::<String>());
     obj += &face.repeat(polygons as usize);
     std::fs::write(folder.join("large.obj"), obj).unwrap();
-    let convert = ["convert", "large.obj", "a.glm", "--json"];
-    let output = glint_within(512, &folder, &convert, &[]);
+    let convert = "convert large.obj a.glm --json";
+    let output = glint_within(512, &folder, convert, &[]);
     let error = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{error}");
     let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -1,29 +1,23 @@
 //! `glint render` of distance fields, alone and with a mesh, by the model.
 
-use crate::common::{SQUARE, VIEW, depths, folder, glint, json, picture, refused, succeed};
+use crate::common::{SQUARE, VIEW, depths, drawn, folder, json, picture, refused, said, succeed};
 
 #[test]
 fn fields_and_their_files() {
     let folder = folder("fields");
     // The camera is 20 away from the box, which would be too far for a mesh.
     let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
-    std::fs::write(
-        folder.join("far.json"),
-        view.replace("0.9", "0.05").replace("0.1}", "0.5}"),
-    )
-    .unwrap();
-    let render = |field: &str, more: &[&str]| {
-        let arguments = ["render", "--field", field, "--out", "a.png"]
-            .iter()
-            .chain(more)
-            .copied()
-            .collect::<Vec<_>>();
-        let said = succeed(&folder, &arguments);
+    let view = view.replace("0.9", "0.05").replace("0.1}", "0.5}");
+    std::fs::write(folder.join("far.json"), view).unwrap();
+    let render = |field: &str, more: &str| {
+        let said = succeed(
+            &folder,
+            &format!("render --field {field} --out a.png {more}"),
+        );
         (picture(&folder.join("a.png")), said)
     };
-    let far = ["--view", "far.json"];
-    let files = ["--depth", "a.f32", "--stats", "a.json"];
-    let (one, said) = render("box:0.5,0.5,0.25", &[&far[..], &files[..]].concat());
+    let seen = "--view far.json --depth a.f32 --stats a.json";
+    let (one, said) = render("box:0.5,0.5,0.25", seen);
     assert!(said.starts_with("rays       57600 cast, "), "{said}");
     let stats = json(&folder.join("a.json"));
     let number = |key: &str| stats[key].as_u64().unwrap();
@@ -50,57 +44,43 @@ fn fields_and_their_files() {
         number("hits")
     );
 
-    let (two, said) = render(
-        "box:0.5,0.5,0.25",
-        &[&far[..], &["--stereo", "0.05,18", "--json"]].concat(),
-    );
+    let eyes = "--view far.json --stereo 0.05,18 --json";
+    let (two, said) = render("box:0.5,0.5,0.25", eyes);
     assert_ne!(one, two);
     assert!(
         said.starts_with("{\"field\":\"box:0.5,0.5,0.25\",") && said.contains("\"rays\":115200,"),
         "{said}"
     );
     // More than four lights are an error.
-    let lights = ["--light", "0,0,1"].repeat(5);
-    let arguments = [
-        &["render", "--field", "menger:1", "--out", "b.png"],
-        &lights[..],
-    ]
-    .concat();
+    let lights = " --light 0,0,1".repeat(5);
     assert_eq!(
-        refused(&folder, &arguments),
+        refused(
+            &folder,
+            &format!("render --field menger:1 --out b.png{lights}")
+        ),
         "error: --light: expected at most 4 lights, found 5"
     );
     // One blue light from above and no ambient light: the box's top is blue, its other sides are black, the background is white.
-    let blue = [
-        "--material",
-        "ivory",
-        "--light",
-        "0,0,1,0000ff",
-        "--ambient",
-        "000000",
-    ];
-    let (lit, _) = render("box:1,1,1", &blue);
+    let blue = "--material ivory --light 0,0,1,0000ff --ambient 000000";
+    let (lit, _) = render("box:1,1,1", blue);
     let mut colours: Vec<&[u8]> = lit.chunks_exact(3).collect();
     colours.sort_unstable();
     colours.dedup();
     assert_eq!(colours, [&[0, 0, 0], &[0, 0, 231], &[255; 3]]);
     for more in [
-        &["--material", "clay"][..],
-        &["--background", "sky"],
-        &["--fog", "0.2"],
-        &["--occlusion"],
+        "--material clay",
+        "--background sky",
+        "--fog 0.2",
+        "--occlusion",
     ] {
-        assert_ne!(
-            render("menger:2", more).0,
-            render("menger:2", &[]).0,
-            "{more:?}"
-        );
+        let with = render("menger:2", more).0;
+        assert_ne!(with, render("menger:2", "").0, "{more}");
     }
     // The default camera sees the whole sponge: the picture's first pixel is background. A camera at distance 3 gives another
     // picture.
-    let (sponge, _) = render("menger:3", &[]);
+    let (sponge, _) = render("menger:3", "");
     assert_eq!(sponge[..3], [0xff; 3]);
-    assert_ne!(sponge, render("menger:3", &["--camera", "3,30,60"]).0);
+    assert_ne!(sponge, render("menger:3", "--camera 3,30,60").0);
 }
 
 /// Draws a sphere of radius 1 as a mesh in a box as a field: the sphere protrudes from the box's faces, and the box's corners
@@ -108,23 +88,17 @@ fn fields_and_their_files() {
 #[test]
 fn a_mesh_in_a_field() {
     let folder = folder("mesh-in-field");
-    let render = |what: &[&str]| {
-        let files = ["--out", "a.png", "--depth", "a.f32", "--stats", "a.json"];
-        let camera = ["--camera", "4,30,60"];
-        let arguments = [&["render"], what, &camera, &files].concat();
-        let said = succeed(&folder, &arguments);
+    let render = |what: &str| {
+        let files = "--out a.png --depth a.f32 --stats a.json";
+        let said = succeed(&folder, &format!("render {what} --camera 4,30,60 {files}"));
         let pixels = picture(&folder.join("a.png"));
-        (
-            pixels,
-            depths(&folder.join("a.f32")),
-            json(&folder.join("a.json")),
-            said,
-        )
+        let [depth, stats] = ["a.f32", "a.json"].map(|name| folder.join(name));
+        (pixels, depths(&depth), json(&stats), said)
     };
-    let box_ = ["--field", "box:0.75,0.75,0.75", "--background", "sky"];
-    let (mesh, mesh_depth, mesh_stats, _) = render(&["icosphere:6"]);
-    let (field, field_depth, field_stats, _) = render(&box_);
-    let (both, depth, stats, said) = render(&[&["icosphere:6"], &box_[..]].concat());
+    let box_ = "--field box:0.75,0.75,0.75 --background sky";
+    let (mesh, mesh_depth, mesh_stats, _) = render("icosphere:6");
+    let (field, field_depth, field_stats, _) = render(box_);
+    let (both, depth, stats, said) = render(&format!("icosphere:6 {box_}"));
     let mut seen = [0, 0];
     for (i, pixel) in both.chunks_exact(3).enumerate() {
         let (a, b) = (mesh_depth[i], field_depth[i]);
@@ -170,29 +144,18 @@ fn warnings_of_pictures_that_show_nothing() {
     let culled = "warning: no triangle is drawn: all face away, or lie outside of the picture; --no-cull draws back faces, --look-at moves the camera\n";
     let outside = "warning: no triangle is drawn: all lie outside of the picture; --look-at moves the camera\n";
     for (arguments, expected) in [
-        (&["--field", "planes:1"][..], inside),
-        (&["--field", "planes:2.5"], ""),
-        (&["cube", "--field", "planes:1"], inside),
-        (&["--field", "menger:3", "--look-at", "1,1,1,-1,-1,-1"], ""),
-        (
-            &["--field", "box:1,1,1", "--look-at", "0,0,0,1,0,0"],
-            inside,
-        ),
-        (&["square.obj", "--camera", "2,30,120"], culled),
-        (&["square.obj", "--camera", "2,30,120", "--no-cull"], ""),
-        (
-            &["square.obj", "--no-cull", "--look-at", "3,0,0,1,0,0"],
-            outside,
-        ),
+        ("--field planes:1", inside),
+        ("--field planes:2.5", ""),
+        ("cube --field planes:1", inside),
+        ("--field menger:3 --look-at 1,1,1,-1,-1,-1", ""),
+        ("--field box:1,1,1 --look-at 0,0,0,1,0,0", inside),
+        ("square.obj --camera 2,30,120", culled),
+        ("square.obj --camera 2,30,120 --no-cull", ""),
+        ("square.obj --no-cull --look-at 3,0,0,1,0,0", outside),
     ] {
-        let output = glint(
-            &folder,
-            &[&["render", "--force", "--out", "a.png"], arguments].concat(),
-        );
-        assert!(output.status.success(), "{arguments:?}");
-        let error = String::from_utf8(output.stderr).unwrap();
+        let [_, error] = said(&folder, &format!("render --force --out a.png {arguments}"));
         assert_eq!(error.lines().count(), expected.lines().count(), "{error}");
-        assert!(error.ends_with(expected), "{arguments:?}: {error}");
+        assert!(error.ends_with(expected), "{arguments}: {error}");
     }
 }
 
@@ -201,18 +164,16 @@ fn warnings_of_pictures_that_show_nothing() {
 #[test]
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");
-    let render = |out: &str, more: &[&str]| {
-        let field = ["render", "--field", "cubes:2,0.3", "--stats", "a.json"];
-        let background = ["--background", "000000", "--out", out];
-        let arguments = [&field[..], &background, more].concat();
-        succeed(&folder, &arguments);
+    let render = |more: &str| {
+        let field = "render --field cubes:2,0.3 --background 000000 --stats a.json";
+        let picture = drawn(&folder, &format!("{field} {more}"));
         let undecided = json(&folder.join("a.json"))["undecided"].as_u64().unwrap();
-        (picture(&folder.join(out)), undecided as usize)
+        (picture, undecided as usize)
     };
-    for more in [&[][..], &["--fog", "0.2"]] {
-        let (plain, undecided) = render("a.png", more);
+    for more in ["", "--fog 0.2"] {
+        let (plain, undecided) = render(more);
         assert!(undecided > 0);
-        let (marked, counted) = render("b.png", &[more, &["--undecided"]].concat());
+        let (marked, counted) = render(&format!("{more} --undecided"));
         assert_eq!(counted, undecided);
         let mut marks = 0;
         for (plain, marked) in plain.chunks_exact(3).zip(marked.chunks_exact(3)) {

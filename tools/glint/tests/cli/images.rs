@@ -1,6 +1,6 @@
 //! Images for SPI flash: making, listing, checking and writing them.
 
-use crate::common::{folder, glint, refused, succeed};
+use crate::common::{folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
@@ -10,32 +10,18 @@ use std::process::Command;
 /// Makes `board.bin` of a firmware and scenes.
 fn make(folder: &Path, scenes: &str) -> String {
     fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
-    succeed(
-        folder,
-        &[
-            "image",
-            "make",
-            "--firmware",
-            "firmware.bin",
-            "--scene",
-            scenes,
-            "--out",
-            "board.bin",
-        ],
-    )
+    let pieces = format!("--firmware firmware.bin --scene {scenes}");
+    succeed(folder, &format!("image make {pieces} --out board.bin"))
 }
 
 #[test]
 fn an_image_has_scenes_in_order_and_their_meshes() {
     let folder = folder("image");
-    fs::write(
-        folder.join("gears.toml"),
-        "title = \"A gear\"\nmodel = \"gear\"\ncamera = \"2.5 40 65\"\n",
-    )
-    .unwrap();
+    let gears = "title = \"A gear\"\nmodel = \"gear\"\ncamera = \"2.5 40 65\"\n";
+    fs::write(folder.join("gears.toml"), gears).unwrap();
     assert!(make(&folder, "menger,gears.toml,demo").starts_with("board.bin: "));
     assert_eq!(
-        succeed(&folder, &["image", "check", "board.bin"]),
+        succeed(&folder, "image check board.bin"),
         "board.bin: valid\n"
     );
     let bytes = fs::read(folder.join("board.bin")).unwrap();
@@ -52,14 +38,13 @@ fn an_image_has_scenes_in_order_and_their_meshes() {
     );
     let kinds: Vec<Kind> = image.contents.items().map(|item| item.kind).collect();
     assert_eq!(kinds.iter().filter(|kind| **kind == Kind::Mesh).count(), 1);
-    let list = succeed(&folder, &["image", "list", "board.bin"]);
+    let list = succeed(&folder, "image list board.bin");
     assert!(
         list.lines().next().unwrap().starts_with("firmware "),
         "{list}"
     );
     assert!(list.contains("mesh      gear  "), "{list}");
-    let json = succeed(&folder, &["image", "list", "--json", "board.bin"]);
-    let parts: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let parts = report(&folder, "image list board.bin");
     assert_eq!(parts[0]["offset"], FIRMWARE);
     assert_eq!(parts[1]["kind"], "mesh");
 }
@@ -86,13 +71,12 @@ fn the_header_of_a_bit_file_is_left_out() {
     fs::write(folder.join("top.bin"), &data).unwrap();
     fs::write(folder.join("cut.bit"), &file[..file.len() - 1]).unwrap();
     fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
-    let arguments = |bitstream| {
-        let start = ["image", "make", "--firmware", "firmware.bin", "--bitstream"];
-        let end = [bitstream, "--out", "board.bin"];
-        [&start[..], &end].concat()
+    let make = |bitstream: &str| {
+        let pieces = format!("--firmware firmware.bin --bitstream {bitstream}");
+        format!("image make {pieces} --out board.bin")
     };
     for bitstream in ["top.bit", "top.bin"] {
-        succeed(&folder, &arguments(bitstream));
+        succeed(&folder, &make(bitstream));
         let bytes = fs::read(folder.join("board.bin")).unwrap();
         assert!(bytes.starts_with(&data), "{bitstream}");
         assert_eq!(
@@ -100,16 +84,13 @@ fn the_header_of_a_bit_file_is_left_out() {
             Some(&data[..])
         );
     }
-    let error = refused(&folder, &[&arguments("cut.bit")[..], &["--force"]].concat());
+    let error = refused(&folder, &(make("cut.bit") + " --force"));
     assert!(
         error.contains("cut.bit: byte 42: expected the field e with all bytes"),
         "{error}"
     );
     fs::write(folder.join("text.bin"), "no bitstream").unwrap();
-    let error = refused(
-        &folder,
-        &[&arguments("text.bin")[..], &["--force"]].concat(),
-    );
+    let error = refused(&folder, &(make("text.bin") + " --force"));
     assert!(
         error.contains("expected an erased slot, or a bitstream"),
         "{error}"
@@ -123,7 +104,7 @@ fn damaged_images_are_refused_with_the_place() {
     let good = fs::read(folder.join("board.bin")).unwrap();
     let check = |bytes: &[u8]| {
         fs::write(folder.join("bad.bin"), bytes).unwrap();
-        refused(&folder, &["image", "check", "bad.bin"])
+        refused(&folder, "image check bad.bin")
     };
     let cut = check(&good[..CONTENTS + 100]);
     assert!(
@@ -144,9 +125,9 @@ fn damaged_images_are_refused_with_the_place() {
     damaged[last] ^= 1;
     let error = check(&damaged);
     assert!(error.contains("expected the CRC-32 0x"), "{error}");
-    assert!(refused(&folder, &["image", "list", "bad.bin"]).contains("expected the CRC-32"));
+    assert!(refused(&folder, "image list bad.bin").contains("expected the CRC-32"));
     // A damaged image is not written, whether there is a loader or not.
-    assert!(refused(&folder, &["flash", "--spi", "bad.bin"]).contains("expected the CRC-32"));
+    assert!(refused(&folder, "flash --spi bad.bin").contains("expected the CRC-32"));
 }
 
 /// Runs `glint flash --spi board.bin` with `folder` as the only folder of programs.
@@ -201,21 +182,11 @@ fn the_firmware_must_be_one_that_the_bios_boots() {
     fs::write(folder.join("short.bin"), [0; 31]).unwrap();
     fs::write(folder.join("long.bin"), vec![0; 1 << 20]).unwrap();
     let make = |firmware: &str| {
-        let arguments = [
-            "image",
-            "make",
-            "--firmware",
-            firmware,
-            "--out",
-            "board.bin",
-        ];
-        refused(&folder, &arguments)
+        let command = format!("image make --firmware {firmware} --out board.bin");
+        refused(&folder, &command)
     };
     assert!(make("short.bin").contains("expected at least 32 bytes of firmware, found 31"));
     assert!(make("long.bin").contains("expected at most 1048568 bytes of firmware, found 1048576"));
-    assert!(
-        !glint(&folder, &["image", "check", "board.bin"])
-            .status
-            .success()
-    );
+    let checked = glint(&folder, "image check board.bin");
+    assert!(!checked.status.success());
 }

@@ -1,6 +1,6 @@
 //! Animations of a camera that goes around a model.
 
-use crate::common::{SQUARE, folder, glint, picture, refused, succeed};
+use crate::common::{SQUARE, all_refused, drawn, folder, glint, refused, said, succeed};
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
@@ -37,17 +37,8 @@ fn frames_of_gif(path: &Path) -> (Vec<Vec<u8>>, u16) {
 fn both_forms_show_one_turn() {
     let folder = folder("orbit");
     for out in ["orbit.png", "orbit.gif"] {
-        let arguments = [
-            "orbit",
-            "icosphere:2",
-            "--frames",
-            "5",
-            "--out",
-            out,
-            "--rate",
-            "10",
-        ];
-        let said = succeed(&folder, &arguments);
+        let orbit = format!("orbit icosphere:2 --frames 5 --out {out} --rate 10");
+        let said = succeed(&folder, &orbit);
         assert_eq!(said, "5 frames around icosphere:2, 320x180, by model\n");
     }
     let frames = frames_of_png(&folder.join("orbit.png"));
@@ -58,13 +49,10 @@ fn both_forms_show_one_turn() {
     // With at most 256 colours in a frame the GIF is exact.
     assert!(frames_of_gif(&folder.join("orbit.gif")) == (frames.clone(), 10));
     // The turn begins with the camera of a picture.
-    succeed(&folder, &["render", "icosphere:2", "--out", "a.png"]);
-    assert!(picture(&folder.join("a.png")) == frames[0]);
+    assert!(drawn(&folder, "render icosphere:2") == frames[0]);
     // Another axis and field of view.
-    let quarters = [
-        "orbit", "cube", "--frames", "4", "--out", "a.png", "--up", "y", "--fov", "30",
-    ];
-    succeed(&folder, &quarters);
+    let quarters = "orbit cube --frames 4 --out a.png --up y --fov 30";
+    succeed(&folder, quarters);
     assert_eq!(frames_of_png(&folder.join("a.png")).len(), 4);
 }
 
@@ -75,92 +63,50 @@ fn fields_and_scenes() {
     let lamp = "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 0 70\"\nbackground = \"sky\"\n";
     std::fs::write(folder.join("lamp.toml"), lamp).unwrap();
     for (subject, quarter) in [
-        (&["--field", "menger:2", "--material", "clay"][..], None),
-        (
-            &["--field", "cubes:2,0.3", "--fog", "0.2", "--fov", "40"],
-            None,
-        ),
-        (
-            &["--field", "menger:1", "--camera", "4,0,60"],
-            Some("4,90,60"),
-        ),
-        (&["torus-knot", "--field", "box:1,1,0.1"], None),
-        (&["teapot", "--camera", "3,0,40"], Some("3,90,40")),
-        (
-            &["cube", "--stereo", "0.1,2.5", "--camera", "3,0,40"],
-            Some("3,90,40"),
-        ),
-        (
-            &["torus-knot", "--material", "jade", "--background", "sky"],
-            None,
-        ),
-        (&["--scene", "lamp.toml"], Some("4,90,70")),
-        (&["--scene", "objects", "--size", "320x180"], None),
+        ("--field menger:2 --material clay", None),
+        ("--field cubes:2,0.3 --fog 0.2 --fov 40", None),
+        ("--field menger:1 --camera 4,0,60", Some("4,90,60")),
+        ("torus-knot --field box:1,1,0.1", None),
+        ("teapot --camera 3,0,40", Some("3,90,40")),
+        ("cube --stereo 0.1,2.5 --camera 3,0,40", Some("3,90,40")),
+        ("torus-knot --material jade --background sky", None),
+        ("--scene lamp.toml", Some("4,90,70")),
+        ("--scene objects --size 320x180", None),
     ] {
-        let frames = [&["orbit", "--frames", "4", "--out", "a.png"], subject].concat();
-        succeed(&folder, &frames);
+        succeed(&folder, &format!("orbit --frames 4 --out a.png {subject}"));
         let frames = frames_of_png(&folder.join("a.png"));
         assert_eq!(frames.len(), 4);
         // Some subjects have the same picture after a quarter or half a turn.
-        assert!(
-            frames.iter().any(|frame| *frame != frames[0]),
-            "{subject:?}"
-        );
-        succeed(&folder, &[&["render", "--out", "a.png"], subject].concat());
-        assert!(picture(&folder.join("a.png")) == frames[0], "{subject:?}");
+        assert!(frames.iter().any(|frame| *frame != frames[0]), "{subject}");
+        let first = drawn(&folder, &format!("render {subject}"));
+        assert!(first == frames[0], "{subject}");
         if let Some(camera) = quarter {
-            let kept = subject.iter().take_while(|word| **word != "--camera");
-            let kept: Vec<&str> = kept.copied().collect();
-            let render = ["render", "--out", "a.png", "--camera", camera];
-            succeed(&folder, &[&render[..], &kept].concat());
-            assert!(picture(&folder.join("a.png")) == frames[1], "{subject:?}");
+            let (kept, _) = subject.split_once("--camera").unwrap_or((subject, ""));
+            let second = drawn(&folder, &format!("render {kept} --camera {camera}"));
+            assert!(second == frames[1], "{subject}");
         }
     }
     let said = succeed(
         &folder,
-        &[
-            "orbit",
-            "--scene",
-            "lamp.toml",
-            "--frames",
-            "2",
-            "--out",
-            "a.gif",
-            "--json",
-        ],
+        "orbit --scene lamp.toml --frames 2 --out a.gif --json",
     );
     assert_eq!(
         said,
         "{\"scene\":\"lamp.toml\",\"board\":\"model\",\"size\":[640,360],\"frames\":2}\n"
     );
-    for (arguments, error) in [
-        (
-            &["orbit", "--out", "b.gif"][..],
-            "MODEL: expected a mesh file or a generator such as teapot, or --field or --scene in its place, found none",
-        ),
-        (
-            &["orbit", "--scene", "wireframe", "--out", "b.gif"],
-            "--scene: expected a scene with a camera, found a wireframe program",
-        ),
-        (
-            &[
-                "orbit",
-                "--field",
-                "menger:1",
-                "--orthographic",
-                "2",
-                "--out",
-                "b.gif",
-            ],
-            "--orthographic: expected a mesh, found a --field",
-        ),
-        (
-            &["orbit", "cube", "--fog", "1", "--out", "b.gif"],
-            "--fog: expected a --field, found a mesh",
-        ),
-    ] {
-        assert_eq!(refused(&folder, arguments), format!("error: {error}"));
-    }
+    all_refused(
+        &folder,
+        "
+        orbit --out b.gif
+            MODEL: expected a mesh file or a generator such as teapot, or --field or --scene in its place, found none
+        orbit --scene wireframe --out b.gif
+            --scene: expected a scene with a camera, found a wireframe program
+        orbit --field menger:1 --orthographic 2 --out b.gif
+            --orthographic: expected a mesh, found a --field
+        orbit cube --fog 1 --out b.gif
+            --fog: expected a --field, found a mesh
+        ",
+    );
     assert!(!folder.join("b.gif").exists());
 }
 
@@ -168,22 +114,16 @@ fn fields_and_scenes() {
 fn notes_warnings_and_errors() {
     let folder = folder("orbit-errors");
     std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
-    let arguments = ["orbit", "square.obj", "--frames", "8", "--out", "a.gif"];
-    let output = glint(&folder, &arguments);
-    assert!(output.status.success());
-    let error = String::from_utf8(output.stderr).unwrap();
+    let [_, note] = said(&folder, "orbit square.obj --frames 8 --out a.gif");
+    assert_eq!(note, "note: y is up, as usual in .obj; --up z changes it\n");
     assert_eq!(
-        error,
-        "note: y is up, as usual in .obj; --up z changes it\n"
-    );
-    assert_eq!(
-        refused(&folder, &["orbit", "cube", "--out", "a.jpg"]),
+        refused(&folder, "orbit cube --out a.jpg"),
         "error: a.jpg: expected a name that ends in .png, .gif, found '.jpg'"
     );
     for frames in ["0", "361"] {
         let output = glint(
             &folder,
-            &["orbit", "cube", "--out", "b.gif", "--frames", frames],
+            &format!("orbit cube --out b.gif --frames {frames}"),
         );
         assert_eq!(output.status.code(), Some(2));
     }

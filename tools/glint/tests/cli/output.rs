@@ -1,20 +1,20 @@
 //! Output files: written whole or not at all, never over an input, and checked before the work.
 
-use crate::common::{SQUARE, VIEW, folder, glint, refused, succeed};
+use crate::common::{SQUARE, VIEW, all_refused, folder, glint, refused, succeed, words};
 use std::fs;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
 /// Runs the program with files of at most 512 bytes, as on a full file system.
-fn when_full(folder: &Path, arguments: &[&str]) -> String {
+fn when_full(folder: &Path, arguments: &str) -> String {
     let output = Command::new("sh")
         .args([
             "-c",
             "trap '' XFSZ; ulimit -f 1; exec \"$0\" \"$@\"",
             env!("CARGO_BIN_EXE_glint"),
         ])
-        .args(arguments)
+        .args(words(arguments))
         .current_dir(folder)
         .output()
         .unwrap();
@@ -40,39 +40,17 @@ fn a_full_file_system_leaves_no_part_of_a_file() {
     fs::write(folder.join("log.csv"), LOG).unwrap();
     let present = names(&folder);
     for (arguments, file) in [
-        (
-            &["render", "icosphere:4", "--out", "new.png"][..],
-            "new.png",
-        ),
-        (
-            &["render", "icosphere:4", "--force", "--out", "old.png"],
-            "old.png",
-        ),
-        (
-            &["render", "cube", "--out", "/dev/null", "--depth", "a.f32"],
-            "a.f32",
-        ),
-        (&["render", "cube", "--out", "/dev/full"], "/dev/full"),
-        (
-            &[
-                "render",
-                "cube",
-                "--out",
-                "/dev/null",
-                "--stats",
-                "/dev/full",
-            ],
-            "/dev/full",
-        ),
-        (&["orbit", "cube", "--out", "a.gif"], "a.gif"),
-        (&["orbit", "cube", "--out", "/dev/full"], "/dev/full"),
-        (&["model", "teapot", "a.glm"], "a.glm"),
-        (&["model", "teapot", "a.obj"], "a.obj"),
-        (
-            &["imu", "replay", "log.csv", "--out", "/dev/full"],
-            "/dev/full",
-        ),
-        (&["wireframe", "make", "teapot", "--out", "a.wfb"], "a.wfb"),
+        ("render icosphere:4 --out new.png", "new.png"),
+        ("render icosphere:4 --force --out old.png", "old.png"),
+        ("render cube --out /dev/null --depth a.f32", "a.f32"),
+        ("render cube --out /dev/full", "/dev/full"),
+        ("render cube --out /dev/null --stats /dev/full", "/dev/full"),
+        ("orbit cube --out a.gif", "a.gif"),
+        ("orbit cube --out /dev/full", "/dev/full"),
+        ("model teapot a.glm", "a.glm"),
+        ("model teapot a.obj", "a.obj"),
+        ("imu replay log.csv --out /dev/full", "/dev/full"),
+        ("wireframe make teapot --out a.wfb", "a.wfb"),
     ] {
         let error = when_full(&folder, arguments);
         let expected = format!("error: {file}: cannot be written: ");
@@ -94,78 +72,33 @@ fn an_input_is_never_an_output() {
     fs::hard_link(folder.join("log.csv"), folder.join("hard.csv")).unwrap();
     symlink("a.wft", folder.join("a.png")).unwrap();
     let before = names(&folder);
-    for (arguments, output, input) in [
+    for (command, output, input) in [
+        ("imu replay log.csv --out log.csv", "log.csv", "log.csv"),
+        ("imu replay log.csv --out hard.csv", "hard.csv", "log.csv"),
         (
-            &["imu", "replay", "log.csv", "--out", "log.csv"][..],
-            "log.csv",
-            "log.csv",
-        ),
-        (
-            &["imu", "replay", "log.csv", "--out", "hard.csv"],
-            "hard.csv",
-            "log.csv",
-        ),
-        (
-            &[
-                "imu", "record", "log.csv", "--sensor", "hard.csv", "--board", "virtual",
-            ],
+            "imu record log.csv --sensor hard.csv --board virtual",
             "log.csv",
             "hard.csv",
         ),
-        (&["convert", "m.obj", "m.obj"], "m.obj", "m.obj"),
-        (&["convert", "m.obj", "./m.obj"], "./m.obj", "m.obj"),
+        ("convert m.obj m.obj", "m.obj", "m.obj"),
+        ("convert m.obj ./m.obj", "./m.obj", "m.obj"),
+        ("render m.obj --up z --out m.png", "m.png", "m.obj"),
+        ("render --object m.obj --out m.png", "m.png", "m.obj"),
         (
-            &["render", "m.obj", "--up", "z", "--out", "m.png"],
-            "m.png",
-            "m.obj",
-        ),
-        (
-            &["render", "--object", "m.obj", "--out", "m.png"],
-            "m.png",
-            "m.obj",
-        ),
-        (
-            &[
-                "render",
-                "cube",
-                "--view",
-                "view.json",
-                "--out",
-                "a",
-                "--stats",
-                "view.json",
-            ],
+            "render cube --view view.json --out a --stats view.json",
             "view.json",
             "view.json",
         ),
         (
-            &[
-                "render",
-                "--field",
-                "spheres:spheres.json",
-                "--out",
-                "a",
-                "--stats",
-                "spheres.json",
-            ],
+            "render --field spheres:spheres.json --out a --stats spheres.json",
             "spheres.json",
             "spheres.json",
         ),
-        (
-            &["wireframe", "convert", "a.wft", "a.wft"],
-            "a.wft",
-            "a.wft",
-        ),
-        (
-            &["wireframe", "render", "a.wft", "--out", "a.png"],
-            "a.png",
-            "a.wft",
-        ),
+        ("wireframe convert a.wft a.wft", "a.wft", "a.wft"),
+        ("wireframe render a.wft --out a.png", "a.png", "a.wft"),
     ] {
-        let error = refused(&folder, arguments);
-        let expected =
-            format!("error: {output}: expected another file to write, found the input {input}");
-        assert_eq!(error, expected, "{arguments:?}");
+        let error = format!("{output}: expected another file to write, found the input {input}");
+        all_refused(&folder, &format!("{command}\n{error}"));
     }
     assert_eq!(names(&folder), before);
     assert_eq!(fs::read_to_string(folder.join("log.csv")).unwrap(), LOG);
@@ -175,35 +108,22 @@ fn an_input_is_never_an_output() {
 fn an_extension_says_what_is_written() {
     let folder = folder("extensions");
     fs::write(folder.join("log.csv"), LOG).unwrap();
-    for (arguments, message) in [
-        (
-            &["render", "cube", "--out", "x.jpg"][..],
-            "x.jpg: expected a name that ends in .png, found '.jpg'",
-        ),
-        (
-            &["render", "cube", "--out", "x.png", "--depth", "x.png"],
-            "x.png: expected a name that ends in .f32, .bin, .raw, found '.png'",
-        ),
-        (
-            &["render", "cube", "--out", "x.png", "--stats", "x.csv"],
-            "x.csv: expected a name that ends in .json, found '.csv'",
-        ),
-        (
-            &["imu", "replay", "log.csv", "--out", "x.json"],
-            "x.json: expected a name that ends in .csv, found '.json'",
-        ),
-        (
-            &["gesture", "mask", "--board", "virtual", "--out", "x.gif"],
-            "x.gif: expected a name that ends in .png, found '.gif'",
-        ),
-    ] {
-        let error = refused(&folder, arguments);
-        assert_eq!(error, format!("error: {message}"));
-    }
-    succeed(
+    all_refused(
         &folder,
-        &["render", "cube", "--out", "X.PNG", "--depth", "depth"],
+        "
+        render cube --out x.jpg
+            x.jpg: expected a name that ends in .png, found '.jpg'
+        render cube --out x.png --depth x.png
+            x.png: expected a name that ends in .f32, .bin, .raw, found '.png'
+        render cube --out x.png --stats x.csv
+            x.csv: expected a name that ends in .json, found '.csv'
+        imu replay log.csv --out x.json
+            x.json: expected a name that ends in .csv, found '.json'
+        gesture mask --board virtual --out x.gif
+            x.gif: expected a name that ends in .png, found '.gif'
+        ",
     );
+    succeed(&folder, "render cube --out X.PNG --depth depth");
     assert_eq!(names(&folder), ["X.PNG", "depth", "log.csv"]);
 }
 
@@ -211,21 +131,13 @@ fn an_extension_says_what_is_written() {
 fn an_output_is_checked_before_the_work() {
     let folder = folder("checked");
     // The port does not exist, and would be an error later.
-    let board = ["--board", "/dev/no-such-port"];
-    for arguments in [
-        &["render", "cube", "--out", "gone/a.png"][..],
-        &[
-            "render",
-            "cube",
-            "--out",
-            "/dev/null",
-            "--stats",
-            "gone/a.json",
-        ],
-        &["imu", "record", "gone/log.csv"],
-        &["gesture", "mask", "--out", "gone/a.png"],
+    for command in [
+        "render cube --out gone/a.png",
+        "render cube --out /dev/null --stats gone/a.json",
+        "imu record gone/log.csv",
+        "gesture mask --out gone/a.png",
     ] {
-        let output = glint(&folder, &[arguments, &board].concat());
+        let output = glint(&folder, &format!("{command} --board /dev/no-such-port"));
         let error = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(1), "{error}");
         assert!(
@@ -243,7 +155,7 @@ fn a_link_stays_and_permissions_too() {
     fs::write(&file, "before").unwrap();
     fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
     symlink(&file, &link).unwrap();
-    succeed(&folder, &["model", "cube", "link.glm"]);
+    succeed(&folder, "model cube link.glm");
     assert!(link.is_symlink());
     assert!(fs::read(&file).unwrap().starts_with(b"GLM2"));
     assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o640);
@@ -257,56 +169,33 @@ fn a_file_with_contents_is_kept() {
     fs::write(folder.join("log.csv"), LOG).unwrap();
     fs::write(folder.join("a.wft"), "end\n").unwrap();
     fs::write(folder.join("empty.png"), "").unwrap();
-    for name in [
-        "old.png", "old.glm", "old.csv", "old.wfb", "old.json", "old.gif",
-    ] {
+    let old = ["png", "glm", "csv", "wfb", "json", "gif"].map(|end| format!("old.{end}"));
+    for name in &old {
         fs::write(folder.join(name), "mine").unwrap();
     }
-    for (arguments, name) in [
-        (&["render", "cube", "--out", "old.png"][..], "old.png"),
-        (
-            &[
-                "render",
-                "cube",
-                "--out",
-                "/dev/null",
-                "--stats",
-                "old.json",
-            ],
-            "old.json",
-        ),
-        (&["orbit", "cube", "--out", "old.gif"], "old.gif"),
-        (&["model", "cube", "old.glm"], "old.glm"),
-        (&["imu", "replay", "log.csv", "--out", "old.csv"], "old.csv"),
-        (&["imu", "record", "old.csv"], "old.csv"),
-        (&["gesture", "mask", "--out", "old.png"], "old.png"),
-        (&["wireframe", "convert", "a.wft", "old.wfb"], "old.wfb"),
-        (
-            &["wireframe", "make", "cube", "--out", "old.wfb"],
-            "old.wfb",
-        ),
-        (
-            &["wireframe", "render", "a.wft", "--out", "old.png"],
-            "old.png",
-        ),
-        (&["demo", "--out", "."], "./old.png"),
+    for (command, name) in [
+        ("render cube --out old.png", "old.png"),
+        ("render cube --out /dev/null --stats old.json", "old.json"),
+        ("orbit cube --out old.gif", "old.gif"),
+        ("model cube old.glm", "old.glm"),
+        ("imu replay log.csv --out old.csv", "old.csv"),
+        ("imu record old.csv", "old.csv"),
+        ("gesture mask --out old.png", "old.png"),
+        ("wireframe convert a.wft old.wfb", "old.wfb"),
+        ("wireframe make cube --out old.wfb", "old.wfb"),
+        ("wireframe render a.wft --out old.png", "old.png"),
+        ("demo --out .", "./old.png"),
     ] {
-        assert_eq!(
-            refused(&folder, arguments),
-            format!(
-                "error: {name}: expected a new file, or --force to replace it, found a file of 4 bytes"
-            )
-        );
+        let expected = "expected a new file, or --force to replace it, found a file of 4 bytes";
+        all_refused(&folder, &format!("{command}\n{name}: {expected}"));
     }
-    for name in [
-        "old.png", "old.glm", "old.csv", "old.wfb", "old.json", "old.gif",
-    ] {
+    for name in &old {
         assert_eq!(fs::read(folder.join(name)).unwrap(), b"mine");
     }
     for arguments in [
-        &["render", "cube", "--out", "empty.png"][..],
-        &["render", "cube", "--out", "old.png", "--force"],
-        &["render", "cube", "--out", "old.png", "-f"],
+        "render cube --out empty.png",
+        "render cube --out old.png --force",
+        "render cube --out old.png -f",
     ] {
         assert!(glint(&folder, arguments).status.success());
     }
@@ -318,57 +207,46 @@ fn a_file_with_contents_is_kept() {
 #[test]
 fn standard_input_and_output() {
     let folder = folder("standard");
-    succeed(&folder, &["render", "icosphere:2", "--out", "whole.png"]);
+    succeed(&folder, "render icosphere:2 --out whole.png");
     let whole = fs::read(folder.join("whole.png")).unwrap();
-    let piped = glint(&folder, &["render", "icosphere:2", "--out", "-", "--json"]);
+    let piped = glint(&folder, "render icosphere:2 --out - --json");
     assert!(piped.status.success() && piped.stdout == whole);
     let report: serde_json::Value = serde_json::from_slice(&piped.stderr).unwrap();
     assert_eq!(report["triangles_in"], 80);
     for format in ["obj", "stl", "ply", "glm"] {
-        let piped = glint(&folder, &["model", "icosphere:2", "-", "--to", format]);
+        let piped = glint(&folder, &format!("model icosphere:2 - --to {format}"));
         assert!(piped.status.success());
         fs::write(folder.join("mesh"), &piped.stdout).unwrap();
         let file = format!("file.{format}");
-        succeed(&folder, &["model", "icosphere:2", &file]);
+        succeed(&folder, &format!("model icosphere:2 {file}"));
         assert!(
             fs::read(folder.join(&file)).unwrap() == piped.stdout,
             "{format}"
         );
-        for command in [
-            "render - --up z --out -",
-            "convert - - --to glm",
-            "orbit - --up z --frames 2 --out -",
+        let run = |command: String| {
+            let output = Command::new(env!("CARGO_BIN_EXE_glint"))
+                .args(words(&command))
+                .stdin(fs::File::open(folder.join("mesh")).unwrap())
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            let error = String::from_utf8_lossy(&output.stderr);
+            assert!(output.status.success(), "{command}: {error}");
+            output.stdout
+        };
+        for (command, more) in [
+            ("render", "--up z --out -"),
+            ("convert", "- --to glm"),
+            ("orbit", "--up z --frames 2 --out -"),
         ] {
-            let run = |input: &str| {
-                let line =
-                    format!("\"$0\" {command} < mesh").replacen(" - ", &format!(" {input} "), 1);
-                let output = Command::new("sh")
-                    .args(["-c", &line, env!("CARGO_BIN_EXE_glint")])
-                    .current_dir(&folder)
-                    .output()
-                    .unwrap();
-                let error = String::from_utf8_lossy(&output.stderr);
-                assert!(output.status.success(), "{line}: {error}");
-                output.stdout
-            };
-            // `convert` has two of them.
-            if command.starts_with("convert") {
-                let line = format!("\"$0\" convert {file} - --to glm");
-                let named = Command::new("sh")
-                    .args(["-c", &line, env!("CARGO_BIN_EXE_glint")])
-                    .current_dir(&folder)
-                    .output()
-                    .unwrap();
-                assert!(run("-") == named.stdout, "{format}");
-            } else {
-                assert!(run("-") == run(&file), "{format}: {command}");
-            }
+            let [piped, named] = ["-", &file].map(|input| run(format!("{command} {input} {more}")));
+            assert!(piped == named, "{format}: {command}");
         }
     }
-    let error = refused(&folder, &["model", "cube", "-"]);
+    let error = refused(&folder, "model cube -");
     assert_eq!(error, "error: -: expected --to with a format, found none");
-    let two = ["render", "cube", "--out", "-", "--stats", "-"];
-    let error = refused(&folder, &two);
+    let two = "render cube --out - --stats -";
+    let error = refused(&folder, two);
     assert_eq!(
         error,
         "error: -: expected one output to standard output, found two"

@@ -1,6 +1,6 @@
 //! Scenes with options beside them, and scenes that cannot be shown.
 
-use crate::common::{folder, glint, picture, refused, succeed};
+use crate::common::{drawn, files_refused, folder, glint, refused, succeed};
 
 const LAMP: &str =
     "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 30 70\"\n";
@@ -11,27 +11,19 @@ fn scenes_that_cannot_be_shown() {
     let folder = folder("scenes-refused");
     let near = LAMP.replace("4 30 70", "1 30 70");
     let missing = "title = \"A\"\nmodel = \"missing.obj\"\ncamera = \"3 30 60\"\n";
-    for (name, contents, error) in [
-        (
-            "near.toml",
-            near.as_str(),
-            "near: expected a scene that boards can show, found radius 1: expected 2 to 5",
-        ),
-        (
-            "missing.toml",
-            missing,
-            "missing.obj: expected a file to read, found No such file or directory (os error 2)",
-        ),
-    ] {
-        std::fs::write(folder.join(name), contents).unwrap();
-        for arguments in [
-            &["render", "--scene", name, "--out", "a.png"][..],
-            &["orbit", "--scene", name, "--out", "a.png"],
-            &["scene", "check", name],
-        ] {
-            assert_eq!(refused(&folder, arguments), format!("error: {error}"));
-        }
-    }
+    files_refused(
+        &folder,
+        [
+            "render --scene FILE --out a.png",
+            "orbit --scene FILE --out a.png",
+            "scene check FILE",
+        ],
+        &[("near.toml", near.into()), ("missing.toml", missing.into())],
+        "
+        near: expected a scene that boards can show, found radius 1: expected 2 to 5
+        missing.obj: expected a file to read, found No such file or directory (os error 2)
+        ",
+    );
     assert!(!folder.join("a.png").exists());
 }
 
@@ -41,17 +33,12 @@ fn the_lens_of_a_scene() {
     let folder = folder("scene-lens");
     std::fs::write(folder.join("wide.toml"), LAMP).unwrap();
     std::fs::write(folder.join("narrow.toml"), format!("{LAMP}fov = 30\n")).unwrap();
-    let render = |arguments: &[&str]| {
-        let render = ["render", "--out", "a.png", "--scene"];
-        succeed(&folder, &[&render, arguments].concat());
-        picture(&folder.join("a.png"))
-    };
-    let narrow = render(&["narrow.toml"]);
-    assert!(narrow != render(&["wide.toml"]));
-    assert!(narrow == render(&["wide.toml", "--fov", "30"]));
-    assert!(narrow != render(&["narrow.toml", "--zoom", "2"]));
-    let camera = ["narrow.toml", "--camera", "4,30,70", "--fov", "30"];
-    assert!(narrow == render(&camera));
+    let render = |scene: &str| drawn(&folder, &format!("render --scene {scene}"));
+    let narrow = render("narrow.toml");
+    assert!(narrow != render("wide.toml"));
+    assert!(narrow == render("wide.toml --fov 30"));
+    assert!(narrow != render("narrow.toml --zoom 2"));
+    assert!(narrow == render("narrow.toml --camera 4,30,70 --fov 30"));
 }
 
 /// What a scene states is refused as an option beside it, rather than ignored.
@@ -72,17 +59,15 @@ fn options_that_a_scene_states() {
         "--prepass",
     ] {
         for command in ["render", "orbit"] {
-            let scene = [command, "--scene", "menger", "--out", "a.png"];
-            let option: Vec<&str> = option.split(' ').collect();
-            let output = glint(&folder, &[&scene[..], &option].concat());
+            let scene = format!("{command} --scene menger --out a.png {option}");
+            let output = glint(&folder, &scene);
             let error = String::from_utf8(output.stderr).unwrap();
             assert_eq!(output.status.code(), Some(2), "{option:?}: {error}");
             assert!(error.contains("cannot be used with"), "{error}");
         }
     }
-    let up = ["render", "--scene", "menger", "--up", "y", "--out", "a.png"];
     assert_eq!(
-        refused(&folder, &up),
+        refused(&folder, "render --scene menger --up y --out a.png"),
         "error: --up: expected a model, found a --scene"
     );
     assert!(!folder.join("a.png").exists());
@@ -94,15 +79,12 @@ fn two_eyes() {
     let folder = folder("scene-two-eyes");
     let camera = "title = \"Two\"\ncamera = \"3 30 60\"\n";
     for (number, (keys, options)) in [
-        ("model = \"cube\"\n", &["cube"][..]),
+        ("model = \"cube\"\n", "cube"),
         (
             "model = \"cube\"\nfield = \"box:0.2,1,0.2\"\n",
-            &["cube", "--field", "box:0.2,1,0.2"],
+            "cube --field box:0.2,1,0.2",
         ),
-        (
-            "object = \"cube scale 0.5\"\n",
-            &["--object", "cube scale 0.5"],
-        ),
+        ("object = \"cube scale 0.5\"\n", "--object 'cube scale 0.5'"),
     ]
     .into_iter()
     .enumerate()
@@ -112,25 +94,16 @@ fn two_eyes() {
         let text = format!("{of_one}stereo = \"0.2,2.5,red-cyan\"\n");
         std::fs::write(folder.join(&name), text).unwrap();
         std::fs::write(folder.join("one.toml"), of_one).unwrap();
-        let valid = succeed(&folder, &["scene", "check", &name]);
+        let valid = succeed(&folder, &format!("scene check {name}"));
         assert_eq!(valid, format!("{name}: valid\n"));
-        let render = |arguments: &[&str]| {
-            let out = ["render", "--out", "a.png", "--depth", "a.f32"];
-            succeed(&folder, &[&out, arguments].concat());
-            let depth = std::fs::read(folder.join("a.f32")).unwrap();
-            (picture(&folder.join("a.png")), depth)
+        let render = |what: &str| {
+            let picture = drawn(&folder, &format!("render --depth a.f32 {what}"));
+            (picture, std::fs::read(folder.join("a.f32")).unwrap())
         };
-        let scene = render(&["--scene", &name]);
-        let eyes = [
-            "--camera",
-            "3,30,60",
-            "--stereo",
-            "0.2,2.5,red-cyan",
-            "--quality",
-            "balanced",
-        ];
-        assert!(scene == render(&[options, &eyes].concat()), "{keys}");
-        let one = render(&["--scene", "one.toml"]);
+        let scene = render(&format!("--scene {name}"));
+        let eyes = "--camera 3,30,60 --stereo 0.2,2.5,red-cyan --quality balanced";
+        assert!(scene == render(&format!("{options} {eyes}")), "{keys}");
+        let one = render("--scene one.toml");
         assert!(scene.0 != one.0 && scene.1 != one.1, "{keys}");
     }
 }
@@ -147,42 +120,27 @@ fn quality_of_a_scene() {
     ] {
         std::fs::write(folder.join(name), format!("{SPONGE}{keys}")).unwrap();
     }
-    let render = |arguments: &[&str]| {
-        succeed(
-            &folder,
-            &[&["render", "--out", "a.png"], arguments].concat(),
-        );
-        picture(&folder.join("a.png"))
+    let of_scene = |scene: &str| drawn(&folder, &format!("render --scene {scene}"));
+    let of_field = |more: &str| {
+        let field = "--field menger:3 --camera 3,25,70";
+        drawn(&folder, &format!("render {field} {more}"))
     };
-    let of_scene = |arguments: &[&str]| render(&[&["--scene"], arguments].concat());
-    let of_field = |arguments: &[&str]| {
-        let field = ["--field", "menger:3", "--camera", "3,25,70"];
-        render(&[&field[..], arguments].concat())
-    };
-    let balanced = of_scene(&["balanced.toml"]);
+    let balanced = of_scene("balanced.toml");
     assert_eq!(balanced.len(), 3 * 640 * 360);
-    assert!(balanced == of_scene(&["fast.toml", "--quality", "balanced"]));
-    assert!(balanced == of_field(&["--quality", "balanced"]));
-    assert!(balanced == of_field(&["--size", "640x360"]));
-    let fast = of_scene(&["fast.toml"]);
+    assert!(balanced == of_scene("fast.toml --quality balanced"));
+    assert!(balanced == of_field("--quality balanced"));
+    assert!(balanced == of_field("--size 640x360"));
+    let fast = of_scene("fast.toml");
     assert_eq!(fast.len(), 3 * 320 * 180);
-    assert!(fast == of_scene(&["balanced.toml", "--quality", "fast"]));
-    assert!(fast == of_field(&["--quality", "fast"]));
-    assert!(fast != of_field(&[]));
-    let large = of_scene(&["large.toml"]);
+    assert!(fast == of_scene("balanced.toml --quality fast"));
+    assert!(fast == of_field("--quality fast"));
+    assert!(fast != of_field(""));
+    let large = of_scene("large.toml");
     assert!(large.len() == balanced.len() && large != balanced);
-    assert!(large == of_scene(&["balanced.toml", "--quality", "fast", "--size", "640x360"]));
-    assert!(large == of_field(&["--size", "640x360", "--quality", "fast"]));
-    let best = [
-        "render",
-        "--field",
-        "menger:3",
-        "--quality",
-        "best",
-        "--out",
-        "b.png",
-    ];
-    let output = glint(&folder, &best);
+    assert!(large == of_scene("balanced.toml --quality fast --size 640x360"));
+    assert!(large == of_field("--size 640x360 --quality fast"));
+    let best = "render --field menger:3 --quality best --out b.png";
+    let output = glint(&folder, best);
     let error = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{error}");
     assert!(error.contains("fast, balanced, exact"), "{error}");

@@ -1,6 +1,6 @@
 //! The scene that docs/scenes.md writes from nothing: each command of the page works on its file as it stands there.
 
-use crate::common::{folder, json, picture, succeed};
+use crate::common::{folder, json, picture, said, succeed};
 use std::path::Path;
 
 /// The first code block of the page in a language.
@@ -22,15 +22,13 @@ fn a_scene_from_nothing() {
         .map(|line| line.split_once('`').unwrap().0)
         .collect();
     assert_eq!(commands.len(), 4, "{commands:?}");
-    let words = |start: &str| -> Vec<&str> {
-        let command = commands.iter().find(|command| command.starts_with(start));
-        command.unwrap().split(' ').collect()
+    let command = |start: &str| {
+        let mut commands = commands.iter();
+        *commands.find(|command| command.starts_with(start)).unwrap()
     };
-    assert_eq!(
-        succeed_as_is(&folder, &words("scene check")),
-        "lamp.toml: valid\n"
-    );
-    let shown = succeed_as_is(&folder, &words("scene show"));
+    let run = |start: &str| said(&folder, command(start))[0].clone();
+    assert_eq!(run("scene check"), "lamp.toml: valid\n");
+    let shown = run("scene show");
     for expected in [
         "field union:box:2,2,0.1+sphere:0.6",
         "material jade",
@@ -38,9 +36,8 @@ fn a_scene_from_nothing() {
     ] {
         assert!(shown.contains(expected), "{expected}: {shown}");
     }
-    assert!(succeed_as_is(&folder, &words("scene list")).contains("menger"));
-    let render = [words("render"), vec!["--stats", "lamp.json"]].concat();
-    succeed(&folder, &render);
+    assert!(run("scene list").contains("menger"));
+    succeed(&folder, &format!("{} --stats lamp.json", command("render")));
     // The sphere above the floor in the middle, the sky in the upper corners.
     let pixels = picture(&folder.join("lamp.png"));
     let pixel = |x: usize, y: usize| &pixels[3 * (640 * y + x)..][..3];
@@ -54,12 +51,4 @@ fn a_scene_from_nothing() {
     };
     assert!(blue > red, "sky {:?}", pixel(2, 2));
     assert!(json(&folder.join("lamp.json")).is_object());
-}
-
-/// Runs a command that has no option `--force`.
-fn succeed_as_is(folder: &Path, arguments: &[&str]) -> String {
-    let output = crate::common::glint(folder, arguments);
-    let error = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {error}");
-    String::from_utf8(output.stdout).unwrap()
 }

@@ -1,10 +1,10 @@
 //! Defaults from the environment and from the configuration file, ports, and how much the program prints.
 
-use crate::common::{folder, glint, glint_in, refused, succeed};
+use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed, words};
 use std::path::Path;
 
 /// The error of an upload to a serial port that does not exist, which names the port.
-fn error(folder: &Path, arguments: &[&str], variables: &[(&str, &str)]) -> String {
+fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
     let output = glint_in(folder, arguments, variables);
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(!output.status.success(), "{error}");
@@ -19,41 +19,41 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     let file = folder.join("glint/config.toml");
     std::fs::write(&file, "board = \"/dev/of-the-file\"\nbaud = 9600\n").unwrap();
     let variable = [("GLINT_BOARD", "/dev/of-the-environment")];
-    let upload = ["upload", "cube"];
-    let with_option = ["upload", "cube", "--board", "/dev/of-the-option"];
-    for (arguments, variables, expected) in [
-        (&upload[..], &[][..], "/dev/of-the-file"),
-        (&upload, &variable, "/dev/of-the-environment"),
-        (&with_option, &variable, "/dev/of-the-option"),
-        (&["console", "--send", "info"], &[], "/dev/of-the-file"),
-        (&["info"], &variable, "/dev/of-the-environment"),
-        (&["imu", "calibrate"], &[], "/dev/of-the-file"),
+    let upload = "upload cube";
+    for (command, variables, expected) in [
+        (upload, &[][..], "file"),
+        (upload, &variable, "environment"),
         (
-            &["gesture", "mask", "--out", "x.png"],
-            &[],
-            "/dev/of-the-file",
+            "upload cube --board /dev/of-the-option",
+            &variable,
+            "option",
         ),
+        ("console --send info", &[], "file"),
+        ("info", &variable, "environment"),
+        ("imu calibrate", &[], "file"),
+        ("gesture mask --out x.png", &[], "file"),
         // An empty variable is none.
-        (&upload, &[("GLINT_BOARD", "")], "/dev/of-the-file"),
+        (upload, &[("GLINT_BOARD", "")], "file"),
     ] {
-        let error = error(&folder, arguments, variables);
+        let error = error(&folder, command, variables);
+        let expected = format!("/dev/of-the-{expected}");
         let start =
             format!("error: {expected}: expected `emulated`, `virtual` or a serial port, found: ");
         assert!(error.starts_with(&start), "{error}");
         // The ports of this host, of which there may be none.
         assert!(error.contains("; this host has "), "{error}");
     }
-    let slow = error(&folder, &upload, &[("GLINT_BAUD", "slow")]);
+    let slow = error(&folder, upload, &[("GLINT_BAUD", "slow")]);
     assert_eq!(
         slow,
         "error: GLINT_BAUD: expected a number of bits per second, found 'slow'\n"
     );
     std::fs::write(&file, "bord = \"x\"\n").unwrap();
-    let damaged = error(&folder, &upload, &[]);
+    let damaged = error(&folder, upload, &[]);
     let start = format!("error: {}: expected board = \"NAME\"", file.display());
     assert!(damaged.starts_with(&start), "{damaged}");
     // Commands that need no board do not read the file.
-    succeed(&folder, &["model", "cube", "cube.obj"]);
+    succeed(&folder, "model cube cube.obj");
 }
 
 /// Labels of errors and warnings have the colours of clap's where a terminal shows them, and nowhere else. A standard error that takes
@@ -61,23 +61,15 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
 #[test]
 fn colours() {
     let folder = folder("colours");
-    let missing = ["render", "missing.obj", "--out", "a.png"];
-    let inside = [
-        "render",
-        "--field",
-        "box:3,3,3",
-        "--camera",
-        "3,30,60",
-        "--out",
-        "a.png",
-    ];
+    let missing = "render missing.obj --out a.png";
+    let inside = "render --field box:3,3,3 --camera 3,30,60 --out a.png";
     for (arguments, label) in [
-        (&missing[..], "\x1b[1m\x1b[31merror:\x1b[0m missing.obj: "),
-        (&["render"], "\x1b[1m\x1b[31merror:\x1b[0m the following"),
-        (&inside, "\x1b[1m\x1b[33mwarning:\x1b[0m the eye "),
+        (missing, "\x1b[1m\x1b[31merror:\x1b[0m missing.obj: "),
+        ("render", "\x1b[1m\x1b[31merror:\x1b[0m the following"),
+        (inside, "\x1b[1m\x1b[33mwarning:\x1b[0m the eye "),
     ] {
         let said = |variables: &[(&str, &str)]| {
-            let arguments = [arguments, &["--force"]].concat();
+            let arguments = format!("{arguments} --force");
             String::from_utf8(glint_in(&folder, &arguments, variables).stderr).unwrap()
         };
         let forced = said(&[("CLICOLOR_FORCE", "1"), ("NO_COLOR", "")]);
@@ -90,7 +82,7 @@ fn colours() {
         env!("CARGO_BIN_EXE_glint"),
     ];
     let mut command = std::process::Command::new("sh");
-    let command = command.args(full).args(missing).current_dir(&folder);
+    let command = command.args(full).args(words(missing)).current_dir(&folder);
     assert_eq!(command.status().unwrap().code(), Some(2));
 }
 
@@ -98,54 +90,39 @@ fn colours() {
 #[test]
 fn options_of_another_board() {
     let folder = folder("useless-options");
-    std::fs::write(
-        folder.join("log.csv"),
-        "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,0\n",
-    )
-    .unwrap();
+    let log = "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,0\n";
+    std::fs::write(folder.join("log.csv"), log).unwrap();
     std::fs::write(folder.join("a.wft"), "end\n").unwrap();
-    let drawing: [&[&str]; 4] = [
-        &["render", "cube", "--out", "a.png"],
-        &["render", "--scene", "cubes", "--out", "a.png"],
-        &["orbit", "cube", "--out", "a.gif"],
-        &["wireframe", "render", "a.wft", "--out", "a.png"],
+    let drawing = [
+        "render cube --out a.png",
+        "render --scene cubes --out a.png",
+        "orbit cube --out a.gif",
+        "wireframe render a.wft --out a.png",
     ];
-    let replay: &[&str] = &["imu", "replay", "log.csv", "--out", "b.csv"];
+    let replay = "imu replay log.csv --out b.csv";
     let of_the_line = ["--transfer serial", "--baud 9600", "--firmware x.bin"];
     let of_a_board = ["--backend cpu"].into_iter().chain(of_the_line);
     let by_the_model = drawing
         .into_iter()
         .flat_map(|command| of_a_board.clone().map(move |option| (command, option)))
         .chain(of_the_line.map(|option| (replay, option)));
+    let port = "a serial port";
     let by_a_board = [
+        ("console emulated --send info", "--baud 9600", port),
+        ("info", "--baud 9600", port),
+        ("board --board virtual", "--baud 9600", port),
+        ("flash log.csv --board virtual", "--baud 9600", port),
         (
-            &["console", "emulated", "--send", "info"][..],
-            "--baud 9600",
-            "a serial port",
-        ),
-        (&["info"], "--baud 9600", "a serial port"),
-        (
-            &["board", "--board", "virtual"],
-            "--baud 9600",
-            "a serial port",
-        ),
-        (
-            &["flash", "log.csv", "--board", "virtual"],
-            "--baud 9600",
-            "a serial port",
-        ),
-        (
-            &["upload", "cube", "--board", "/dev/x"],
+            "upload cube --board /dev/x",
             "--firmware log.csv",
             "the emulated or the virtual board",
         ),
     ];
     let by_the_model = by_the_model.map(|(command, option)| (command, option, "a board"));
     for (command, option, expected) in by_the_model.chain(by_a_board) {
-        let words: Vec<&str> = option.split(' ').collect();
-        let error = refused(&folder, &[command, &words].concat());
-        let start = format!("error: {}: expected {expected}, found --board ", words[0]);
-        assert!(error.starts_with(&start), "{command:?} {option}: {error}");
+        let name = words(option)[0];
+        let error = format!("{name}: expected {expected}, found --board …");
+        all_refused(&folder, &format!("{command} {option}\n{error}"));
     }
     assert_eq!(std::fs::read_dir(&folder).unwrap().count(), 2);
 }
@@ -153,9 +130,8 @@ fn options_of_another_board() {
 #[test]
 fn ports_are_listed() {
     let folder = folder("ports");
-    let ports: serde_json::Value =
-        serde_json::from_str(&succeed(&folder, &["ports", "--json"])).unwrap();
-    let lines = succeed(&folder, &["ports"]);
+    let ports = report(&folder, "ports");
+    let lines = succeed(&folder, "ports");
     // Without a port there is one line too.
     assert_eq!(
         lines.lines().count(),
@@ -167,21 +143,19 @@ fn ports_are_listed() {
 #[test]
 fn quiet_and_verbose() {
     let folder = folder("loudness");
-    let arguments = ["render", "cube", "--look-at", "0,-2,0,0,-1,0", "--out"];
-    let said = |name: &str, option: &[&str]| {
-        let output = glint(&folder, &[&arguments[..], &[name], option].concat());
-        assert!(output.status.success());
-        String::from_utf8(output.stderr).unwrap()
+    let said = |more: &str| {
+        let render = "render cube --look-at 0,-2,0,0,-1,0 --out";
+        said(&folder, &format!("{render} {more}"))[1].clone()
     };
-    let usual = said("a.png", &[]);
+    let usual = said("a.png");
     assert!(
         usual.starts_with("warning: no triangle is drawn: "),
         "{usual}"
     );
     assert_eq!(usual.lines().count(), 1);
-    assert_eq!(said("b.png", &["--quiet"]), "");
-    assert_eq!(said("c.png", &["-q"]), "");
-    let verbose = said("d.png", &["-v"]);
+    assert_eq!(said("b.png --quiet"), "");
+    assert_eq!(said("c.png -q"), "");
+    let verbose = said("d.png -v");
     let step = verbose.lines().find(|line| line.starts_with("rendering: "));
     let seconds = step.unwrap().strip_prefix("rendering: ").unwrap();
     assert!(seconds.strip_suffix(" s").unwrap().parse::<f64>().is_ok());
@@ -192,7 +166,7 @@ fn quiet_and_verbose() {
 #[test]
 fn manual_pages() {
     let folder = folder("man");
-    succeed(&folder, &["man", "pages/man1"]);
+    succeed(&folder, "man pages/man1");
     let page = |name: &str| {
         let text = std::fs::read_to_string(folder.join("pages/man1").join(name)).unwrap();
         assert!(text.contains(".TH"), "{name}");
@@ -203,7 +177,7 @@ fn manual_pages() {
     assert!(page("glint-render.1").contains("--supersample"));
     assert!(page("glint-imu-replay.1").contains("--follow-bias"));
     // Pages are outputs like others.
-    let again = glint(&folder, &["man", "pages/man1"]);
+    let again = glint(&folder, "man pages/man1");
     let error = String::from_utf8(again.stderr).unwrap();
     assert!(error.contains("or --force to replace it"), "{error}");
 }

@@ -25,9 +25,8 @@ fn scenes_cameras_programs_and_recordings() {
     fs::write(folder.join("view.json"), VIEW).unwrap();
     let log = "t_us,ax,ay,az,gx,gy,gz\n0,0,0,4096,0,0,9\n1000,0,0,4096,0,0,900\n";
     fs::write(folder.join("log.csv"), log).unwrap();
-    let drawn = ["wireframe", "make", "cube", "--out"];
     for program in ["cube.wft", "cube.wfb"] {
-        succeed(&folder, &[&drawn[..], &[program]].concat());
+        succeed(&folder, &format!("wireframe make cube --out {program}"));
     }
     for (file, command) in [
         ("cube.wft", "wireframe render FILE --out -"),

@@ -1,6 +1,6 @@
 //! Files with more in them than their format has: loaded, each with a line of warning.
 
-use crate::common::{SQUARE, folder, glint, picture, succeed};
+use crate::common::{SQUARE, folder, picture, said, succeed};
 use std::fs;
 use std::path::Path;
 
@@ -9,10 +9,10 @@ const PLY: &str = "ply\nformat ascii 1.0\nauthor a b\nelement vertex 3\nproperty
 
 /// Renders a model, and returns the lines of warning.
 fn warnings(folder: &Path, model: &str) -> Vec<String> {
-    let arguments = ["render", model, "--up", "z", "--force", "--out", "a.png"];
-    let output = glint(folder, &arguments);
-    let error = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{model}: {error}");
+    let [_, error] = said(
+        folder,
+        &format!("render {model} --up z --force --out a.png"),
+    );
     assert!(picture(&folder.join("a.png")).iter().any(|&c| c != 0));
     error.lines().map(str::to_owned).collect()
 }
@@ -110,13 +110,9 @@ fn a_log_with_more_columns() {
     let folder = folder("columns");
     let log = "t_us,ax,ay,az,gx,gy,gz,mx,my\n0,0,0,4096,0,0,0,1,2\n1000,0,0,4096,0,0,0,x,\n";
     fs::write(folder.join("log.csv"), log).unwrap();
-    let replay = ["imu", "replay", "log.csv", "--still", "0", "--out", "a.csv"];
-    let output = glint(&folder, &replay);
-    assert!(output.status.success());
-    assert_eq!(
-        String::from_utf8(output.stderr).unwrap(),
-        "warning: log.csv: ignored columns: 'mx', 'my'\n"
-    );
+    let replay = "imu replay log.csv --still 0 --out a.csv";
+    let [_, error] = said(&folder, replay);
+    assert_eq!(error, "warning: log.csv: ignored columns: 'mx', 'my'\n");
     fs::write(folder.join("log.csv"), log.replace(",mx,my", ",,")).unwrap();
-    succeed(&folder, &replay);
+    succeed(&folder, replay);
 }

@@ -1,6 +1,6 @@
 //! `glint wireframe`.
 
-use crate::common::{SQUARE, folder, picture, refused, succeed};
+use crate::common::{SQUARE, all_refused, files_refused, folder, picture, report, succeed};
 
 const PROGRAM: &str = "\
 # a cross
@@ -16,9 +16,9 @@ end
 fn both_forms_of_a_program() {
     let folder = folder("wireframe_forms");
     std::fs::write(folder.join("a.wft"), PROGRAM).unwrap();
-    succeed(&folder, &["wireframe", "convert", "a.wft", "a.wfb"]);
-    succeed(&folder, &["wireframe", "convert", "a.wfb", "b.wft"]);
-    succeed(&folder, &["wireframe", "convert", "b.wft", "b.wfb"]);
+    succeed(&folder, "wireframe convert a.wft a.wfb");
+    succeed(&folder, "wireframe convert a.wfb b.wft");
+    succeed(&folder, "wireframe convert b.wft b.wfb");
     let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
     assert_eq!(read("a.wfb"), read("b.wfb"));
     assert_eq!(read("a.wfb").len(), 6 * 16);
@@ -29,10 +29,9 @@ fn both_forms_of_a_program() {
     );
     let shown = "eye        0 0 4\nplane      2\nwindow     -2 -1.125 2 1.125\nprogram    2 segments, 96 bytes in binary form\n";
     for name in ["a.wft", "a.wfb"] {
-        assert_eq!(succeed(&folder, &["wireframe", "check", name]), shown);
+        assert_eq!(succeed(&folder, &format!("wireframe check {name}")), shown);
     }
-    let json = succeed(&folder, &["wireframe", "check", "a.wfb", "--json"]);
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let json = report(&folder, "wireframe check a.wfb");
     assert_eq!(
         (&json["segments"], &json["window"][1], &json["plane"]),
         (&2.into(), &(-1.125).into(), &2.0.into())
@@ -44,34 +43,16 @@ fn programs_of_meshes() {
     let folder = folder("wireframe_meshes");
     std::fs::write(folder.join("square.obj"), SQUARE).unwrap();
     for (model, segments) in [("cube", 12), ("square.obj", 4), ("icosphere:8", 1920)] {
-        let text = succeed(&folder, &["wireframe", "make", model, "--out", "a.wfb"]);
-        assert_eq!(
-            text,
-            format!(
-                "written    {segments} segments\ndropped    0 edges without a length at 2^-11\n"
-            )
-        );
+        let text = succeed(&folder, &format!("wireframe make {model} --out a.wfb"));
+        let dropped = "dropped    0 edges without a length at 2^-11";
+        assert_eq!(text, format!("written    {segments} segments\n{dropped}\n"));
     }
     // An STL shares no points: each of the 12 triangles of a cube has its own, so the 6 diagonals are edges too.
-    succeed(&folder, &["model", "cube", "cube.stl"]);
-    let json = succeed(
-        &folder,
-        &["wireframe", "make", "cube.stl", "--out", "a.wft", "--json"],
-    );
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    succeed(&folder, "model cube cube.stl");
+    let json = report(&folder, "wireframe make cube.stl --out a.wft");
     assert_eq!(json["segments"], 18);
-    let placed = [
-        "wireframe",
-        "make",
-        "square.obj",
-        "--keep-scale",
-        "--eye=1,2,3",
-        "--plane=-1",
-        "--window=-1,-1,1,1",
-        "--out",
-        "a.wft",
-    ];
-    succeed(&folder, &placed);
+    let placed = "--keep-scale --eye=1,2,3 --plane=-1 --window=-1,-1,1,1 --out a.wft";
+    succeed(&folder, &format!("wireframe make square.obj {placed}"));
     let text = std::fs::read_to_string(folder.join("a.wft")).unwrap();
     assert_eq!(
         text,
@@ -82,61 +63,37 @@ fn programs_of_meshes() {
 #[test]
 fn refused_programs() {
     let folder = folder("wireframe_refused");
-    let cases: [(&str, Vec<u8>, &str); 5] = [
-        (
-            "a.txt",
-            vec![],
-            "a.txt: expected a name that ends in .wft (text) or .wfb (binary), found '.txt'",
-        ),
-        (
-            "a.wft",
-            PROGRAM.replace("end\n", "").into(),
-            "a.wft: line 7: expected end, found the end of the input",
-        ),
-        (
-            "b.wft",
-            PROGRAM.replace("eye 0 0 4", "eye 0 0 -4").into(),
-            "b.wft: line 2: expected a z of the eye of at least 0, found -4",
-        ),
-        (
-            "a.wfb",
-            vec![0; 40],
-            "a.wfb: word 2: expected one eye in the program, found a second one",
-        ),
-        (
-            "b.wfb",
-            vec![0xFF; 16],
-            "b.wfb: word 1: expected zeros in bits 127 to 99, found 0x1fffffff",
-        ),
-    ];
-    for (name, bytes, message) in cases {
-        std::fs::write(folder.join(name), bytes).unwrap();
-        for arguments in [
-            &["wireframe", "check", name][..],
-            &["wireframe", "convert", name, "out.wfb"],
-        ] {
-            assert_eq!(refused(&folder, arguments), format!("error: {message}"));
-        }
-    }
-    let refused = |arguments: &[&str]| {
-        let make = ["wireframe", "make", "cube", "--out", "out.wfb"];
-        refused(&folder, &[&make[..], arguments].concat())
-    };
-    assert_eq!(
-        refused(&["--extent=32"]),
-        "error: --extent: expected a side above 0 and below 32, found 32"
+    let program = |from: &str, to: &str| PROGRAM.replace(from, to).into_bytes();
+    files_refused(
+        &folder,
+        ["wireframe check FILE", "wireframe convert FILE out.wfb"],
+        &[
+            ("a.txt", vec![]),
+            ("a.wft", program("end\n", "")),
+            ("b.wft", program("eye 0 0 4", "eye 0 0 -4")),
+            ("a.wfb", vec![0; 40]),
+            ("b.wfb", vec![0xFF; 16]),
+        ],
+        "
+        a.txt: expected a name that ends in .wft (text) or .wfb (binary), found '.txt'
+        a.wft: line 7: expected end, found the end of the input
+        b.wft: line 2: expected a z of the eye of at least 0, found -4
+        a.wfb: word 2: expected one eye in the program, found a second one
+        b.wfb: word 1: expected zeros in bits 127 to 99, found 0x1fffffff
+        ",
     );
-    assert_eq!(
-        refused(&["--plane=8"]),
-        "error: cube: expected a z of the eye above that of the view plane, 8, found 8"
-    );
-    assert_eq!(
-        refused(&["--eye=0,0"]),
-        "error: --eye: expected a position X,Y,Z, each from -16 to 15.9995, found '0,0'"
-    );
-    assert_eq!(
-        refused(&["--window=0,0,0,1"]),
-        "error: cube: expected x of the window's lower corner below 0, found 0"
+    all_refused(
+        &folder,
+        "
+        wireframe make cube --out out.wfb --extent=32
+            --extent: expected a side above 0 and below 32, found 32
+        wireframe make cube --out out.wfb --plane=8
+            cube: expected a z of the eye above that of the view plane, 8, found 8
+        wireframe make cube --out out.wfb --eye=0,0
+            --eye: expected a position X,Y,Z, each from -16 to 15.9995, found '0,0'
+        wireframe make cube --out out.wfb --window=0,0,0,1
+            cube: expected x of the window's lower corner below 0, found 0
+        ",
     );
     assert!(!folder.join("out.wfb").exists());
 }
@@ -145,48 +102,41 @@ fn refused_programs() {
 fn pictures_after_keys() {
     let folder = folder("wireframe_pictures");
     std::fs::write(folder.join("a.wft"), PROGRAM).unwrap();
-    let render = |arguments: &[&str]| {
-        let render = ["wireframe", "render", "a.wft", "--out", "a.png"];
-        let text = succeed(&folder, &[&render[..], arguments].concat());
+    let render = |more: &str| {
+        let text = succeed(
+            &folder,
+            &format!("wireframe render a.wft --out a.png {more}"),
+        );
         (text, picture(&folder.join("a.png")))
     };
-    let (text, still) = render(&[]);
+    let (text, still) = render("");
     // At z = 1 the scale is 2/3 of that in the view plane, 160 pixels a unit.
     assert_eq!(text, "segments   2 in, 2 drawn as lines, 428 pixels\n");
     assert_eq!(still.len(), 3 * 640 * 360);
-    let green = still
-        .chunks(3)
-        .filter(|pixel| *pixel == [0, 255, 0])
-        .count();
-    let black = still.chunks(3).filter(|pixel| *pixel == [0, 0, 0]).count();
+    let count = |colour: [u8; 3]| still.chunks(3).filter(|pixel| *pixel == colour).count();
+    let (green, black) = (count([0, 255, 0]), count([0; 3]));
     assert_eq!((green, green + black), (427, 640 * 360));
-    let (_, moved) = render(&["--press", "up:2,rotate,left,pan,down:2"]);
+    let (_, moved) = render("--press up:2,rotate,left,pan,down:2");
     assert!(moved != still);
-    let (_, back) = render(&[
-        "--press",
-        "up:2,rotate,left,right,pan,down:2,zoom-in,zoom-out",
-    ]);
+    let (_, back) = render("--press up:2,rotate,left,right,pan,down:2,zoom-in,zoom-out");
     assert!(back == still);
-    let (text, small) = render(&["--press=up:300", "--motion=accumulated", "--size=320x180"]);
+    let (text, small) = render("--press=up:300 --motion=accumulated --size=320x180");
     assert_eq!(small.len(), 3 * 320 * 180);
     assert!(
         text.ends_with("note       61 steps would have left the range, and were left out\n"),
         "{text}"
     );
-    let (json, _) = render(&["--json"]);
+    let (json, _) = render("--json");
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!((&json["segments"], &json["lines"]), (&2.into(), &2.into()));
-    let refused = |argument| {
-        let render = ["wireframe", "render", "a.wft", "--out", "b.png", argument];
-        refused(&folder, &render)
-    };
-    assert_eq!(
-        refused("--press=up,jump"),
-        "error: --press: expected up, down, left, right, zoom-in, zoom-out (or KEY:COUNT), rotate or pan, found 'jump'"
-    );
-    assert_eq!(
-        refused("--size=512x384"),
-        "error: --size: expected 320x180, 640x360 or 1280x720, found '512x384'"
+    all_refused(
+        &folder,
+        "
+        wireframe render a.wft --out b.png --press=up,jump
+            --press: expected up, down, left, right, zoom-in, zoom-out (or KEY:COUNT), rotate or pan, found 'jump'
+        wireframe render a.wft --out b.png --size=512x384
+            --size: expected 320x180, 640x360 or 1280x720, found '512x384'
+        ",
     );
     assert!(!folder.join("b.png").exists());
 }
