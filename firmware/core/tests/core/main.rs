@@ -10,7 +10,6 @@ mod fixed;
 mod flash;
 mod follow;
 mod framing;
-mod fuzz;
 mod hand;
 mod hand_colours;
 mod image_sensor;

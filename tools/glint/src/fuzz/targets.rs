@@ -12,6 +12,7 @@ use glint_core::console::{Command, Event, LineEditor, write_help};
 use glint_core::mesh;
 use glint_core::orientation::log as image;
 use glint_core::picture::Size;
+use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
 use glint_scene::Scene;
 
@@ -330,6 +331,11 @@ fn run_program(form: Form, input: &[u8]) -> Verdict {
     for (number, key) in Key::ALL.into_iter().cycle().take(20).enumerate() {
         motion.apply(key.step(number % 3 > 0));
     }
+    let lines: String = program
+        .instructions()
+        .map(|line| format!("{line}\n"))
+        .collect();
+    assert!(assemble(&lines).is_ok(), "the text form is valid too");
     let (pose, projection) = (
         motion.pose(),
         Projection::new(program.viewing(), Size::W1280),
@@ -403,9 +409,8 @@ fn run_console(input: &[u8]) -> Verdict {
             text.clear();
         }
         assert!(
-            echo.len() < 4096,
-            "a byte echoes less than a screen: {}",
-            echo.len()
+            echo.len() < 4096 && echo.is_ascii(),
+            "a byte echoes less than a screen of ASCII: {echo:?}"
         );
         echo.clear();
     }
