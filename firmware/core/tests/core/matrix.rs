@@ -207,32 +207,30 @@ fn refusals_name_the_row() {
         rows[row] = entries.map(number);
         Matrix::new_checked(rows, [zero; 3]).map_err(|error| error.to_string())
     };
-    let text = |row, entries| with(row, entries).unwrap_err();
-    assert_eq!(
-        text(0, [16.5, 0.0, 0.0]),
-        "matrix row 1: (16.5, 0, 0): expected entries within ±16"
-    );
-    assert_eq!(
-        text(1, [0.0, 0.0, -128.0]),
-        "matrix row 2: (0, 0, -128): expected entries within ±16"
-    );
-    assert_eq!(
-        text(2, [0.0; 3]),
-        "matrix row 3: (0, 0, 0): expected a length of at least 0.001"
-    );
     let singular = "singular: expected an angle of at least 0.056 degrees to the rows before it";
-    assert_eq!(
-        text(1, [3.0, 0.0, 0.0]),
-        format!("matrix row 2: {singular}")
-    );
-    assert_eq!(
-        text(2, [1.0, 2.0, 0.0]),
-        format!("matrix row 3: {singular}")
-    );
-    assert_eq!(
-        text(2, [1.0, 0.0, 0.0009]),
-        format!("matrix row 3: {singular}")
-    );
+    for (row, entries, expected) in [
+        (
+            0,
+            [16.5, 0.0, 0.0],
+            "(16.5, 0, 0): expected entries within ±16",
+        ),
+        (
+            1,
+            [0.0, 0.0, -128.0],
+            "(0, 0, -128): expected entries within ±16",
+        ),
+        (
+            2,
+            [0.0; 3],
+            "(0, 0, 0): expected a length of at least 0.001",
+        ),
+        (1, [3.0, 0.0, 0.0], singular),
+        (2, [1.0, 2.0, 0.0], singular),
+        (2, [1.0, 0.0, 0.0009], singular),
+    ] {
+        let expected = format!("matrix row {}: {expected}", row + 1);
+        assert_eq!(with(row, entries).unwrap_err(), expected);
+    }
     assert!(with(2, [1.0, 0.0, 0.001]).is_ok());
     let error = Matrix::translation([zero, zero, number(32.5)]).unwrap_err();
     assert_eq!(

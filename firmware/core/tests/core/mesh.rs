@@ -1,8 +1,8 @@
 //! Tests of meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
-    EncodeError, Expected, IndexedTriangle, MAX_RADIUS, Mesh, MeshError, Rgb565, Vertex, checksum,
-    encode, set_checksum, stated_checksum,
+    EncodeError, IndexedTriangle, MAX_RADIUS, Mesh, Rgb565, Vertex, checksum, encode, set_checksum,
+    stated_checksum,
 };
 use proptest::prelude::*;
 
@@ -202,180 +202,124 @@ fn the_checksum_covers_every_byte() {
     assert_eq!((stated_checksum(&short), &short[..]), (None, &good[..31]));
 }
 
-#[track_caller]
-fn assert_refused(spoil: impl FnOnce(&mut Vec<u8>), offset: u32, expected: Expected, found: u32) {
+/// The error of the small mesh after a change of its bytes.
+fn error(change: impl FnOnce(&mut Vec<u8>)) -> String {
     let mut bytes = small();
-    spoil(&mut bytes);
-    assert_eq!(
-        Mesh::new_checked(&bytes),
-        Err(MeshError {
-            offset,
-            expected,
-            found
-        })
-    );
-}
-
-fn set(offset: usize, value: u32) -> impl FnOnce(&mut Vec<u8>) {
-    move |bytes| bytes[offset..offset + 4].copy_from_slice(&value.to_le_bytes())
+    change(&mut bytes);
+    Mesh::new_checked(&bytes).expect_err("spoilt").to_string()
 }
 
 #[test]
 fn every_field_is_checked() {
-    use Expected::*;
     let radius = Mesh::new_checked(&small()).expect("a good mesh").radius();
-    let length = small().len() as u32;
-    assert_eq!(length, 32 + 16 * 7);
-    assert_refused(Vec::clear, 0, AtLeast("bytes of header", 32), 0);
-    assert_refused(
-        |bytes| bytes.truncate(31),
-        0,
-        AtLeast("bytes of header", 32),
-        31,
+    assert_eq!(small().len(), 144);
+    for (at, word, expected) in [
+        (0, 0x4D4C_4743, r#"0: expected "GLM2", found "CGLM""#),
+        (0, 0x394D_4C47, r#"0: expected "GLM2", found "GLM9""#),
+        (0, 0x324D_4CFF, r#"0: expected "GLM2", found "\xffLM2""#),
+        (4, 128, "4: expected 144 bytes in all, found 128"),
+        (8, 0, "8: expected at least 1 chunks, found 0"),
+        (
+            8,
+            2,
+            "144: expected at least 16 bytes for a chunk's header, found 0",
+        ),
+        (
+            8,
+            u32::MAX,
+            "144: expected at least 16 bytes for a chunk's header, found 0",
+        ),
+        (
+            12,
+            5,
+            "12: expected 4 vertices, as the chunks have, found 5",
+        ),
+        (
+            16,
+            1,
+            "16: expected 2 triangles, as the chunks have, found 1",
+        ),
+        (
+            20,
+            56_757,
+            "20: expected at most 56756 radius in 2^-14, found 56757",
+        ),
+        (28, 1 << 31, "28: expected 0 (reserved), found 2147483648"),
+        (
+            32,
+            0,
+            "32: expected at least 1 vertices in a chunk, found 0",
+        ),
+        (
+            32,
+            65_536,
+            "32: expected at most 65535 vertices in a chunk, found 65536",
+        ),
+        (
+            32,
+            7,
+            "32: expected at least 7 records for the chunk's vertices, found 6",
+        ),
+        (
+            36,
+            3,
+            "36: expected at least 3 records for the chunk's triangles, found 2",
+        ),
+        (
+            36,
+            u32::MAX,
+            "36: expected at least 4294967295 records for the chunk's triangles, found 2",
+        ),
+        (
+            36,
+            1,
+            "128: expected 0 bytes after the last chunk, found 16",
+        ),
+        (40, 9, "40: expected 0 (reserved), found 9"),
+    ] {
+        let set = |bytes: &mut Vec<u8>| bytes[at..at + 4].copy_from_slice(&word.to_le_bytes());
+        assert_eq!(error(set), format!("mesh byte {expected}"));
+    }
+    let index = "expected less than the 4 vertices of the chunk, as an index, found";
+    for (at, byte, expected) in [
+        (48 + 14, 1, "62: expected 0 (reserved), found 1".to_owned()),
+        (48 + 64, 4, format!("112: {index} 4")),
+        (48 + 64 + 21, 1, format!("132: {index} 259")),
+        (
+            48 + 64 + 15,
+            1,
+            "126: expected 0 (reserved), found 256".to_owned(),
+        ),
+    ] {
+        let set = |bytes: &mut Vec<u8>| bytes[at] = byte;
+        assert_eq!(error(set), format!("mesh byte {expected}"));
+    }
+    let most = 32 << 20;
+    for (length, expected) in [
+        (
+            0,
+            "expected at least 32 bytes of header, found 0".to_owned(),
+        ),
+        (
+            31,
+            "expected at least 32 bytes of header, found 31".to_owned(),
+        ),
+        (40, "expected a multiple of 16 bytes, found 40".to_owned()),
+        (145, "expected a multiple of 16 bytes, found 145".to_owned()),
+        (
+            most + 16,
+            format!("expected at most {most} bytes, found {}", most + 16),
+        ),
+    ] {
+        let cut = |bytes: &mut Vec<u8>| bytes.resize(length, 0);
+        assert_eq!(error(cut), format!("mesh byte 0: {expected}"));
+    }
+    let near = error(|bytes| bytes[20..24].copy_from_slice(&(radius - 1).to_le_bytes()));
+    let expected = format!(
+        "expected at most {} (radius) from the origin, found {radius}",
+        radius - 1
     );
-    assert_refused(
-        |bytes| bytes.push(0),
-        0,
-        MultipleOf("bytes", 16),
-        length + 1,
-    );
-    assert_refused(
-        |bytes| bytes.resize((32 << 20) + 16, 0),
-        0,
-        AtMost("bytes", 32 << 20),
-        (32 << 20) + 16,
-    );
-    assert_refused(set(0, 0x4D4C_4743), 0, Magic, 0x4D4C_4743);
-    assert_refused(
-        set(4, length - 16),
-        4,
-        Exactly("bytes in all", length),
-        length - 16,
-    );
-    assert_refused(set(8, 0), 8, AtLeast("chunks", 1), 0);
-    assert_refused(
-        set(8, 2),
-        length,
-        AtLeast("bytes for a chunk's header", 16),
-        0,
-    );
-    assert_refused(
-        set(8, u32::MAX),
-        length,
-        AtLeast("bytes for a chunk's header", 16),
-        0,
-    );
-    assert_refused(
-        set(12, 5),
-        12,
-        Exactly("vertices, as the chunks have", 4),
-        5,
-    );
-    assert_refused(
-        set(16, 1),
-        16,
-        Exactly("triangles, as the chunks have", 2),
-        1,
-    );
-    assert_refused(
-        set(20, MAX_RADIUS + 1),
-        20,
-        AtMost("radius in 2^-14", MAX_RADIUS),
-        MAX_RADIUS + 1,
-    );
-    assert_refused(set(28, 1 << 31), 28, Exactly("(reserved)", 0), 1 << 31);
-    assert_refused(set(32, 0), 32, AtLeast("vertices in a chunk", 1), 0);
-    assert_refused(
-        set(32, 65_536),
-        32,
-        AtMost("vertices in a chunk", 65_535),
-        65_536,
-    );
-    assert_refused(
-        set(32, 7),
-        32,
-        AtLeast("records for the chunk's vertices", 7),
-        6,
-    );
-    assert_refused(
-        set(36, 3),
-        36,
-        AtLeast("records for the chunk's triangles", 3),
-        2,
-    );
-    assert_refused(
-        set(36, u32::MAX),
-        36,
-        AtLeast("records for the chunk's triangles", u32::MAX),
-        2,
-    );
-    assert_refused(
-        set(36, 1),
-        length - 16,
-        Exactly("bytes after the last chunk", 0),
-        16,
-    );
-    assert_refused(set(40, 9), 40, Exactly("(reserved)", 0), 9);
-    assert_refused(
-        |bytes| bytes[48 + 14] = 1,
-        48 + 14,
-        Exactly("(reserved)", 0),
-        1,
-    );
-    assert_refused(
-        |bytes| bytes[48 + 64] = 4,
-        48 + 64,
-        Below("vertices of the chunk, as an index", 4),
-        4,
-    );
-    assert_refused(
-        |bytes| bytes[48 + 64 + 21] = 1,
-        48 + 64 + 20,
-        Below("vertices of the chunk, as an index", 4),
-        259,
-    );
-    assert_refused(
-        |bytes| bytes[48 + 64 + 15] = 1,
-        48 + 64 + 14,
-        Exactly("(reserved)", 0),
-        256,
-    );
-    let mut bytes = small();
-    set(20, radius - 1)(&mut bytes);
-    let error = Mesh::new_checked(&bytes).expect_err("a vertex is outside");
-    assert_eq!(
-        (error.expected, error.found),
-        (AtMost("(radius) from the origin", radius - 1), radius)
-    );
-}
-
-#[test]
-fn errors_say_where_what_was_expected_and_what_came() {
-    let message = |spoil: &dyn Fn(&mut Vec<u8>)| {
-        let mut bytes = small();
-        spoil(&mut bytes);
-        Mesh::new_checked(&bytes).expect_err("spoilt").to_string()
-    };
-    assert_eq!(
-        message(&|bytes| bytes[3] = b'9'),
-        "mesh byte 0: expected \"GLM2\", found \"GLM9\""
-    );
-    assert_eq!(
-        message(&|bytes| bytes[0] = 0xFF),
-        "mesh byte 0: expected \"GLM2\", found \"\\xffLM2\""
-    );
-    assert_eq!(
-        message(&|bytes| bytes[112] = 9),
-        "mesh byte 112: expected less than the 4 vertices of the chunk, as an index, found 9"
-    );
-    assert_eq!(
-        message(&|bytes| bytes.truncate(40)),
-        "mesh byte 0: expected a multiple of 16 bytes, found 40"
-    );
-    assert_eq!(
-        message(&|bytes| bytes[8] = 0),
-        "mesh byte 8: expected at least 1 chunks, found 0"
-    );
+    assert!(near.ends_with(&expected), "{near}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 const BYTE_US: f64 = 1e7 / 115_200.0;
 
 /// Probabilities that a byte is lost, changed or repeated, in 1/10000.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Faults {
     drop: u64,
     flip: u64,
@@ -195,14 +195,13 @@ fn some_data(length: usize) -> Vec<u8> {
 }
 
 #[track_caller]
-fn assert_arrives(scene: &Scene, data: &[u8]) -> Outcome {
-    let outcome = scene.run(data);
-    assert_eq!(
-        (outcome.sender, outcome.receiver),
-        (State::Done, State::Done)
-    );
+fn assert_arrives(scene: &Scene, length: usize) -> Outcome {
+    let data = some_data(length);
+    let outcome = scene.run(&data);
+    let ends = (outcome.sender, outcome.receiver);
+    assert_eq!(ends, (State::Done, State::Done));
     assert!(
-        outcome.received.as_deref() == Some(data),
+        outcome.received.as_deref() == Some(&data),
         "received data differs from the sent data"
     );
     outcome
@@ -211,120 +210,84 @@ fn assert_arrives(scene: &Scene, data: &[u8]) -> Outcome {
 #[test]
 fn every_length_arrives() {
     for length in (0..=33).chain([239, 240, 241, 1_023, 2_047, 2_048, 2_049, 4_096, 5_000]) {
-        let data = some_data(length);
-        assert_arrives(
-            &Scene {
-                announced: Some(Manifest::of(&data)),
-                ..Scene::default()
-            },
-            &data,
-        );
+        let scene = Scene {
+            announced: Some(Manifest::of(&some_data(length))),
+            ..Scene::default()
+        };
+        assert_arrives(&scene, length);
     }
 }
 
 #[test]
 fn a_clean_line_is_used_to_85_percent() {
     for latency_us in [0.0, 2_000.0, 16_000.0, 50_000.0] {
-        let outcome = assert_arrives(
-            &Scene {
-                latency_us,
-                ..Scene::default()
-            },
-            &some_data(64 << 10),
-        );
-        println!(
-            "latency {latency_us} us: {:.1} %",
-            100.0 * outcome.efficiency()
-        );
+        let scene = Scene {
+            latency_us,
+            ..Scene::default()
+        };
+        let outcome = assert_arrives(&scene, 64 << 10);
+        let used = 100.0 * outcome.efficiency();
+        println!("latency {latency_us} us: {used:.1} %");
         assert!(outcome.efficiency() >= 0.85, "{}", outcome.efficiency());
         assert_eq!(outcome.frame_bytes, 240);
     }
 }
 
+/// Sends data over a line with faults; prints and returns how the line was used.
+#[track_caller]
+fn assert_arrives_in_spite_of(faults: Faults, seed: u64, length: usize) -> (f64, u32) {
+    let scene = Scene {
+        faults,
+        seed,
+        ..Scene::default()
+    };
+    let outcome = assert_arrives(&scene, length);
+    let (used, frames) = (outcome.efficiency(), outcome.frame_bytes);
+    println!("{faults:?}: {:.1} %, frames of {frames}", 100.0 * used);
+    (used, frames)
+}
+
 #[test]
 fn one_percent_of_bytes_lost_changed_or_repeated_does_no_harm() {
     let one = 100;
-    for (name, faults) in [
-        ("drops", Faults::new(one, 0, 0)),
-        ("flips", Faults::new(0, one, 0)),
-        ("duplicates", Faults::new(0, 0, one)),
-        ("all", Faults::new(one, one, one)),
+    for (faults, least) in [
+        (Faults::new(one, 0, 0), 0.4),
+        (Faults::new(0, one, 0), 0.4),
+        (Faults::new(0, 0, one), 0.4),
+        (Faults::new(one, one, one), 0.2),
     ] {
         for seed in 1..=4 {
-            let outcome = assert_arrives(
-                &Scene {
-                    faults,
-                    seed,
-                    ..Scene::default()
-                },
-                &some_data(40_000),
-            );
-            println!(
-                "1 % {name}: {:.1} %, frames of {}",
-                100.0 * outcome.efficiency(),
-                outcome.frame_bytes
-            );
-            assert!(
-                outcome.efficiency() >= if name == "all" { 0.2 } else { 0.4 },
-                "{name} {seed}: {}",
-                outcome.efficiency()
-            );
-            assert!(outcome.frame_bytes <= 48);
+            let (used, frames) = assert_arrives_in_spite_of(faults, seed, 40_000);
+            assert!(used >= least, "{faults:?} {seed}: {used}");
+            assert!(frames <= 48);
         }
     }
 }
 
 #[test]
 fn a_rarely_hit_line_gets_frames_in_between() {
-    let faults = Faults::new(5, 5, 0);
-    let outcome = assert_arrives(
-        &Scene {
-            faults,
-            ..Scene::default()
-        },
-        &some_data(100_000),
-    );
-    println!(
-        "0.1 %: {:.1} %, frames of {}",
-        100.0 * outcome.efficiency(),
-        outcome.frame_bytes
-    );
-    assert!(outcome.efficiency() >= 0.7, "{}", outcome.efficiency());
+    let (used, _) = assert_arrives_in_spite_of(Faults::new(5, 5, 0), 1, 100_000);
+    assert!(used >= 0.7, "{used}");
 }
 
 #[test]
 fn an_awful_line_is_slow_and_right_or_given_up() {
-    let faults = Faults::new(150, 150, 150);
     for seed in 1..=4 {
-        let outcome = assert_arrives(
-            &Scene {
-                faults,
-                seed,
-                ..Scene::default()
-            },
-            &some_data(2_000),
-        );
-        println!("4.5 %: {:.1} %", 100.0 * outcome.efficiency());
+        assert_arrives_in_spite_of(Faults::new(150, 150, 150), seed, 2_000);
     }
-    let faults = Faults::new(5_000, 0, 0);
-    let outcome = Scene {
-        faults,
+    let lossy = Scene {
+        faults: Faults::new(5_000, 0, 0),
         ..Scene::default()
-    }
-    .run(&some_data(2_000));
-    assert_eq!(outcome.sender, State::Failed(Failure::Silence(5_000)));
-    assert_eq!(
-        outcome.receiver,
-        State::Failed(Failure::Silence(Timing::CONSOLE.silence_ms))
-    );
-    assert_eq!(outcome.received, None);
+    };
+    let silence = Failure::Silence(Timing::CONSOLE.silence_ms);
+    assert_ends(&lossy, 2_000, Failure::Silence(5_000), silence);
 }
 
 /// Runs a transfer, and checks that it fails on both sides, with the given causes.
-fn assert_ends(scene: Scene, sender: Failure, receiver: Failure) {
-    let outcome = scene.run(&some_data(50_000));
-    assert_eq!(outcome.sender, State::Failed(sender));
-    assert_eq!(outcome.receiver, State::Failed(receiver));
+fn assert_ends(scene: &Scene, length: usize, sender: Failure, receiver: Failure) {
+    let outcome = scene.run(&some_data(length));
+    let ends = (outcome.sender, outcome.receiver);
+    assert_eq!(ends, (State::Failed(sender), State::Failed(receiver)));
     assert_eq!(outcome.received, None);
 }
 
@@ -336,64 +299,40 @@ fn a_side_that_gives_up_is_heard() {
         sender_aborts_at_ms: 500,
         ..Scene::default()
     };
-    assert_ends(by_sender, cancelled, by_peer);
+    assert_ends(&by_sender, 50_000, cancelled, by_peer);
     let by_receiver = Scene {
         receiver_aborts_at_ms: 500,
         ..Scene::default()
     };
-    assert_ends(by_receiver, by_peer, cancelled);
+    assert_ends(&by_receiver, 50_000, by_peer, cancelled);
 }
 
 #[test]
 fn a_cut_line_ends_both_sides() {
-    assert_ends(
-        Scene {
-            cut_at_ms: 500,
-            ..Scene::default()
-        },
-        Failure::Silence(5_000),
-        Failure::Silence(Timing::CONSOLE.silence_ms),
-    );
+    let cut = Scene {
+        cut_at_ms: 500,
+        ..Scene::default()
+    };
+    let silence = Failure::Silence(Timing::CONSOLE.silence_ms);
+    assert_ends(&cut, 50_000, Failure::Silence(5_000), silence);
 }
 
 #[test]
 fn what_was_not_announced_or_does_not_fit_is_refused() {
-    let data = some_data(1_000);
-    let check = |scene: Scene, reason| {
-        let outcome = scene.run(&data);
-        assert_eq!(
-            outcome.sender,
-            State::Failed(Failure::AbortedByPeer(reason))
-        );
-        assert_eq!(outcome.receiver, State::Failed(Failure::Aborted(reason)));
-    };
-    for announced in [
-        Manifest {
-            length: 999,
-            ..Manifest::of(&data)
-        },
-        Manifest {
-            crc32: 1,
-            ..Manifest::of(&data)
-        },
+    let Manifest { length, crc32 } = Manifest::of(&some_data(1_000));
+    for (announced, room, reason) in [
+        (Some((999, crc32)), 1 << 20, Reason::Unannounced),
+        (Some((length, 1)), 1 << 20, Reason::Unannounced),
+        (None, 999, Reason::TooLong),
     ] {
-        let announced = Some(announced);
-        check(
-            Scene {
-                announced,
-                ..Scene::default()
-            },
-            Reason::Unannounced,
-        );
-    }
-    let room = 999;
-    check(
-        Scene {
+        let scene = Scene {
+            announced: announced.map(|(length, crc32)| Manifest { length, crc32 }),
             room,
             ..Scene::default()
-        },
-        Reason::TooLong,
-    );
+        };
+        let by_peer = Failure::AbortedByPeer(reason);
+        assert_ends(&scene, 1_000, by_peer, Failure::Aborted(reason));
+    }
 }
 
 #[test]
