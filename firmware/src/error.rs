@@ -15,7 +15,7 @@ use glint_core::picture::Size;
 use glint_core::scene::{LineError, blocks_of};
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
-use glint_hal::gesture::SetUpError;
+use glint_engines::gesture::SetUpError;
 
 use crate::gateware::Fallback;
 use crate::models::{MAX_MESHES, NameError, RemoveError};

@@ -12,7 +12,8 @@ use glint_core::hand::{
     Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};
-use glint_hal::gesture::{GestureEngine, SetUpError};
+use glint_engines::gesture::{self as engine, SetUpError};
+use glint_hal::gesture::GestureEngine;
 use glint_hal::timer::{Clock, Deadline};
 use glint_model::gesture::{Channel, channels};
 use litex_pac::cpu;
@@ -92,7 +93,7 @@ pub struct Gesture {
 impl Gesture {
     /// A hand that does not steer yet: the image sensor is off.
     pub fn new(mut engine: GestureEngine, clock: Clock) -> Self {
-        engine.set_windows(SKIN);
+        engine::set_windows(&mut engine, SKIN);
         Self {
             engine,
             clock,
@@ -116,8 +117,8 @@ impl Gesture {
         self.stop();
         self.size = size;
         self.control = Control::default();
-        self.engine.set_gate(&self.control.setting());
-        let started = self.engine.start(size, self.clock);
+        engine::set_gate(&mut self.engine, &self.control.setting());
+        let started = engine::start(&mut self.engine, size, self.clock);
         self.sensor = Some(started);
         if started.is_ok() {
             self.look_after(LOOK);
@@ -131,7 +132,7 @@ impl Gesture {
     /// There is no image sensor, or it does not accept its set-up.
     pub fn check(&mut self) -> Result<Model, SetUpError> {
         self.sensor.unwrap_or_else(|| {
-            let started = self.engine.start(self.size, self.clock);
+            let started = engine::start(&mut self.engine, self.size, self.clock);
             self.engine.set_power(false);
             started
         })
@@ -163,17 +164,19 @@ impl Gesture {
         let are_whole = counters.frames != whole && counters.frames_dropped == dropped;
         let found = match self.sensor {
             Some(Ok(_)) if are_whole => None,
-            Some(Ok(model)) => match self.engine.keeps(model, self.size, self.clock) {
-                Ok(true) => None,
-                Ok(false) => Some(Ok(model)),
-                Err(error) => Some(Err(error)),
-            },
-            _ => Some(self.engine.find(self.clock)),
+            Some(Ok(model)) => {
+                match engine::keeps(&mut self.engine, model, self.size, self.clock) {
+                    Ok(true) => None,
+                    Ok(false) => Some(Ok(model)),
+                    Err(error) => Some(Err(error)),
+                }
+            }
+            _ => Some(engine::find(&mut self.engine, self.clock)),
         };
         let mut pause = LOOK;
         if let Some(found) = found {
             self.sensor = Some(found.and_then(|_| {
-                let started = self.engine.start(self.size, self.clock);
+                let started = engine::start(&mut self.engine, self.size, self.clock);
                 pause = if started.is_ok() { LOOK } else { PAUSE };
                 started
             }));
@@ -198,11 +201,11 @@ impl Gesture {
         };
         let start = cpu::cycles_low();
         // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
-        if let Some((_, statistics)) = self.engine.statistics() {
+        if let Some(statistics) = engine::statistics(&self.engine) {
             let before = self.control.pose();
             let time = self.clock.frequency().microseconds(ended);
             let _ = self.control.on_frame(time, &statistics);
-            self.engine.set_gate(&self.control.setting());
+            engine::set_gate(&mut self.engine, &self.control.setting());
             if self.control.pose() != before {
                 self.waiting = Some(ended);
             }
@@ -287,7 +290,7 @@ impl Gesture {
         let found = calibrate(columns, rows, chroma);
         if let Ok(calibrated) = found {
             self.windows = calibrated.windows;
-            self.engine.set_windows(self.windows);
+            engine::set_windows(&mut self.engine, self.windows);
         }
         Some(found)
     }

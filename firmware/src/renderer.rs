@@ -71,7 +71,7 @@ impl Renderer {
         if let Ok(drawn) = &drawn {
             self.draw_mark(scene);
             self.draw_overlay(models, scene, drawn);
-            self.display.show(scene.size());
+            self.display.show(scene.size().width());
         }
         Some(drawn)
     }
@@ -108,7 +108,7 @@ impl Renderer {
 
     /// Whether this board draws and shows pictures of this size.
     pub fn has_size(&self, size: Size) -> bool {
-        self.display.has_size(size) && size.pixel_count() <= self.depth.len()
+        self.display.has_size(size.pixels()) && size.pixel_count() <= self.depth.len()
     }
 
     /// Drops a frame that waits for the next vertical blanking, so that another frame can be drawn.

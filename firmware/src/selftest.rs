@@ -6,7 +6,7 @@ use core::time::Duration;
 use embedded_hal::i2c::NoAcknowledgeSource;
 use glint_core::feature::{GESTURE, IMU, MESH};
 use glint_core::{image_sensor, mpu6050};
-use glint_hal::gesture::SetUpError;
+use glint_engines::gesture::SetUpError;
 use glint_hal::i2c::BusError;
 use glint_hal::timer::whole_millis;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};

@@ -2,6 +2,7 @@
 
 use core::fmt::{self, Write as _};
 
+use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::feature::{FIELD, GESTURE, MESH, WIREFRAME};
 use glint_core::flash::CONTENTS;
@@ -156,7 +157,7 @@ pub fn machine() -> Result<Machine, StartError> {
     };
     let contents = identity
         .matches()
-        .then(|| flash::bytes(&peripherals.identity)?.get(CONTENTS..))
+        .then(|| flash::bytes(&peripherals.identity, Block::Flash.bit())?.get(CONTENTS..))
         .flatten();
     interrupts::start(Present {
         devices: devices.is_some(),

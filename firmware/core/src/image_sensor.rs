@@ -5,13 +5,11 @@
 //! white balance. All other registers keep the values of the chip's reset. The lists follow the registers of public drivers;
 //! they have not been compared with the data sheets, nor tried with a real chip.
 //!
-//! SCCB differs from I2C: a read is two transactions, because its chips know no repeated start. [`TwoWires`] is a bus of two
-//! wires that software moves.
+//! SCCB differs from I2C: a read is two transactions, because its chips know no repeated start.
 
 mod ov5640;
 mod ov7670;
 mod step;
-mod wires;
 
 use core::fmt;
 
@@ -19,7 +17,6 @@ use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c};
 
 use step::Step;
-pub use wires::{NoAcknowledge, TwoWires, Wires};
 
 /// Number of columns and rows of a camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +164,7 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
 /// A driver of an image sensor on an I2C bus. The chip answers only while its clock XCLK runs.
 ///
 /// A set-up takes about 60 transactions. On the bus of a sensor that is read periodically
-/// ([`PeriodicI2c`](crate::i2c::PeriodicI2c)) each of them would end the periodic reads; do it before they begin, or on wires of
+/// ([`PeriodicI2c`](glint_i2c::PeriodicI2c)) each of them would end the periodic reads; do it before they begin, or on wires of
 /// its own.
 pub struct ImageSensor<B> {
     bus: B,

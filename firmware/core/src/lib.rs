@@ -27,7 +27,6 @@ pub mod flash;
 pub mod follow;
 pub mod framing;
 pub mod hand;
-pub mod i2c;
 pub mod image_sensor;
 pub mod imu;
 pub mod light;

@@ -14,9 +14,9 @@ use core::fmt;
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind, I2c, Operation};
+use glint_i2c::{PeriodicI2c, PeriodicRead};
 
 use crate::fixed::Q32_32;
-use crate::i2c::{PeriodicI2c, PeriodicRead};
 
 pub use pace::Pace;
 pub use stream::{Sink, Stream};

@@ -34,7 +34,7 @@ mod tests {
     use litex_pac::digits::Digits as Registers;
 
     use super::*;
-    use crate::recording;
+    use litex_pac::recording;
 
     #[test]
     fn the_leftmost_digit_is_the_lowest_byte() {

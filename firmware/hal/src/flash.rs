@@ -2,22 +2,21 @@
 
 use core::slice;
 
-use glint_core::block::Block;
 use litex_pac::identity::Identity;
 use litex_pac::memories::FLASH;
 
-/// The bytes of the flash; `None` if the gateware cannot read it.
+/// The bytes of the flash; `None` if the gateware cannot read it. `bit` is the bit of the block `flash` in `identity.blocks`.
 #[must_use]
-pub fn bytes(identity: &Identity) -> Option<&'static [u8]> {
+pub fn bytes(identity: &Identity, bit: u32) -> Option<&'static [u8]> {
     // SAFETY: the window has this size at this address in every gateware with the block, and is read-only: nothing writes the flash
     // while the firmware runs.
-    is_present(identity).then(|| unsafe {
+    is_present(identity, bit).then(|| unsafe {
         slice::from_raw_parts(FLASH.base as usize as *const u8, FLASH.size as usize)
     })
 }
 
-fn is_present(identity: &Identity) -> bool {
-    identity.blocks().read() & Block::Flash.bit() != 0
+fn is_present(identity: &Identity, bit: u32) -> bool {
+    identity.blocks().read() & bit != 0
 }
 
 #[cfg(test)]
@@ -26,16 +25,17 @@ mod tests {
     use litex_pac::identity::offset::BLOCKS;
 
     use super::*;
-    use crate::recording;
+    use litex_pac::recording;
 
     #[test]
     fn the_window_is_there_if_the_gateware_has_the_block() {
+        const BIT: u32 = 1 << 5;
         let address = Identity::BASE + BLOCKS as usize;
-        for (blocks, expected) in [(!Block::Flash.bit(), false), (Block::Flash.bit(), true)] {
+        for (blocks, expected) in [(!BIT, false), (BIT, true)] {
             recording::connect([(address, blocks)]);
             // SAFETY: a model on the bus answers all accesses, so no device is affected.
             let peripherals = unsafe { Peripherals::steal() };
-            assert_eq!(is_present(&peripherals.identity), expected);
+            assert_eq!(is_present(&peripherals.identity, BIT), expected);
         }
     }
 }

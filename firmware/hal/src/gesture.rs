@@ -1,15 +1,11 @@
 //! The gesture engine `gesture`, which counts the pixels of a hand in the frames of an image sensor, and the pins of the sensor.
 //!
-//! After each whole frame the engine raises an interrupt and has the [`Statistics`] of this frame; a frame with a fault leaves
+//! After each whole frame the engine raises an interrupt and has the [`Counts`] of this frame; a frame with a fault leaves
 //! them as they are. Windows, region and run take effect with the next frame.
 //!
 //! Software moves the sensor's bus (SCCB): the driver implements [`Wires`].
 
-use embedded_hal::delay::DelayNs;
-use glint_core::hand::{Region, Setting, Statistics, Window};
-use glint_core::image_sensor::{
-    Error, FrameSize, ImageSensor, Model, NoAcknowledge, TwoWires, Wires,
-};
+use glint_i2c::Wires;
 use litex_pac::gesture::{
     self, Camera, Channel, Control, EvEnable, EvPending, RegionX, RegionY, Size, Snapshot, WindowA,
     WindowB,
@@ -17,13 +13,6 @@ use litex_pac::gesture::{
 pub use litex_pac::gesture::{Counters, Fault};
 
 use crate::Absent;
-use crate::timer::{Clock, Waiting, block_on};
-
-/// Reason why the image sensor cannot be set up.
-pub type SetUpError = Error<NoAcknowledge>;
-
-/// Time in ms after the end of a reset in which a chip may not answer: that of the OV5640, which is the longest.
-const RESET_TIME: u32 = 20;
 
 /// Largest coordinate of a region.
 const LAST: u16 = 2047;
@@ -37,6 +26,19 @@ pub struct Signal {
     pub fault: Option<Fault>,
     /// Pixels of the last line, and lines of the last frame.
     pub seen: [u16; 2],
+}
+
+/// What the engine counted in a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// Columns and rows of the frame.
+    pub size: [u16; 2],
+    /// Number of pixels of the hand's colour.
+    pub count: u32,
+    /// Sums of the x and of the y coordinates of these pixels.
+    pub sums: [u32; 2],
+    /// Coordinates x and y of the top left and the bottom right corner of the smallest rectangle with all these pixels.
+    pub corners: [[u16; 2]; 2],
 }
 
 /// Driver of the gesture engine, whose presence has been checked.
@@ -66,51 +68,6 @@ impl GestureEngine {
         Ok(engine)
     }
 
-    /// Resets the image sensor, sets it up for a size, and takes its frames from the next VSYNC on. This takes some 50 ms, in which
-    /// the CPU does nothing else but interrupts.
-    ///
-    /// # Errors
-    /// The chip is absent, unknown, or does not accept its set-up; it is then turned off.
-    pub fn start(&mut self, size: FrameSize, clock: Clock) -> Result<Model, SetUpError> {
-        self.set_power(false);
-        // Longer than the shortest reset of all chips.
-        { clock }.delay_ms(1);
-        self.set_power(true);
-        { clock }.delay_ms(RESET_TIME);
-        let mut sensor = ImageSensor::new(TwoWires::new(&mut *self, Waiting(clock)));
-        let started = block_on(sensor.start(size, &mut Waiting(clock)));
-        match started {
-            Ok(model) => self.receive(size.pixels(), model.is_vsync_low()),
-            Err(_) => self.set_power(false),
-        }
-        started
-    }
-
-    /// Whether the image sensor that [`start`](Self::start) found still has its settings. This takes some 5 ms; without a sensor less
-    /// than 1 ms.
-    ///
-    /// # Errors
-    /// The chip does not answer.
-    pub fn keeps(
-        &mut self,
-        model: Model,
-        size: FrameSize,
-        clock: Clock,
-    ) -> Result<bool, SetUpError> {
-        let mut sensor = ImageSensor::new(TwoWires::new(&mut *self, Waiting(clock)));
-        block_on(sensor.keeps(model, size))
-    }
-
-    /// Finds an image sensor after another one was unplugged. This takes some 2 ms; without a sensor less than 1 ms.
-    ///
-    /// # Errors
-    /// There is no known chip.
-    pub fn find(&mut self, clock: Clock) -> Result<Model, SetUpError> {
-        self.set_power(true);
-        let mut sensor = ImageSensor::new(TwoWires::new(&mut *self, Waiting(clock)));
-        block_on(sensor.find())
-    }
-
     /// Gives the image sensor its clock and ends its reset, or stops the engine and turns the sensor off.
     pub fn set_power(&mut self, on: bool) {
         if !on {
@@ -125,7 +82,7 @@ impl GestureEngine {
     }
 
     /// Takes frames of this size from the next VSYNC on. `vsync_low` says that VSYNC is low between frames.
-    fn receive(&mut self, size: [u16; 2], vsync_low: bool) {
+    pub fn receive(&mut self, size: [u16; 2], vsync_low: bool) {
         let registers = &self.registers;
         let control = Control::default().with_vsync_low(vsync_low);
         registers.control().write(control);
@@ -137,25 +94,20 @@ impl GestureEngine {
         self.size = size;
     }
 
-    /// Sets the windows of the channels Cr and Cb.
-    pub fn set_windows(&mut self, windows: [Window; 2]) {
-        let [cr, cb] = windows;
+    /// Sets the windows of the channels Cr and Cb: the smallest and the largest value.
+    pub fn set_windows(&mut self, [cr, cb]: [[u8; 2]; 2]) {
         let first = WindowA::default().with_channel(Channel::Cr);
         self.registers
             .window_a()
-            .write(first.with_lower(cr.lower).with_upper(cr.upper));
+            .write(first.with_lower(cr[0]).with_upper(cr[1]));
         let second = WindowB::default().with_channel(Channel::Cb);
         self.registers
             .window_b()
-            .write(second.with_lower(cb.lower).with_upper(cb.upper));
+            .write(second.with_lower(cb[0]).with_upper(cb[1]));
     }
 
-    /// Sets what the engine counts.
-    pub fn set_gate(&mut self, setting: &Setting) {
-        let Region {
-            first: [left, top],
-            last: [right, bottom],
-        } = setting.region;
+    /// Sets what the engine counts: pixels in the region with these corners, in runs of at least this length.
+    pub fn set_gate(&mut self, [[left, top], [right, bottom]]: [[u16; 2]; 2], least_run: u8) {
         let columns = RegionX::default().with_first(left);
         let rows = RegionY::default().with_first(top);
         let registers = &self.registers;
@@ -163,26 +115,25 @@ impl GestureEngine {
             .region_x()
             .write(columns.with_last(right.min(LAST)));
         registers.region_y().write(rows.with_last(bottom.min(LAST)));
-        registers.least_run().write(setting.least_run);
+        registers.least_run().write(least_run);
     }
 
-    /// The statistics of the last whole frame, with its number modulo 2^16; `None` if the engine replaced them meanwhile.
+    /// The counts of the last whole frame; `None` if the engine replaced them meanwhile.
     #[must_use]
-    pub fn statistics(&self) -> Option<(u16, Statistics)> {
+    pub fn counts(&self) -> Option<Counts> {
         let registers = &self.registers;
         let sequence = registers.sequence().read();
         let (columns, rows) = (registers.box_x().read(), registers.box_y().read());
-        let statistics = Statistics {
+        let counts = Counts {
             size: self.size,
             count: registers.count().read(),
             sums: [registers.sum_x().read(), registers.sum_y().read()],
-            bounds: Region {
-                first: [columns.first(), rows.first()],
-                last: [columns.last(), rows.last()],
-            },
-            is_whole: true,
+            corners: [
+                [columns.first(), rows.first()],
+                [columns.last(), rows.last()],
+            ],
         };
-        (registers.sequence().read() == sequence).then_some((sequence, statistics))
+        (registers.sequence().read() == sequence).then_some(counts)
     }
 
     /// What the image sensor sends.
@@ -248,11 +199,10 @@ pub fn acknowledge() {
 mod tests {
     use std::vec::Vec;
 
-    use glint_core::hand::Setting;
     use litex_pac::gesture::Gesture;
 
     use super::*;
-    use crate::recording::connect;
+    use litex_pac::recording::connect;
 
     /// Registers that exist in every build, at the addresses of docs/registers.md.
     fn engine() -> Gesture {
@@ -285,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_and_statistics_have_their_places() {
+    fn settings_and_counts_have_their_places() {
         let registers = engine();
         let block = connect([
             (Gesture::BASE, Gesture::IDENT),
@@ -298,12 +248,14 @@ mod tests {
         ]);
         let mut driver = GestureEngine::probe(engine()).unwrap();
         driver.receive([320, 240], true);
-        driver.set_gate(&Setting::SEARCHING);
-        let (sequence, statistics) = driver.statistics().unwrap();
-        assert_eq!((sequence, statistics.size), (7, [320, 240]));
-        assert_eq!((statistics.count, statistics.sums), (500, [80_000, 60_000]));
-        let Region { first, last } = statistics.bounds;
-        assert_eq!((first, last), ([130, 90], [190, 150]));
+        driver.set_gate([[0; 2], [u16::MAX; 2]], 4);
+        let counts = Counts {
+            size: [320, 240],
+            count: 500,
+            sums: [80_000, 60_000],
+            corners: [[130, 90], [190, 150]],
+        };
+        assert_eq!(driver.counts(), Some(counts));
         let value = |address| block.borrow().values.get(&address).copied();
         assert_eq!(value(registers.size().address()), Some(240 << 16 | 320));
         assert_eq!(value(registers.region_x().address()), Some(2047 << 16));

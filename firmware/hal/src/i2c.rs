@@ -20,7 +20,7 @@ use core::task::Poll;
 use core::time::Duration;
 
 use embedded_hal::i2c::{ErrorKind, ErrorType, NoAcknowledgeSource, Operation, SevenBitAddress};
-use glint_core::i2c::{PeriodicI2c, PeriodicRead};
+use glint_i2c::{PeriodicI2c, PeriodicRead};
 use litex_pac::i2c::{
     self, Command, Control, Error, EvEnable, EvPending, Operation as Action, Rounds, Status,
 };

@@ -15,7 +15,8 @@
 //! | [`gesture`] | `gesture`, which finds a hand in the frames of a camera, and the camera's pins | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into the frames of `triangle` | |
 //!
-//! Drivers access registers only through `litex-pac`. On a host a model replaces the bus, so tests run the same drivers.
+//! Drivers know registers (`litex-pac`) and numbers, nothing of scenes, frames or the hand: `glint-engines` ties them to these. On a
+//! host a model replaces the bus, so tests run the same drivers.
 
 #![no_std]
 
@@ -31,8 +32,6 @@ pub mod gpio;
 pub mod i2c;
 pub mod interrupt;
 pub mod raymarch;
-#[cfg(test)]
-mod recording;
 pub mod scanout;
 pub mod timer;
 pub mod triangle;

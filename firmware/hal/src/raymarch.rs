@@ -4,16 +4,8 @@
 //! the field, until [`Raymarcher::clear_field`]. Neither function may be called during a raster pass. The raymarcher
 //! does not access memory.
 
-use core::fmt;
-
-use glint_core::field::{FixedSpheres, FlatConstants, Solid};
-use glint_core::stereo::Tint;
-use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Lights, Palette};
-pub use litex_pac::raymarch::Counters;
-use litex_pac::raymarch::{
-    self, Control, DepthScale, EvEnable, EvPending, Kind, Solid as SolidRegister, Sphere, Stereo,
-    Table, Tuning,
-};
+use litex_pac::raymarch::{self, EvEnable, EvPending, Sphere, Table};
+pub use litex_pac::raymarch::{Control, Counters, DepthScale, Kind, Solid, Stereo, Tuning};
 
 use crate::Absent;
 
@@ -37,53 +29,54 @@ pub struct Capabilities {
     pub prepass: bool,
 }
 
-/// A feature that a frame needs and this build lacks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Missing {
-    /// Sponges deeper than this number of levels, which is the limit of this build; 0 if the build has no sponges.
-    Levels(u8),
-    /// Flat fields (fields with plane faces) of this kind.
-    Flat(Kind),
-    /// Spheres.
-    Round,
-    /// Fillets between spheres and flat fields.
-    Blend,
-    /// Two eyes.
-    Stereo,
-    /// Prepass.
-    Prepass,
+/// The constants of an eye in the registers `origin`, `outside` and `first` (docs/registers.md).
+#[derive(Clone, Copy)]
+pub struct Eye<'a> {
+    /// Position.
+    pub origin: &'a [i32; 3],
+    /// Distance outside of the bounding box along each axis.
+    pub outside: &'a [u32; 3],
+    /// Direction of the first pixel's ray.
+    pub first: &'a [i32; 3],
 }
 
-impl fmt::Display for Missing {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Levels(levels) => {
-                write!(
-                    f,
-                    "raymarcher: this gateware has sponges of depth {levels} at most"
-                )
-            }
-            Self::Flat(kind) => write!(f, "raymarcher: this gateware has no {}", kind.text()),
-            Self::Round => f.write_str("raymarcher: this gateware has no spheres"),
-            Self::Blend => f.write_str("raymarcher: this gateware has no smooth unions"),
-            Self::Stereo => f.write_str("raymarcher: this gateware has no stereo"),
-            Self::Prepass => f.write_str("raymarcher: this gateware has no prepass"),
-        }
-    }
-}
+/// The tables of fog and of occlusion.
+pub type Tables<'a> = [&'a [u8; 256]; 2];
 
-impl core::error::Error for Missing {}
+/// A colour: red, green, blue.
+pub type Rgb = [u8; 3];
 
-/// Converts the raymarcher's counters to the model's statistics of rays.
-#[must_use]
-pub fn ray_counts(counters: &Counters) -> FieldStats {
-    FieldStats {
-        rays: counters.items_in,
-        evaluations: counters.evaluations.into(),
-        hits: counters.hits,
-        misses: counters.misses,
-        undecided: counters.undecided,
-    }
+/// The constants of a field, by the registers that hold them (docs/registers.md). Numbers have the formats of docs/formats.md.
+#[derive(Clone, Copy)]
+pub struct Field<'a> {
+    /// What is drawn. The driver sets `enable`.
+    pub control: Control,
+    /// The solid.
+    pub solid: Solid,
+    /// Half the side of a sponge's smallest cubes.
+    pub cube_half: u32,
+    /// Half the sides of a box.
+    pub half: [u32; 3],
+    /// Precision of the march.
+    pub tuning: Tuning,
+    /// The far limit and the near limit.
+    pub limits: [u32; 2],
+    /// The left and the right eye.
+    pub eyes: [Eye<'a>; 2],
+    /// Half the sides of the bounding box.
+    pub bounds: &'a [u32; 3],
+    /// Change of the direction per pixel to the right, per pixel down, and from the first pixel of a cone's block to its middle.
+    pub steps: [&'a [i32; 3]; 3],
+    /// Growth of a cone.
+    pub cone_spread: u16,
+    /// The scale of depth codes.
+    pub depth_scale: DepthScale,
+    /// The colours of the faces.
+    pub faces: &'a [Rgb; 8],
+    /// The colours of undecided rays, of the zenith and of the horizon.
+    pub sky: [Rgb; 3],
+    /// Exponent of the depth step of the table of fog.
+    pub fog_shift: u8,
 }
 
 /// Driver of the raymarcher, whose presence has been checked.
@@ -101,30 +94,23 @@ impl Raymarcher {
     /// # Errors
     /// [`Absent`] if the register `ident` does not identify a raymarcher.
     pub fn probe(registers: raymarch::Raymarch) -> Result<Self, Absent> {
-        match registers.ident().read() {
-            raymarch::Raymarch::IDENT => {
-                registers.ev_enable().write(EvEnable::default());
-                let caps = registers.caps().read();
-                let capabilities = Capabilities {
-                    lanes: caps.lanes(),
-                    levels: caps.levels(),
-                    flat: caps.flat(),
-                    stereo: caps.stereo(),
-                    round: caps.round(),
-                    blend: caps.blend(),
-                    prepass: caps.prepass(),
-                };
-                Ok(Self {
-                    registers,
-                    capabilities,
-                    tables: None,
-                })
-            }
-            found => Err(Absent {
-                expected: raymarch::Raymarch::IDENT,
-                found,
-            }),
-        }
+        Absent::check(registers.ident().read(), raymarch::Raymarch::IDENT)?;
+        registers.ev_enable().write(EvEnable::default());
+        let caps = registers.caps().read();
+        let capabilities = Capabilities {
+            lanes: caps.lanes(),
+            levels: caps.levels(),
+            flat: caps.flat(),
+            stereo: caps.stereo(),
+            round: caps.round(),
+            blend: caps.blend(),
+            prepass: caps.prepass(),
+        };
+        Ok(Self {
+            registers,
+            capabilities,
+            tables: None,
+        })
     }
 
     /// The build options.
@@ -133,126 +119,43 @@ impl Raymarcher {
         self.capabilities
     }
 
-    /// Checks that this build of the raymarcher can draw the frame with the constants `setup`.
-    ///
-    /// # Errors
-    /// The missing feature.
-    pub fn check(&self, setup: &FieldSetup) -> Result<(), Missing> {
-        let Capabilities {
-            levels,
-            flat,
-            stereo,
-            round,
-            blend,
-            prepass,
-            ..
-        } = self.capabilities;
-        if let Solid::Flat(solid) = &setup.solid {
-            let constants = solid.constants();
-            if u32::from(constants.levels) >> levels != 0 {
-                return Err(Missing::Levels(levels));
-            }
-            let kind = kind(&constants);
-            // Kind 0, the sponge, is covered by the check of the levels above.
-            if constants.kind != 0 && flat >> constants.kind & 1 == 0 {
-                return Err(Missing::Flat(kind));
-            }
-        }
-        if setup.is_round() && !round {
-            return Err(Missing::Round);
-        }
-        if setup.blend().width != 0 && !blend {
-            return Err(Missing::Blend);
-        }
-        if setup.stereo.is_some() && !stereo {
-            return Err(Missing::Stereo);
-        }
-        if setup.cones.is_some() && !prepass {
-            return Err(Missing::Prepass);
-        }
-        Ok(())
-    }
-
-    /// Enables the field in every following raster pass, in which it is drawn after the triangles. The picture size of
-    /// these passes must equal the size in `setup`.
-    ///
-    /// # Errors
-    /// The missing feature; all registers are then unchanged.
-    pub fn set_field(&mut self, setup: &FieldSetup, palette: &Palette) -> Result<(), Missing> {
-        self.check(setup)?;
-        if !self.has_tables(palette) {
-            self.set_tables(palette);
-        }
-        self.set_field_with_tables_held(setup, palette)
-    }
-
-    /// Does the same as [`set_field`](Self::set_field), for a palette whose tables the raymarcher already
-    /// [holds](Self::has_tables). The palette's tables are not read.
-    ///
-    /// # Errors
-    /// As [`set_field`](Self::set_field).
-    pub fn set_field_with_tables_held(
-        &mut self,
-        setup: &FieldSetup,
-        palette: &Palette,
-    ) -> Result<(), Missing> {
-        self.check(setup)?;
+    /// Enables the field in every following raster pass, in which it is drawn after the triangles. The picture size of these passes
+    /// must be that of the constants, and the tables and the spheres those of the field.
+    pub fn set_field(&mut self, field: &Field) {
         let registers = &self.registers;
-        let solid = match &setup.solid {
-            Solid::Flat(flat) => self.set_flat(&flat.constants()),
-            Solid::Spheres(_) => SolidRegister::default(),
-        };
-        let solid = solid.with_flat_too(setup.beside.is_some());
-        registers.solid().write(match setup.spheres() {
-            Some(spheres) => {
-                self.set_spheres(spheres, &setup.blend(), &palette.lights);
-                solid
-                    .with_is_round(true)
-                    .with_spheres_repeated(spheres.repeated)
-                    .with_last_sphere((spheres.count - 1) as u8)
-                    .with_last_light((palette.lights.count - 1) as u8)
-            }
-            None => solid,
-        });
-        registers.tuning().write(
-            Tuning::default()
-                .with_threshold(setup.tuning.threshold as u16)
-                .with_footprint(setup.tuning.footprint as u8)
-                .with_cap(setup.tuning.cap as u8),
-        );
-        let [left, right] = setup.eyes;
-        let [across, down] = setup.steps;
-        let origins =
-            [left.origin, right.origin].map(|origin| origin.map(|x| x as u32 & 0x1FF_FFFF));
-        let first = [left.first, right.first].map(|first| first.map(|x| x as u32));
-        let (offset, spread) = setup
-            .cones
-            .map(|cones| (cones.offset, cones.spread))
-            .unwrap_or_default();
+        registers.solid().write(field.solid);
+        registers.cube_half().write(field.cube_half);
+        registers.half_x().write(field.half[0]);
+        registers.half_y().write(field.half[1]);
+        registers.half_z().write(field.half[2]);
+        registers.tuning().write(field.tuning);
+        let [left, right] = field.eyes;
+        let [across, down, offset] = field.steps;
         // The registers are written one by one, because a loop would need a table of their addresses.
-        registers.far().write(setup.tuning.far);
-        registers.near().write(setup.near);
-        registers.origin_left_x().write(origins[0][0]);
-        registers.origin_left_y().write(origins[0][1]);
-        registers.origin_left_z().write(origins[0][2]);
-        registers.origin_right_x().write(origins[1][0]);
-        registers.origin_right_y().write(origins[1][1]);
-        registers.origin_right_z().write(origins[1][2]);
+        let [far, near] = field.limits;
+        registers.far().write(far);
+        registers.near().write(near);
+        registers.origin_left_x().write(place(left.origin[0]));
+        registers.origin_left_y().write(place(left.origin[1]));
+        registers.origin_left_z().write(place(left.origin[2]));
+        registers.origin_right_x().write(place(right.origin[0]));
+        registers.origin_right_y().write(place(right.origin[1]));
+        registers.origin_right_z().write(place(right.origin[2]));
         registers.outside_left_x().write(left.outside[0]);
         registers.outside_left_y().write(left.outside[1]);
         registers.outside_left_z().write(left.outside[2]);
         registers.outside_right_x().write(right.outside[0]);
         registers.outside_right_y().write(right.outside[1]);
         registers.outside_right_z().write(right.outside[2]);
-        registers.first_left_x().write(first[0][0]);
-        registers.first_left_y().write(first[0][1]);
-        registers.first_left_z().write(first[0][2]);
-        registers.first_right_x().write(first[1][0]);
-        registers.first_right_y().write(first[1][1]);
-        registers.first_right_z().write(first[1][2]);
-        registers.bounds_x().write(setup.bounds[0]);
-        registers.bounds_y().write(setup.bounds[1]);
-        registers.bounds_z().write(setup.bounds[2]);
+        registers.first_left_x().write(left.first[0] as u32);
+        registers.first_left_y().write(left.first[1] as u32);
+        registers.first_left_z().write(left.first[2] as u32);
+        registers.first_right_x().write(right.first[0] as u32);
+        registers.first_right_y().write(right.first[1] as u32);
+        registers.first_right_z().write(right.first[2] as u32);
+        registers.bounds_x().write(field.bounds[0]);
+        registers.bounds_y().write(field.bounds[1]);
+        registers.bounds_z().write(field.bounds[2]);
         registers.across_x().write(across[0] as u32);
         registers.across_y().write(across[1] as u32);
         registers.across_z().write(across[2] as u32);
@@ -262,100 +165,44 @@ impl Raymarcher {
         registers.cone_offset_x().write(offset[0] as u32);
         registers.cone_offset_y().write(offset[1] as u32);
         registers.cone_offset_z().write(offset[2] as u32);
-        registers.colour_0().write(colour(palette.faces[0]));
-        registers.colour_1().write(colour(palette.faces[1]));
-        registers.colour_2().write(colour(palette.faces[2]));
-        registers.colour_3().write(colour(palette.faces[3]));
-        registers.colour_4().write(colour(palette.faces[4]));
-        registers.colour_5().write(colour(palette.faces[5]));
-        registers.colour_6().write(colour(palette.undecided));
-        registers.colour_7().write(colour(palette.zenith));
-        registers.horizon().write(colour(palette.horizon));
+        let [undecided, zenith, horizon] = field.sky;
+        registers.colour_0().write(colour(field.faces[0]));
+        registers.colour_1().write(colour(field.faces[1]));
+        registers.colour_2().write(colour(field.faces[2]));
+        registers.colour_3().write(colour(field.faces[3]));
+        registers.colour_4().write(colour(field.faces[4]));
+        registers.colour_5().write(colour(field.faces[5]));
+        registers.colour_6().write(colour(undecided));
+        registers.colour_7().write(colour(zenith));
+        registers.horizon().write(colour(horizon));
         // The colours of faces 6 and 7 are entries of the register `sphere`.
-        for (entry, &face) in (32..).zip(&palette.faces[6..]) {
-            self.set_constant(entry, colour(face));
-        }
-        registers.cone_spread().write(spread as u16);
-        registers.fog_shift().write(palette.fog_shift as u8);
-        registers.depth_scale().write(
-            DepthScale::default()
-                .with_mantissa(setup.depth.mantissa)
-                .with_exponent(setup.depth.exponent as u8 & 0x3F),
-        );
-        let stereo = match setup.stereo {
-            None => Stereo::Mono,
-            Some(Tint::RedBlue) => Stereo::RedBlue,
-            Some(Tint::RedCyan) => Stereo::RedCyan,
-        };
-        self.registers.control().write(
-            Control::default()
-                .with_enable(true)
-                .with_stereo(stereo)
-                .with_prepass(setup.cones.is_some()),
-        );
-        Ok(())
+        self.set_constant(32, colour(field.faces[6]));
+        self.set_constant(33, colour(field.faces[7]));
+        registers.cone_spread().write(field.cone_spread);
+        registers.fog_shift().write(field.fog_shift);
+        registers.depth_scale().write(field.depth_scale);
+        registers.control().write(field.control.with_enable(true));
     }
 
-    /// Writes the lengths of a flat solid. Returns the fields of the register `solid` for the solid.
-    fn set_flat(&self, constants: &FlatConstants) -> SolidRegister {
-        let registers = &self.registers;
-        registers.cube_half().write(constants.cube_half);
-        let sides = [registers.half_x(), registers.half_y(), registers.half_z()];
-        for (register, half) in sides.iter().zip(constants.half) {
-            register.write(half);
-        }
-        SolidRegister::default()
-            .with_kind(kind(constants))
-            .with_levels(constants.levels)
-            .with_has(constants.has)
-            .with_room(constants.room)
-            .with_repeated(constants.repeated)
-    }
-
-    fn set_constant(&self, entry: u8, value: u32) {
+    /// Writes an entry of the constants of spheres and of the light on them (docs/registers.md, `sphere`).
+    pub fn set_constant(&self, entry: u8, value: u32) {
         let constant = Sphere::default().with_entry(entry).with_value(value);
         self.registers.sphere().write(constant);
     }
 
-    /// Writes the constants of the spheres, of their fillet with the flat solid, and of the light on them.
-    fn set_spheres(&self, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
-        let write = |entry, value| self.set_constant(entry, value);
-        let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
-        for (number, (sphere, material)) in (0..).zip(
-            spheres
-                .list
-                .iter()
-                .zip(lights.materials)
-                .take(spheres.count),
-        ) {
-            for (axis, place) in (0..).zip(numbers(sphere.centre)) {
-                write(axis, place);
-            }
-            write(3, sphere.radius as u32);
-            write(4, sphere.inverse | sphere.shift << 17);
-            write(8 + number, colour(material));
-        }
-        write(5, colour(lights.ambient));
-        write(6, blend.width);
-        write(7, blend.inverse);
-        for (number, light) in (0..).zip(&lights.list) {
-            for (axis, part) in (0..).zip(numbers(light.direction)) {
-                write(16 + 4 * number + axis, part);
-            }
-            write(19 + 4 * number, colour(light.colour));
-        }
-    }
-
-    /// Whether the raymarcher's tables of fog and occlusion equal the tables of `palette`. This comparison takes longer than
-    /// writing the registers of a frame.
+    /// Whether the raymarcher's tables are equal to these. This comparison takes longer than writing the registers of a frame.
     #[must_use]
-    pub fn has_tables(&self, palette: &Palette) -> bool {
+    pub fn has_tables(&self, tables: Tables) -> bool {
         let held = self.tables.as_ref();
-        held.is_some_and(|[fog, occlusion]| *fog == palette.fog && *occlusion == palette.occlusion)
+        held.is_some_and(|held| held.each_ref() == tables)
     }
 
-    fn set_tables(&mut self, palette: &Palette) {
-        let tables = [palette.fog, palette.occlusion];
+    /// Writes the tables, unless the raymarcher [has](Self::has_tables) them.
+    pub fn set_tables(&mut self, tables: Tables) {
+        if self.has_tables(tables) {
+            return;
+        }
+        let tables = tables.map(|table| *table);
         for (entry, &part) in (0..).zip(tables.as_flattened()) {
             self.registers
                 .table()
@@ -376,15 +223,14 @@ impl Raymarcher {
     }
 }
 
-/// The kind of a flat field as a register value. `Kind::ALL` has every kind of the model, so the default `Menger` is
-/// never used.
-fn kind(constants: &FlatConstants) -> Kind {
-    let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
-    kind.unwrap_or(Kind::Menger)
+/// A coordinate of an eye, which has 25 bits.
+const fn place(coordinate: i32) -> u32 {
+    coordinate as u32 & 0x1FF_FFFF
 }
 
 /// A colour in the register format: red in bits 0 to 7, then green, then blue.
-const fn colour([r, g, b]: [u8; 3]) -> u32 {
+#[must_use]
+pub const fn colour([r, g, b]: Rgb) -> u32 {
     u32::from_le_bytes([r, g, b, 0])
 }
 

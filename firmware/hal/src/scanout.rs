@@ -12,7 +12,6 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use glint_core::picture::Size;
 pub use litex_pac::scanout::Counters;
 use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
@@ -31,11 +30,11 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// The scale at which a frame of this size fills a screen of `width` pixels a line; `None` if there is none.
-    fn new(size: Size, width: u32) -> Option<Self> {
+    /// The scale at which a frame with this number of pixels a line fills the lines of a screen; `None` if there is none.
+    fn new(frame: u32, screen: u32) -> Option<Self> {
         [Self::One, Self::Two, Self::Four]
             .into_iter()
-            .find(|&scale| scale as u32 * size.width() == width)
+            .find(|&scale| scale as u32 * frame == screen)
     }
 }
 
@@ -162,24 +161,24 @@ impl Display {
         self.front
     }
 
-    /// Whether frames of this size fit the memory and the screen.
+    /// Whether frames of this width and height fit the memory and the screen.
     #[must_use]
-    pub fn has_size(&self, size: Size) -> bool {
+    pub fn has_size(&self, [width, height]: [u32; 2]) -> bool {
         let fits_screen = match &self.scanout {
-            Some(scanout) => Scale::new(size, scanout.width).is_some(),
+            Some(scanout) => Scale::new(width, scanout.width).is_some(),
             None => true,
         };
-        fits_screen && size.pixel_count() <= self.front.len().min(self.back.len())
+        fits_screen && (width * height) as usize <= self.front.len().min(self.back.len())
     }
 
-    /// Shows the frame that [`back`](Self::back) lent, of one of the [available sizes](Self::has_size), from the next vertical
-    /// blanking on.
-    pub fn show(&mut self, size: Size) {
+    /// Shows the frame that [`back`](Self::back) lent, with the width of one of the [available sizes](Self::has_size), from the next
+    /// vertical blanking on.
+    pub fn show(&mut self, width: u32) {
         core::mem::swap(&mut self.front, &mut self.back);
         // The writes of the frame's pixels must precede the write of its address to scan-out.
         compiler_fence(Ordering::SeqCst);
         if let Some(scanout) = &self.scanout
-            && let Some(scale) = Scale::new(size, scanout.width)
+            && let Some(scale) = Scale::new(width, scanout.width)
         {
             scanout.show(address(self.front), scale);
         }
@@ -302,11 +301,11 @@ mod tests {
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
         display.back().unwrap()[0] = 1;
-        display.show(Size::W320);
+        display.show(320);
         display.back().unwrap()[0] = 2;
         video.borrow_mut().blank();
         assert_eq!(display.front()[0], 1);
-        display.show(Size::W320);
+        display.show(320);
         // The second frame waits for the vertical blanking, and the first frame is still on the screen.
         assert!(display.back().is_none());
         video.borrow_mut().blank();
@@ -322,7 +321,7 @@ mod tests {
             let mut display = Display::new(Some(scanout.unwrap()), frames());
             for mark in [1, 2] {
                 display.back().unwrap()[0] = mark;
-                display.show(Size::W320);
+                display.show(320);
                 if mark == 1 {
                     video.borrow_mut().blank();
                 }
@@ -342,9 +341,9 @@ mod tests {
         // A waiting frame with another scale than the shown one is not withdrawn.
         let (scanout, video) = probe(IDENT);
         let mut display = Display::new(Some(scanout.unwrap()), frames());
-        display.show(Size::W320);
+        display.show(320);
         video.borrow_mut().blank();
-        display.show(Size::W640);
+        display.show(640);
         display.withdraw();
         assert!(display.back().is_none());
     }
@@ -354,12 +353,12 @@ mod tests {
         for moment in 0..6 {
             let (scanout, video) = probe(IDENT);
             let mut display = Display::new(Some(scanout.unwrap()), frames());
-            display.show(Size::W320);
+            display.show(320);
             let small = [1, video.borrow().next, 4];
             video.borrow_mut().blank();
             assert_eq!(video.borrow().current, small);
             video.borrow_mut().blank_before = Some(moment);
-            display.show(Size::W640);
+            display.show(640);
             let large = [1, video.borrow().next, 2];
             let seen = video.borrow().current;
             assert!(seen[0] == 0 || seen == small || seen == large, "{seen:?}");
@@ -374,19 +373,20 @@ mod tests {
         assert_eq!(scanout.map(|_| ()).map_err(|absent| absent.found), Err(0));
         let mut display = Display::new(None, frames());
         display.back().unwrap()[0] = 1;
-        display.show(Size::W1280);
+        display.show(1280);
         assert!(display.back().is_some() && !display.is_visible());
         assert_eq!(display.front()[0], 1);
     }
 
     #[test]
     fn a_size_must_fit_screen_and_memory() {
-        let scales = |width| Size::ALL.map(|size| Scale::new(size, width));
+        const SIZES: [[u32; 2]; 3] = [[320, 180], [640, 360], [1280, 720]];
+        let scales = |screen| SIZES.map(|[width, _]| Scale::new(width, screen));
         let [one, two, four] = [Scale::One, Scale::Two, Scale::Four].map(Some);
         assert_eq!(scales(1280), [four, two, one]);
         assert_eq!(scales(640), [two, one, None]);
 
-        let all = Size::W1280.pixel_count();
+        let all = 1280 * 720;
         for (width, pixels, expected) in [
             (None, all, [true; 3]),
             (None, all - 1, [true, true, false]),
@@ -400,7 +400,7 @@ mod tests {
             });
             let frames = [(); 2].map(|()| vec![0; pixels].leak());
             let display = Display::new(scanout, frames);
-            let sizes = Size::ALL.map(|size| display.has_size(size));
+            let sizes = SIZES.map(|size| display.has_size(size));
             assert_eq!(sizes, expected, "width {width:?}, {pixels} pixels");
         }
     }

@@ -125,7 +125,7 @@ impl embedded_hal_async::delay::DelayNs for Waiting {
 }
 
 /// Polls a future until it is ready; the CPU does nothing else meanwhile.
-pub(crate) fn block_on<T>(future: impl Future<Output = T>) -> T {
+pub fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
     loop {

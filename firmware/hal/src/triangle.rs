@@ -13,16 +13,8 @@ use core::fmt;
 use core::sync::atomic::{Ordering, compiler_fence};
 use core::time::Duration;
 
-use glint_core::camera::Projection;
-use glint_core::mesh::{Mesh, Rgb565};
-use glint_core::picture::Size;
-use glint_model::line::Segment;
-use glint_model::{MeshLight, MeshSetup, Shading};
-use litex_pac::triangle::{
-    self, Control, DepthScale, EvEnable, EvPending, Geometry as GeometryStart,
-    Raster as RasterStart,
-};
-pub use litex_pac::triangle::{Counters, Error};
+use litex_pac::triangle::{self, Control, EvEnable, EvPending, Raster as RasterStart};
+pub use litex_pac::triangle::{Counters, DepthScale, Error, Geometry as GeometryStart, Size};
 
 use crate::Absent;
 use crate::timer::whole_millis;
@@ -36,12 +28,6 @@ pub enum EngineError {
     Unknown,
     /// No progress for longer than [`TIMEOUT`].
     Timeout,
-    /// This gateware is built without smooth shading.
-    Shading,
-    /// This gateware is built without the memory of depths.
-    Depths,
-    /// The eye is farther from the origin than the number formats of the triangle engine allow.
-    Eye,
 }
 
 /// Longest time that a pass may run without progress.
@@ -70,9 +56,6 @@ impl fmt::Display for EngineError {
             Self::Status(code) => f.write_str(code.text()),
             Self::Unknown => f.write_str("unknown error code"),
             Self::Timeout => write!(f, "timed out: no progress for {} ms", whole_millis(TIMEOUT)),
-            Self::Shading => f.write_str("this gateware has no smooth shading"),
-            Self::Depths => f.write_str("this gateware has no depths"),
-            Self::Eye => f.write_str("the eye is too far from the origin"),
         }
     }
 }
@@ -82,7 +65,7 @@ impl core::error::Error for EngineError {}
 /// Output of the geometry passes of a frame in memory; every address is a multiple of 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lists {
-    /// Address of the descriptors; the [`shading`](TriangleEngine::shading) of the engine determines the length of each.
+    /// Address of the descriptors, which are longer if the engine [shades smoothly](TriangleEngine::shades_smoothly).
     pub descriptors: u32,
     /// Largest number of descriptors that fit the memory at `descriptors`.
     pub descriptor_limit: u32,
@@ -96,24 +79,31 @@ pub struct Lists {
     pub exception_limit: u32,
 }
 
-/// A geometry pass.
-#[derive(Clone, Copy, Debug)]
+/// A segment of a line, or the header of a list of segments: 8 words.
+pub type Segment = [u32; 8];
+
+/// A geometry pass. The numbers are those of docs/formats.md, "Frame constants".
+#[derive(Clone, Copy)]
 pub struct Geometry<'a> {
-    /// The mesh.
-    pub mesh: &'a Mesh<'a>,
-    /// Size of the picture.
-    pub size: Size,
-    /// The frame constants of the mesh, for a picture of this size.
-    pub frame: &'a MeshSetup,
-    /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. Its direction is in `frame`.
-    /// There must be no ambient light with smooth shading and without `cull`.
-    pub light: Option<&'a MeshLight>,
-    /// Whether back faces are left out.
-    pub cull: bool,
-    /// Source of the colours; `Flat` if the engine has no smooth shading.
-    pub shading: Shading,
-    /// Colour in place of those of the mesh.
-    pub colour: Option<Rgb565>,
+    /// The records of the mesh.
+    pub mesh: &'a [u8],
+    /// Size of the picture, and options of the mesh. The driver sets `start`, `append` and `recolour`.
+    pub options: GeometryStart,
+    /// The register `scale_shift`.
+    pub scale_shift: u8,
+    /// The rows u, v and n of the camera, and that of the light.
+    pub rows: [&'a [i32; 3]; 4],
+    /// The translation, s44.
+    pub translation: &'a [i64; 3],
+    /// The near plane, 37 fraction bits.
+    pub near: i64,
+    /// The scale of depth codes.
+    pub depth_scale: DepthScale,
+    /// Light and ambient light, u1.8 for each channel, at most 1; a pass without `lists` leaves them as they are. There must be no
+    /// ambient light with smooth shading and without `cull`.
+    pub lights: [[u16; 3]; 2],
+    /// Colour in place of those of the mesh, RGB565.
+    pub colour: Option<u16>,
     /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size with the
     /// same colours of the light.
     pub lists: Option<Lists>,
@@ -213,42 +203,32 @@ impl TriangleEngine {
         self.registers.caps().read().depths()
     }
 
-    /// Best shading that this gateware can draw: `Smooth` if it was built with smooth shading, otherwise `Flat`. It
-    /// determines the length of a descriptor (`glint_model::triangle::descriptor::words`).
+    /// Whether this gateware shades smoothly. It then has descriptors of twice the length.
     #[must_use]
-    pub fn shading(&self) -> Shading {
-        if self.registers.caps().read().gouraud() {
-            Shading::Smooth
-        } else {
-            Shading::Flat
-        }
+    pub fn shades_smoothly(&self) -> bool {
+        self.registers.caps().read().gouraud()
     }
 
     /// Writes the registers of a geometry pass, so that the start itself is short. The pass before may still run, if it was started
     /// at least 128 clock cycles ago; the engine has copied its registers.
     pub fn prepare_geometry(&mut self, pass: &Geometry) -> Prepared {
         let registers = &self.registers;
-        let frame = pass.frame;
-        let records = pass.mesh.records();
-        registers.mesh().write(records.as_ptr().addr() as u32);
-        registers.mesh_bytes().write(size_of_val(records) as u32);
+        registers.mesh().write(pass.mesh.as_ptr().addr() as u32);
+        registers.mesh_bytes().write(pass.mesh.len() as u32);
         if let Some(lists) = &pass.lists {
             self.write_output(lists);
             registers.exceptions().write(lists.exceptions);
             registers.exception_limit().write(lists.exception_limit);
-            let (colour, ambient) = pass
-                .light
-                .map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
-            registers.light_colour().write(packed(colour));
-            registers.ambient().write(packed(ambient));
+            let [light, ambient] = pass.lights.map(packed);
+            registers.light_colour().write(light);
+            registers.ambient().write(ambient);
         }
         if let Some(colour) = pass.colour {
-            registers.colour().write(colour.0);
+            registers.colour().write(colour);
         }
-        registers.scale_shift().write(frame.engine_shift() as u8);
+        registers.scale_shift().write(pass.scale_shift);
         // The registers are written one by one, because a loop would need a table of their addresses.
-        let [u, v, n, light] =
-            [frame.u, frame.v, frame.n, frame.light].map(|row| row.map(|value| value as u32));
+        let [u, v, n, light] = pass.rows.map(|row| row.map(|value| value as u32));
         registers.row_u0().write(u[0]);
         registers.row_u1().write(u[1]);
         registers.row_u2().write(u[2]);
@@ -261,41 +241,28 @@ impl TriangleEngine {
         registers.light_0().write(light[0]);
         registers.light_1().write(light[1]);
         registers.light_2().write(light[2]);
-        let [x, y, z] = frame.translation;
+        let [x, y, z] = *pass.translation;
         registers.tx_low().write(x as u32);
         registers.tx_high().write((x >> 32) as u16);
         registers.ty_low().write(y as u32);
         registers.ty_high().write((y >> 32) as u16);
         registers.tz_low().write(z as u32);
         registers.tz_high().write((z >> 32) as u16);
-        registers.near_low().write(frame.near as u32);
-        registers.near_high().write((frame.near >> 32) as u8);
-        registers.depth_scale().write(
-            DepthScale::default()
-                .with_mantissa(frame.depth.mantissa)
-                .with_exponent(frame.depth.exponent as u8),
-        );
+        registers.near_low().write(pass.near as u32);
+        registers.near_high().write((pass.near >> 32) as u8);
+        registers.depth_scale().write(pass.depth_scale);
         Prepared {
-            start: GeometryStart::default()
+            start: pass
+                .options
                 .with_start(true)
-                .with_cull(pass.cull)
-                .with_smooth(pass.shading == Shading::Smooth)
-                .with_orthographic(frame.projection == Projection::Orthographic)
-                .with_size(code(pass.size))
                 .with_append(pass.lists.is_none())
-                .with_mirror(frame.mirrors)
                 .with_recolour(pass.colour.is_some()),
         }
     }
 
     /// Writes the registers of a geometry pass of lines, as [`prepare_geometry`](Self::prepare_geometry) does of a mesh. `segments`
     /// begins with their [`header`](Segment::header).
-    pub fn prepare_lines(
-        &mut self,
-        segments: &[[u32; Segment::WORDS]],
-        size: Size,
-        lists: &Lists,
-    ) -> Prepared {
+    pub fn prepare_lines(&mut self, segments: &[Segment], size: Size, lists: &Lists) -> Prepared {
         let registers = &self.registers;
         registers.mesh().write(segments.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(segments) as u32);
@@ -307,7 +274,7 @@ impl TriangleEngine {
             start: GeometryStart::default()
                 .with_start(true)
                 .with_lines(true)
-                .with_size(code(size)),
+                .with_size(size),
         }
     }
 
@@ -356,7 +323,7 @@ impl TriangleEngine {
         registers.raster().write(
             RasterStart::default()
                 .with_start(true)
-                .with_size(code(pass.size))
+                .with_size(pass.size)
                 .with_first(first.is_some())
                 .with_second(second.is_some())
                 .with_depth(pass.depth.is_some())
@@ -418,15 +385,6 @@ pub fn acknowledge() {
 /// Register value of three channels, u1.8 each.
 fn packed([red, green, blue]: [u16; 3]) -> u32 {
     u32::from(red) | u32::from(green) << 9 | u32::from(blue) << 18
-}
-
-/// Register value of a picture size.
-const fn code(size: Size) -> triangle::Size {
-    match size {
-        Size::W320 => triangle::Size::W320,
-        Size::W640 => triangle::Size::W640,
-        Size::W1280 => triangle::Size::W1280,
-    }
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@
 //! ```
 //!
 //! On a host the registers do not exist: [`bus::connect`] connects a model at the same addresses, so that tests
-//! run the same drivers.
+//! run the same drivers. `recording` has a simple one.
 //!
 //! # Limits
 //! A register of two words is read word by word. The result is consistent for counters only ([`register::WideRegister::read`]).
@@ -41,6 +41,8 @@ pub mod cpu;
 mod generated;
 mod interrupt;
 mod memory;
+#[cfg(not(target_os = "none"))]
+pub mod recording;
 pub mod register;
 
 use core::cell::Cell;

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use glint_hal::raymarch::Missing;
+use glint_engines::raymarch::Missing;
 use glint_hal::triangle::{EngineError, Error};
 use glint_model::RenderError;
 
@@ -13,6 +13,12 @@ pub enum Fallback {
     Triangle(EngineError),
     /// The raymarcher of this gateware lacks a feature.
     Field(Missing),
+    /// This gateware is built without smooth shading.
+    NoSmoothShading,
+    /// This gateware is built without the memory of depths.
+    NoDepths,
+    /// The eye is farther from the origin than the number formats of the triangle engine allow.
+    Eye,
     /// The triangle engine shades smoothly in perspective only.
     Orthographic,
     /// This build of the gateware has no raymarcher.
@@ -31,11 +37,9 @@ impl Fallback {
             Self::Field(_)
                 | Self::NoRaymarcher
                 | Self::NoLineEngine
-                | Self::Triangle(
-                    EngineError::Shading
-                        | EngineError::Depths
-                        | EngineError::Status(Error::Triangles)
-                )
+                | Self::NoSmoothShading
+                | Self::NoDepths
+                | Self::Triangle(EngineError::Status(Error::Triangles))
         )
     }
 }
@@ -54,10 +58,10 @@ impl From<Missing> for Fallback {
 
 impl From<RenderError> for Fallback {
     fn from(error: RenderError) -> Self {
-        Self::Triangle(match error {
-            RenderError::Eye(_) => EngineError::Eye,
-            _ => Error::Size.into(),
-        })
+        match error {
+            RenderError::Eye(_) => Self::Eye,
+            _ => EngineError::from(Error::Size).into(),
+        }
     }
 }
 
@@ -66,6 +70,11 @@ impl fmt::Display for Fallback {
         match self {
             Self::Triangle(error) => error.fmt(f),
             Self::Field(missing) => missing.fmt(f),
+            Self::NoSmoothShading => {
+                f.write_str("triangle engine: this gateware has no smooth shading")
+            }
+            Self::NoDepths => f.write_str("triangle engine: this gateware has no depths"),
+            Self::Eye => f.write_str("triangle engine: the eye is too far from the origin"),
             Self::Orthographic => {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")
             }

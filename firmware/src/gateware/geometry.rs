@@ -9,7 +9,8 @@ use core::mem;
 
 use glint_core::colour::{Shading, Winding};
 use glint_core::feature::{CPU, MESH};
-use glint_hal::triangle::{Counts, EngineError, Error, Geometry, Prepared, TriangleEngine};
+use glint_engines::triangle::MeshPass;
+use glint_hal::triangle::{Counts, EngineError, Error, Prepared, TriangleEngine};
 use glint_model::edges::EdgeList;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter};
 use glint_model::triangle::setup::Setup;
@@ -109,7 +110,7 @@ impl GeometryPasses {
             return Ok(());
         };
         let setup = job.constants.mesh_setup(job.frame, number, &mut self.own)?;
-        let pass = Geometry {
+        let pass = MeshPass {
             mesh: &subject.mesh,
             size: job.frame.size,
             frame: setup.ok_or(EngineError::from(Error::Size))?,
@@ -119,7 +120,7 @@ impl GeometryPasses {
             colour,
             lists: (number == 0).then(|| job.buffers.lists(self.shading, job.frame.size)),
         };
-        self.prepared = Some(job.engine.prepare_geometry(&pass));
+        self.prepared = Some(pass.prepare(job.engine));
         Ok(())
     }
 

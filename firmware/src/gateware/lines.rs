@@ -2,6 +2,7 @@
 
 use glint_core::picture::Size;
 use glint_core::wireframe::Projection;
+use glint_engines::triangle::size_code;
 use glint_hal::triangle::{EngineError, Error, Prepared, TriangleEngine};
 use glint_model::line::Segment;
 use glint_model::{Frame, Stats, Subject, WireframeSubject};
@@ -57,7 +58,7 @@ impl GatewareRenderer {
         let count = 1 + self.projected.stats.lines as usize;
         let segments = segments.get(..count).unwrap_or(segments);
         let lists = buffers.lists(self.shading, size);
-        self.engine.prepare_lines(segments, size, &lists)
+        self.engine.prepare_lines(segments, size_code(size), &lists)
     }
 
     /// Takes the descriptors of a geometry pass of lines, which wrote to `self.buffers[place]`.
@@ -107,7 +108,7 @@ impl GatewareRenderer {
         let count = 1 + self.edges.drawn as usize;
         let segments = segments.get(..count).unwrap_or(segments);
         let lists = drawn.edge_lists(self.shading, size);
-        let prepared = self.engine.prepare_lines(segments, size, &lists);
+        let prepared = self.engine.prepare_lines(segments, size_code(size), &lists);
         self.start_pass(prepared);
     }
 

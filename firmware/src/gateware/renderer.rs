@@ -4,6 +4,8 @@ use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
 use glint_core::picture::Size;
+use glint_engines::raymarch::{ray_counts, set_field, tables};
+use glint_engines::triangle::{shading, size_code};
 use glint_hal::frequency::Frequency;
 use glint_hal::raymarch::{self, Raymarcher};
 use glint_hal::triangle::{Counters, EngineError, Error, Prepared, Raster, Set, TriangleEngine};
@@ -93,7 +95,7 @@ impl GatewareRenderer {
         frequency: Frequency,
     ) -> Option<Self> {
         let room = Room::of(memory.len())?;
-        let shading = engine.shading();
+        let shading = shading(&engine);
         Some(Self {
             draws_triangles: engine.draws_triangles(),
             draws_lines: engine.draws_lines(),
@@ -273,7 +275,7 @@ impl GatewareRenderer {
     fn begin(&mut self, frame: &Frame, output: &mut Output, cpu: &mut Cpu) -> Result<(), Fallback> {
         self.start_measurement(frame);
         if output.depth.is_some() && !self.engine.has_depths() {
-            return Err(EngineError::Depths.into());
+            return Err(Fallback::NoDepths);
         }
         self.update_constants(frame, 0)?;
         self.set_field(0, false)?;
@@ -335,7 +337,7 @@ impl GatewareRenderer {
             waited: self.waited - self.start.waited,
             stats: FrameStats {
                 mesh,
-                field: field.as_ref().map(raymarch::ray_counts),
+                field: field.as_ref().map(ray_counts),
                 wireframe,
                 edges: matches!(frame.subject, Subject::Edges(..)).then_some(self.edges),
             },
@@ -403,7 +405,7 @@ impl GatewareRenderer {
                 return Err(EngineError::from(Error::Triangles).into());
             }
             if mesh.shading == Shading::Smooth && self.shading == Shading::Flat {
-                return Err(EngineError::Shading.into());
+                return Err(Fallback::NoSmoothShading);
             }
             if mesh.shading == Shading::Smooth
                 && frame.view.projection() == Projection::Orthographic
@@ -418,11 +420,8 @@ impl GatewareRenderer {
     /// there is no field. With `has_tables`, the raymarcher is known to hold the right tables, so they are not compared.
     pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
-            (Some(raymarcher), Some(field)) if has_tables => {
-                raymarcher.set_field_with_tables_held(&field.setup, &field.palette)?;
-            }
             (Some(raymarcher), Some(field)) => {
-                raymarcher.set_field(&field.setup, &field.palette)?;
+                set_field(raymarcher, &field.setup, &field.palette, has_tables)?;
             }
             (Some(raymarcher), None) => raymarcher.clear_field(),
             (None, Some(_)) => return Err(Fallback::NoRaymarcher),
@@ -434,7 +433,7 @@ impl GatewareRenderer {
     /// Whether the raymarcher holds the tables of the field of `self.constants[place]`.
     pub(super) fn has_tables(&self, place: usize) -> bool {
         let both = self.raymarcher.as_ref().zip(self.constants[place].field());
-        both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(&field.palette))
+        both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(tables(&field.palette)))
     }
 
     pub(super) fn start_raster(
@@ -447,7 +446,7 @@ impl GatewareRenderer {
         let drawn = &mut self.drawn[usize::from(slot)];
         let this = Some((frame.size, frame.clear));
         let pass = Raster {
-            size: frame.size,
+            size: size_code(frame.size),
             frame: address(output.colour),
             slot,
             whole: *drawn != this,

@@ -13,10 +13,10 @@ use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_hal::raymarch::{Raymarcher, ray_counts};
-use glint_hal::triangle::{
-    EngineError, Geometry as Pass, Lists, Raster, Set, TriangleEngine as Driver,
-};
+use glint_engines::raymarch::{ray_counts, set_field};
+use glint_engines::triangle::{MeshPass, size_code};
+use glint_hal::raymarch::Raymarcher;
+use glint_hal::triangle::{EngineError, Lists, Raster, Set, TriangleEngine as Driver};
 use glint_model::raymarch::{Ray, RayResult, State, render_field};
 use glint_model::triangle::{Part, draw_parts};
 use glint_model::{
@@ -118,7 +118,7 @@ impl Bench {
             lists: LISTS,
         });
         let pass = Raster {
-            size,
+            size: size_code(size),
             frame: FRAME,
             slot: false,
             whole: true,
@@ -160,10 +160,7 @@ fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size:
         .draw(&constants, &mut expected.target(), &mut [], &mut || {})
         .unwrap();
     let field = constants.field().unwrap();
-    bench
-        .raymarcher
-        .set_field(&field.setup, &field.palette)
-        .unwrap();
+    set_field(&mut bench.raymarcher, &field.setup, &field.palette, false).unwrap();
     let before = bench.raymarcher.counters();
     let drawn = bench.engine.counters().pixels_drawn;
     let (colour, depth) = bench.raster(size, None);
@@ -276,7 +273,7 @@ fn a_mesh_in_a_field() {
         .bytes_mut(MESH, bytes.len())
         .unwrap()
         .copy_from_slice(&bytes);
-    let pass = Pass {
+    let pass = MeshPass {
         mesh: &mesh.mesh,
         size: Size::W320,
         frame: constants.mesh().unwrap(),
@@ -293,7 +290,7 @@ fn a_mesh_in_a_field() {
             exception_limit: 1000,
         }),
     };
-    let _ = bench.engine.prepare_geometry(&pass);
+    let _ = pass.prepare(&mut bench.engine);
     {
         // The mesh is at another place than that of the host.
         let Machine { engine, ram, now } = &mut *bench.machine.0.borrow_mut();
@@ -309,7 +306,7 @@ fn a_mesh_in_a_field() {
     assert_eq!(counts.exceptions, 0);
 
     let FieldConstants { setup, palette } = constants.field().unwrap();
-    bench.raymarcher.set_field(setup, palette).unwrap();
+    set_field(&mut bench.raymarcher, setup, palette, false).unwrap();
     let before = bench.engine.counters().pixels_drawn;
     let (colour, depth) = bench.raster(Size::W320, Some(counts.descriptors));
     assert!(colour == expected.colour && depth == expected.depth);

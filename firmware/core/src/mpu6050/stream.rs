@@ -4,10 +4,10 @@ use core::convert::Infallible;
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{Error as _, ErrorKind};
+use glint_i2c::PeriodicI2c;
 
 use super::pace::Pace;
 use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
-use crate::i2c::PeriodicI2c;
 
 /// Time between the starts of two reads in µs. It is slightly longer than one read takes, and slightly less than half a sample
 /// period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.

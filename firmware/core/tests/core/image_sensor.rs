@@ -8,9 +8,8 @@ use std::task::{Context, Poll, Waker};
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, NoAcknowledgeSource, Operation};
-use glint_core::image_sensor::{
-    Error, FrameSize, ImageSensor, Model, NoAcknowledge, TwoWires, Wires,
-};
+use glint_core::image_sensor::{Error, FrameSize, ImageSensor, Model};
+use glint_i2c::{NoAcknowledge, TwoWires, Wires};
 
 /// A chip with registers, as its SCCB bus sees it.
 struct Chip {

@@ -8,8 +8,8 @@ use std::task::{Context, Poll, Waker};
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{ErrorKind, ErrorType, I2c, Operation};
-use glint_core::i2c::{PeriodicI2c, PeriodicRead};
 use glint_core::mpu6050::{ADDRESSES, Error, Identity, Measurement, Sink, Stream};
+use glint_i2c::{PeriodicI2c, PeriodicRead};
 use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 
 const MILLISECOND: u64 = 1_000_000;

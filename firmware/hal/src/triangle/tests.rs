@@ -2,12 +2,10 @@ use std::cell::RefCell;
 use std::rc::Rc;
 use std::vec::Vec;
 
-use glint_core::camera::View;
-use glint_core::fixed::{Q32_32, Turns};
 use litex_pac::Peripherals;
+use litex_pac::recording::{self, Block};
 
 use super::*;
-use crate::recording::{self, Block};
 
 const IDENT: u32 = triangle::Triangle::IDENT;
 
@@ -21,18 +19,30 @@ fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
     (TriangleEngine::probe(registers()), block)
 }
 
-/// A mesh of one chunk with one triangle.
-fn mesh() -> Vec<u8> {
-    let mut bytes = b"GLM2".to_vec();
-    let mut put = |words: &[u32]| bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-    put(&[112, 1, 3, 1, 1 << 15, 0, 0]);
-    put(&[3, 1, 0, 0]);
-    for place in [0, 1, 1 << 16] {
-        put(&[place, 0, 0, 0]);
+/// A pass whose numbers are all different.
+fn pass(options: GeometryStart) -> Geometry<'static> {
+    Geometry {
+        mesh: &[0; 80],
+        options,
+        scale_shift: 13,
+        rows: [&[1, -2, 3], &[-4, 5, -6], &[7, -8, 9], &[-10, 11, -12]],
+        translation: &[-13 << 32, 14 << 33, -15],
+        near: 16 << 31,
+        depth_scale: DepthScale::default().with_mantissa(17).with_exponent(18),
+        lights: [[256, 7, 1], [0, 255, 256]],
+        colour: None,
+        lists: Some(LISTS),
     }
-    put(&[1 << 16, 2, 0, 0]);
-    bytes
 }
+
+const LISTS: Lists = Lists {
+    descriptors: 0x4600_0000,
+    descriptor_limit: 77,
+    lists: 0x4700_0000,
+    list_shift: 9,
+    exceptions: 0x4710_0000,
+    exception_limit: 5,
+};
 
 #[test]
 fn something_else_is_not_taken_for_the_engine() {
@@ -47,13 +57,13 @@ fn something_else_is_not_taken_for_the_engine() {
 }
 
 #[test]
-fn the_best_shading_is_that_of_the_build() {
+fn smooth_shading_is_that_of_the_build() {
     let (engine, block) = probe(IDENT);
     let engine = engine.unwrap();
-    assert_eq!(engine.shading(), Shading::Flat);
+    assert!(!engine.shades_smoothly());
     let address = registers().caps().address();
     block.borrow_mut().values.insert(address, 1 << 3);
-    assert_eq!(engine.shading(), Shading::Smooth);
+    assert!(engine.shades_smoothly());
 }
 
 #[test]
@@ -75,23 +85,15 @@ fn a_pass_of_lines_has_segments_and_no_exceptions() {
     block.borrow_mut().values.insert(address, 1 << 5);
     assert!(engine.draws_lines());
 
-    let segments = [Segment::header(2), [0; 8], [1; 8]];
-    let lists = Lists {
-        descriptors: 0x4600_0000,
-        descriptor_limit: 77,
-        lists: 0x4700_0000,
-        list_shift: 9,
-        exceptions: 0x4710_0000,
-        exception_limit: 5,
-    };
-    let prepared = engine.prepare_lines(&segments, Size::W640, &lists);
+    let segments: [Segment; 3] = [[2; 8], [0; 8], [1; 8]];
+    let prepared = engine.prepare_lines(&segments, Size::W640, &LISTS);
     let r = registers();
     assert!(!r.geometry().read().start(), "not yet");
     // SAFETY: the model has no engine that accesses memory.
     unsafe { engine.start_geometry(prepared) };
     let start = r.geometry().read();
     assert!(start.start() && start.lines());
-    assert_eq!(start.size(), Some(triangle::Size::W640));
+    assert_eq!(start.size(), Some(Size::W640));
     assert_eq!(r.mesh().read(), segments.as_ptr().addr() as u32);
     assert_eq!(r.mesh_bytes().read(), 96);
     assert_eq!(
@@ -107,34 +109,9 @@ fn a_pass_of_lines_has_segments_and_no_exceptions() {
 #[test]
 fn a_geometry_pass_is_described_before_it_is_started() {
     let (engine, block) = probe(IDENT);
-    let bytes = mesh();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
-    let frame = MeshSetup::new(&view, 640, 360, mesh.radius()).unwrap();
-    let light = MeshLight {
-        row: frame.light,
-        forward: frame.n,
-        colour: [256, 7, 1],
-        ambient: [0, 255, 256],
-    };
-    let pass = Geometry {
-        mesh: &mesh,
-        size: Size::W640,
-        frame: &frame,
-        light: Some(&light),
-        cull: true,
-        shading: Shading::Smooth,
-        colour: None,
-        lists: Some(Lists {
-            descriptors: 0x4600_0000,
-            descriptor_limit: 77,
-            lists: 0x4700_0000,
-            list_shift: 9,
-            exceptions: 0x4710_0000,
-            exception_limit: 5,
-        }),
-    };
     let mut engine = engine.unwrap();
+    let options = GeometryStart::default().with_cull(true).with_smooth(true);
+    let pass = pass(options.with_size(Size::W640));
     let prepared = engine.prepare_geometry(&pass);
 
     let r = registers();
@@ -151,27 +128,25 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         wide(r.ty_low().read(), r.ty_high().read()),
         wide(r.tz_low().read(), r.tz_high().read()),
     ];
-    assert_eq!(translation, frame.translation);
-    let row = [r.row_u0().read(), r.row_u1().read(), r.row_u2().read()];
+    assert_eq!(&translation, pass.translation);
+    let rows = [
+        [r.row_u0(), r.row_u1(), r.row_u2()],
+        [r.row_v0(), r.row_v1(), r.row_v2()],
+        [r.row_n0(), r.row_n1(), r.row_n2()],
+        [r.light_0(), r.light_1(), r.light_2()],
+    ];
+    // Rows have 25 bits.
+    let rows = rows.map(|row| row.map(|value| value.read().cast_signed() << 7 >> 7));
+    assert_eq!(rows.each_ref(), pass.rows);
+    assert_eq!([r.near_low().read(), r.near_high().read().into()], [0, 8]);
     assert_eq!(
-        row.map(|value| value.cast_signed() << 7 >> 7),
-        frame.u,
-        "of 25 bits"
-    );
-    let light = [r.light_0().read(), r.light_1().read(), r.light_2().read()];
-    assert_eq!(
-        light.map(|value| value.cast_signed() << 7 >> 7),
-        frame.light,
-        "the light at the camera"
+        (r.scale_shift().read(), r.depth_scale().read()),
+        (13, pass.depth_scale)
     );
     assert_eq!(r.light_colour().read(), 1 << 18 | 7 << 9 | 256);
     assert_eq!(r.ambient().read(), 256 << 18 | 255 << 9);
     assert_eq!(r.mesh_bytes().read(), 80, "chunks alone");
-    assert_eq!(
-        r.mesh().read(),
-        mesh.records().as_ptr().addr() as u32,
-        "the first chunk"
-    );
+    assert_eq!(r.mesh().read(), pass.mesh.as_ptr().addr() as u32);
     assert_eq!(
         [r.geometry_descriptors().read(), r.geometry_lists().read()],
         [0x4600_0000, 0x4700_0000]
@@ -185,7 +160,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     let start = r.geometry().read();
     assert!(start.start() && start.cull() && start.smooth());
     assert!(!start.append() && !start.mirror() && !start.recolour());
-    assert_eq!(start.size(), Some(triangle::Size::W640));
+    assert_eq!(start.size(), Some(Size::W640));
     assert_eq!(
         block.borrow().writes.last().map(|write| write.0),
         Some(r.geometry().address())
@@ -195,23 +170,12 @@ fn a_geometry_pass_is_described_before_it_is_started() {
 #[test]
 fn a_geometry_pass_continues_the_lists_of_the_pass_before() {
     let (engine, block) = probe(IDENT);
-    let bytes = mesh();
-    let mesh = Mesh::new_checked(&bytes).unwrap();
-    let view = View::spherical(Q32_32::from_num(3), Turns(1 << 30), Turns(1 << 29)).unwrap();
-    let mut frame = MeshSetup::new(&view, 640, 360, mesh.radius()).unwrap();
-    frame.mirrors = true;
-    let pass = Geometry {
-        mesh: &mesh,
-        size: Size::W640,
-        frame: &frame,
-        light: None,
-        cull: false,
-        shading: Shading::Flat,
-        colour: Some(Rgb565(0x1234)),
-        lists: None,
-    };
     let mut engine = engine.unwrap();
-    let prepared = engine.prepare_geometry(&pass);
+    let prepared = engine.prepare_geometry(&Geometry {
+        colour: Some(0x1234),
+        lists: None,
+        ..pass(GeometryStart::default().with_mirror(true))
+    });
     let r = registers();
     let lists = [r.geometry_descriptors(), r.geometry_lists(), r.exceptions()]
         .map(|register| register.address());
@@ -265,7 +229,7 @@ fn a_raster_pass_is_described_before_it_is_started() {
             [start.first(), start.second(), start.depth()],
             [!second, second, depth]
         );
-        assert_eq!(start.size(), Some(triangle::Size::W1280));
+        assert_eq!(start.size(), Some(Size::W1280));
         assert_eq!(
             block.borrow().writes.last().map(|write| write.0),
             Some(r.raster().address())

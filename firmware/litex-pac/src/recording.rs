@@ -1,16 +1,18 @@
-//! Model of the bus for tests: registers that keep written values, and a record of all writes.
+//! A model of the bus for tests: registers that keep written values, and a record of all writes.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::vec::Vec;
 
-use litex_pac::bus::{self, Bus};
+use crate::bus::{self, Bus};
 
 /// Values of registers by address, and all writes in order.
 #[derive(Default)]
 pub struct Block {
+    /// Values by address; other registers are 0.
     pub values: BTreeMap<usize, u32>,
+    /// All writes: address and value.
     pub writes: Vec<(usize, u32)>,
 }
 

@@ -1,0 +1,90 @@
+//! The gesture engine from the control of the hand, and the set-up of the image sensor at its wires.
+
+use embedded_hal::delay::DelayNs;
+use glint_core::hand::{Region, Setting, Statistics, Window};
+use glint_core::image_sensor::{Error, FrameSize, ImageSensor, Model};
+use glint_hal::gesture::GestureEngine;
+use glint_hal::timer::{Clock, Waiting, block_on};
+use glint_i2c::{NoAcknowledge, TwoWires};
+
+/// Reason why the image sensor cannot be set up.
+pub type SetUpError = Error<NoAcknowledge>;
+
+/// Time in ms after the end of a reset in which a chip may not answer: that of the OV5640, which is the longest.
+const RESET_TIME: u32 = 20;
+
+type Sensor<'a> = ImageSensor<TwoWires<&'a mut GestureEngine, Waiting>>;
+
+fn sensor(engine: &mut GestureEngine, clock: Clock) -> Sensor<'_> {
+    ImageSensor::new(TwoWires::new(engine, Waiting(clock)))
+}
+
+/// Resets the image sensor, sets it up for a size, and takes its frames from the next VSYNC on. This takes some 50 ms, in which
+/// the CPU does nothing else but interrupts.
+///
+/// # Errors
+/// The chip is absent, unknown, or does not accept its set-up; it is then turned off.
+pub fn start(
+    engine: &mut GestureEngine,
+    size: FrameSize,
+    mut clock: Clock,
+) -> Result<Model, SetUpError> {
+    engine.set_power(false);
+    // Longer than the shortest reset of all chips.
+    clock.delay_ms(1);
+    engine.set_power(true);
+    clock.delay_ms(RESET_TIME);
+    let started = block_on(sensor(engine, clock).start(size, &mut Waiting(clock)));
+    match started {
+        Ok(model) => engine.receive(size.pixels(), model.is_vsync_low()),
+        Err(_) => engine.set_power(false),
+    }
+    started
+}
+
+/// Whether the image sensor that [`start`] found still has its settings. This takes some 5 ms; without a sensor less than 1 ms.
+///
+/// # Errors
+/// The chip does not answer.
+pub fn keeps(
+    engine: &mut GestureEngine,
+    model: Model,
+    size: FrameSize,
+    clock: Clock,
+) -> Result<bool, SetUpError> {
+    block_on(sensor(engine, clock).keeps(model, size))
+}
+
+/// Finds an image sensor after another one was unplugged. This takes some 2 ms; without a sensor less than 1 ms.
+///
+/// # Errors
+/// There is no known chip.
+pub fn find(engine: &mut GestureEngine, clock: Clock) -> Result<Model, SetUpError> {
+    engine.set_power(true);
+    block_on(sensor(engine, clock).find())
+}
+
+/// Sets the windows of the channels Cr and Cb.
+pub fn set_windows(engine: &mut GestureEngine, windows: [Window; 2]) {
+    engine.set_windows(windows.map(|window| [window.lower, window.upper]));
+}
+
+/// Sets what the engine counts.
+pub fn set_gate(engine: &mut GestureEngine, setting: &Setting) {
+    let Region { first, last } = setting.region;
+    engine.set_gate([first, last], setting.least_run);
+}
+
+/// The statistics of the last whole frame; `None` if the engine replaced them meanwhile.
+#[must_use]
+pub fn statistics(engine: &GestureEngine) -> Option<Statistics> {
+    let counts = engine.counts()?;
+    let [first, last] = counts.corners;
+    Some(Statistics {
+        size: counts.size,
+        count: counts.count,
+        sums: counts.sums,
+        bounds: Region { first, last },
+        is_whole: true,
+    })
+}

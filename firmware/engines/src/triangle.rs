@@ -1,0 +1,79 @@
+//! Geometry passes from the frame constants of meshes.
+
+use glint_core::camera::Projection;
+use glint_core::mesh::{Mesh, Rgb565};
+use glint_core::picture::Size;
+use glint_hal::triangle::{self, DepthScale, GeometryStart, Lists, Prepared, TriangleEngine};
+use glint_model::{MeshLight, MeshSetup, Shading};
+
+/// A geometry pass of a mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct MeshPass<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh<'a>,
+    /// Size of the picture.
+    pub size: Size,
+    /// The frame constants of the mesh, for a picture of this size.
+    pub frame: &'a MeshSetup,
+    /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. Its direction is in `frame`.
+    /// There must be no ambient light with smooth shading and without `cull`.
+    pub light: Option<&'a MeshLight>,
+    /// Whether back faces are left out.
+    pub cull: bool,
+    /// Source of the colours; `Flat` if the engine has no smooth shading.
+    pub shading: Shading,
+    /// Colour in place of those of the mesh.
+    pub colour: Option<Rgb565>,
+    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size with the
+    /// same colours of the light.
+    pub lists: Option<Lists>,
+}
+
+impl MeshPass<'_> {
+    /// Writes the registers of the pass, as [`TriangleEngine::prepare_geometry`].
+    pub fn prepare(&self, engine: &mut TriangleEngine) -> Prepared {
+        let frame = self.frame;
+        let light = self.light;
+        let (light, ambient) =
+            light.map_or(MeshLight::PLAIN, |light| (light.colour, light.ambient));
+        engine.prepare_geometry(&triangle::Geometry {
+            mesh: self.mesh.records().as_flattened(),
+            options: GeometryStart::default()
+                .with_size(size_code(self.size))
+                .with_cull(self.cull)
+                .with_smooth(self.shading == Shading::Smooth)
+                .with_orthographic(frame.projection == Projection::Orthographic)
+                .with_mirror(frame.mirrors),
+            scale_shift: frame.engine_shift() as u8,
+            rows: [&frame.u, &frame.v, &frame.n, &frame.light],
+            translation: &frame.translation,
+            near: frame.near,
+            depth_scale: DepthScale::default()
+                .with_mantissa(frame.depth.mantissa)
+                .with_exponent(frame.depth.exponent as u8),
+            lights: [light, ambient],
+            colour: self.colour.map(|colour| colour.0),
+            lists: self.lists,
+        })
+    }
+}
+
+/// The best shading of an engine.
+#[must_use]
+pub fn shading(engine: &TriangleEngine) -> Shading {
+    if engine.shades_smoothly() {
+        Shading::Smooth
+    } else {
+        Shading::Flat
+    }
+}
+
+/// A size of a picture as a register value.
+#[must_use]
+pub const fn size_code(size: Size) -> triangle::Size {
+    match size {
+        Size::W320 => triangle::Size::W320,
+        Size::W640 => triangle::Size::W640,
+        Size::W1280 => triangle::Size::W1280,
+    }
+}
