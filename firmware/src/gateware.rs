@@ -1,9 +1,8 @@
 //! Drawing of frames by the gateware: by the triangle engine, and by the raymarcher in the engine's raster pass.
 //!
 //! ```text
-//! renderer ── repeat (benchmark loops)
+//! renderer (with its parts lines: wireframes and edges of meshes, and repeat: benchmark loops)
 //!    ├── geometry (passes of the meshes, clipping)
-//!    ├── lines (wireframes, edges of meshes)
 //!    ├── buffers (memory of the passes)
 //!    ├── watchdog (progress of the engine)
 //!    ├── rendered (what the drawing took)
@@ -16,11 +15,9 @@ mod eyes;
 mod fallback;
 #[allow(unsafe_code)] // Memory that the geometry passes read and write.
 mod geometry;
-mod lines;
 mod rendered;
 #[allow(unsafe_code)] // Memory that the triangle engine reads and writes.
 mod renderer;
-mod repeat;
 mod watchdog;
 
 pub use eyes::RightEye;

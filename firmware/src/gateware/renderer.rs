@@ -1,5 +1,8 @@
 //! The passes of a frame: the geometry passes, and the raster pass.
 
+mod lines;
+mod repeat;
+
 use glint_core::camera::Projection;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::feature::{EDGES, WIREFRAME};
@@ -51,17 +54,17 @@ struct Start {
 
 /// The triangle engine, the raymarcher and their memory.
 pub struct GatewareRenderer {
-    pub(super) engine: TriangleEngine,
+    engine: TriangleEngine,
     raymarcher: Option<Raymarcher>,
     draws_triangles: bool,
     draws_lines: bool,
-    pub(super) shading: Shading,
+    shading: Shading,
     /// Memory of the frame being drawn, and, in a benchmark, of the next frame.
-    pub(super) buffers: [Buffers; 2],
+    buffers: [Buffers; 2],
     /// The projected part of a wireframe.
-    pub(super) projected: Projected,
+    projected: Projected,
     /// Counts of a mesh's edges.
-    pub(super) edges: EdgeStats,
+    edges: EdgeStats,
     /// Address of frame buffer 0.
     first_frame_buffer: u32,
     /// Size and background of the picture that the engine drew last into each frame buffer; `None` if the CPU has written to the
@@ -70,11 +73,11 @@ pub struct GatewareRenderer {
     stage: Stage,
     /// Constants of the frame being drawn, and, in a benchmark, of the next frame. The index `place` of the functions below
     /// selects one of them, together with the buffers of the same index.
-    pub(super) constants: [FrameConstants; 2],
-    pub(super) geometry: GeometryPasses,
+    constants: [FrameConstants; 2],
+    geometry: GeometryPasses,
     watchdog: Watchdog,
     /// Clock cycles of all waits of benchmarks.
-    pub(super) waited: u64,
+    waited: u64,
     start: Start,
     /// Time at which the last pass was started: the lower half of the cycle counter.
     pass_start: u32,
@@ -298,7 +301,7 @@ impl GatewareRenderer {
     }
 
     /// Stores the time and the counters at the start of a measurement, and resets the watchdog.
-    pub(super) fn start_measurement(&mut self, frame: &Frame) {
+    fn start_measurement(&mut self, frame: &Frame) {
         self.watchdog.reset();
         self.start = Start {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
@@ -316,7 +319,7 @@ impl GatewareRenderer {
     }
 
     /// The results of the measurement since `start_measurement`, with the triangle counts in `self.buffers[place]`.
-    pub(super) fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
+    fn rendered(&self, frame: &Frame, place: usize) -> Rendered {
         let cycles = cpu::cycles() - self.start.cycles;
         let counters = self.engine.counters().since(&self.start.engine);
         let field = self.raymarcher_counters(frame);
@@ -362,19 +365,19 @@ impl GatewareRenderer {
     }
 
     /// Writes the registers of the first geometry pass from `self.constants[place]`. The passes will write to `self.buffers[place]`.
-    pub(super) fn prepare_geometry(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
+    fn prepare_geometry(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         let (geometry, mut job) = self.geometry_of(frame, place);
         geometry.prepare(&mut job)
     }
 
     /// Starts a prepared geometry pass of lines.
-    pub(super) fn start_pass(&mut self, pass: Prepared) {
+    fn start_pass(&mut self, pass: Prepared) {
         // SAFETY: the buffers belong to this renderer, are not used by an earlier pass, and are read after the end of this pass.
         unsafe { self.engine.start_geometry(pass) };
     }
 
     /// Starts the prepared geometry pass. Returns whether a pass runs.
-    pub(super) fn start_geometry(
+    fn start_geometry(
         &mut self,
         frame: &Frame,
         place: usize,
@@ -385,17 +388,13 @@ impl GatewareRenderer {
     }
 
     /// Continues after the end of a geometry pass. Returns whether another pass runs.
-    pub(super) fn continue_geometry(
-        &mut self,
-        frame: &Frame,
-        place: usize,
-    ) -> Result<bool, Fallback> {
+    fn continue_geometry(&mut self, frame: &Frame, place: usize) -> Result<bool, Fallback> {
         let (geometry, mut job) = self.geometry_of(frame, place);
         geometry.advance(&mut job)
     }
 
     /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
-    pub(super) fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
+    fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         let has_lines = matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..));
         if has_lines && !self.draws_lines {
             return Err(Fallback::NoLineEngine);
@@ -418,7 +417,7 @@ impl GatewareRenderer {
 
     /// Writes the raymarcher's registers for the field of `self.constants[place]`, or switches the raymarcher off if
     /// there is no field. With `has_tables`, the raymarcher is known to hold the right tables, so they are not compared.
-    pub(super) fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
+    fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) => {
                 set_field(raymarcher, &field.setup, &field.palette, has_tables)?;
@@ -431,17 +430,12 @@ impl GatewareRenderer {
     }
 
     /// Whether the raymarcher holds the tables of the field of `self.constants[place]`.
-    pub(super) fn has_tables(&self, place: usize) -> bool {
+    fn has_tables(&self, place: usize) -> bool {
         let both = self.raymarcher.as_ref().zip(self.constants[place].field());
         both.is_some_and(|(raymarcher, field)| raymarcher.has_tables(tables(&field.palette)))
     }
 
-    pub(super) fn start_raster(
-        &mut self,
-        frame: &Frame,
-        output: &mut Output,
-        sets: [Option<Set>; 2],
-    ) {
+    fn start_raster(&mut self, frame: &Frame, output: &mut Output, sets: [Option<Set>; 2]) {
         let slot = self.slot(output.colour);
         let drawn = &mut self.drawn[usize::from(slot)];
         let this = Some((frame.size, frame.clear));
@@ -463,7 +457,7 @@ impl GatewareRenderer {
     }
 
     /// Cancels the frame and fails if the triangle engine has made no progress for too long.
-    pub(super) fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
+    fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.give_up(output, EngineError::Timeout.into()));
         }
@@ -471,7 +465,7 @@ impl GatewareRenderer {
     }
 
     /// Cancels the running passes, and returns `error` as the reason to draw the frame by the CPU.
-    pub(super) fn give_up(&mut self, output: &Output, error: Fallback) -> Fallback {
+    fn give_up(&mut self, output: &Output, error: Fallback) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
         self.invalidate(output.colour);
@@ -479,7 +473,7 @@ impl GatewareRenderer {
     }
 
     /// The sets of lists in `self.buffers[place]`.
-    pub(super) fn sets(&self, place: usize) -> [Option<Set>; 2] {
+    fn sets(&self, place: usize) -> [Option<Set>; 2] {
         self.buffers[place].sets
     }
 

@@ -1,13 +1,14 @@
 //! Benchmark: one frame drawn repeatedly, back to back.
 
 use glint_hal::triangle::{PassResult, TriangleEngine};
-use glint_model::{Frame, Subject};
+use glint_model::{Frame, Subject, WireframeSubject};
 use litex_pac::cpu;
 
-use super::fallback::Fallback;
-use super::geometry::Cpu;
-use super::rendered::Rendered;
-use super::renderer::{GatewareRenderer, Output};
+use super::{GatewareRenderer, Output};
+use crate::gateware::buffers::Projected;
+use crate::gateware::fallback::Fallback;
+use crate::gateware::geometry::Cpu;
+use crate::gateware::rendered::Rendered;
 
 /// Number of times that the end of a pass is queried between two checks of progress.
 const POLLS: u32 = 1000;
@@ -119,17 +120,73 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, 0))
     }
 
-    /// Cancels the frame if `result` is an error.
-    pub(super) fn check<T>(
+    /// Draws the edges of a mesh `count` times, one frame after the other.
+    fn repeat_edges(
         &mut self,
-        result: Result<T, Fallback>,
-        output: &Output,
-    ) -> Result<T, Fallback> {
+        frame: &Frame,
+        output: &mut Output,
+        cpu: &mut Cpu,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        self.update_constants(frame, 0)?;
+        self.set_field(0, false)?;
+        self.start_measurement(frame);
+        for _ in 0..count {
+            self.prepare_geometry(frame, 0)?;
+            let mut runs = self.start_geometry(frame, 0, cpu);
+            let projected = self.project_edges(frame, cpu);
+            self.check(projected, output)?;
+            while self.check(runs, output)? {
+                self.wait(TriangleEngine::geometry, output)?;
+                runs = self.continue_geometry(frame, 0);
+            }
+            self.start_edges(frame.size);
+            self.wait(TriangleEngine::geometry, output)?;
+            self.take_lines(frame, 0);
+            self.start_raster(frame, output, self.sets(0));
+            self.wait(TriangleEngine::raster, output)?;
+        }
+        Ok(self.rendered(frame, 0))
+    }
+
+    /// Draws a wireframe `count` times. Segments are projected and cut into pieces during the raster pass of the frame before.
+    fn repeat_lines(
+        &mut self,
+        subject: &WireframeSubject,
+        frame: &Frame,
+        output: &mut Output,
+        count: u32,
+    ) -> Result<Rendered, Fallback> {
+        self.update_constants(frame, 0)?;
+        self.set_field(0, false)?;
+        self.start_measurement(frame);
+        let (mut now, mut next) = (0, 1);
+        for number in 0..count {
+            self.projected = Projected::default();
+            while !self.project(subject, frame.size, now)? {}
+            let prepared = self.prepare_lines(frame.size, now);
+            self.start_pass(prepared);
+            self.wait(TriangleEngine::geometry, output)?;
+            self.take_lines(frame, now);
+            if number > 0 {
+                self.wait(TriangleEngine::raster, output)?;
+            }
+            self.start_raster(frame, output, self.sets(now));
+            (now, next) = (next, now);
+        }
+        if count > 0 {
+            self.wait(TriangleEngine::raster, output)?;
+        }
+        Ok(self.rendered(frame, next))
+    }
+
+    /// Cancels the frame if `result` is an error.
+    fn check<T>(&mut self, result: Result<T, Fallback>, output: &Output) -> Result<T, Fallback> {
         result.map_err(|error| self.give_up(output, error))
     }
 
     /// Waits for the end of the pass whose result the function `result` reads.
-    pub(super) fn wait(
+    fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,

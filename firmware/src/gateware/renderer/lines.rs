@@ -3,15 +3,13 @@
 use glint_core::picture::Size;
 use glint_core::wireframe::Projection;
 use glint_engines::triangle::size_code;
-use glint_hal::triangle::{EngineError, Error, Prepared, TriangleEngine};
+use glint_hal::triangle::{EngineError, Error, Prepared};
 use glint_model::line::Segment;
 use glint_model::{Frame, Stats, Subject, WireframeSubject};
 
-use super::buffers::Projected;
-use super::fallback::Fallback;
-use super::geometry::Cpu;
-use super::rendered::Rendered;
-use super::renderer::{GatewareRenderer, Output};
+use super::GatewareRenderer;
+use crate::gateware::fallback::Fallback;
+use crate::gateware::geometry::Cpu;
 
 /// Words of a program that are projected between two samples of the buttons.
 const WORDS_A_CALL: usize = 16;
@@ -110,65 +108,5 @@ impl GatewareRenderer {
         let lists = drawn.edge_lists(self.shading, size);
         let prepared = self.engine.prepare_lines(segments, size_code(size), &lists);
         self.start_pass(prepared);
-    }
-
-    /// Draws the edges of a mesh `count` times, one frame after the other.
-    pub(super) fn repeat_edges(
-        &mut self,
-        frame: &Frame,
-        output: &mut Output,
-        cpu: &mut Cpu,
-        count: u32,
-    ) -> Result<Rendered, Fallback> {
-        self.update_constants(frame, 0)?;
-        self.set_field(0, false)?;
-        self.start_measurement(frame);
-        for _ in 0..count {
-            self.prepare_geometry(frame, 0)?;
-            let mut runs = self.start_geometry(frame, 0, cpu);
-            let projected = self.project_edges(frame, cpu);
-            self.check(projected, output)?;
-            while self.check(runs, output)? {
-                self.wait(TriangleEngine::geometry, output)?;
-                runs = self.continue_geometry(frame, 0);
-            }
-            self.start_edges(frame.size);
-            self.wait(TriangleEngine::geometry, output)?;
-            self.take_lines(frame, 0);
-            self.start_raster(frame, output, self.sets(0));
-            self.wait(TriangleEngine::raster, output)?;
-        }
-        Ok(self.rendered(frame, 0))
-    }
-
-    /// Draws a wireframe `count` times. Segments are projected and cut into pieces during the raster pass of the frame before.
-    pub(super) fn repeat_lines(
-        &mut self,
-        subject: &WireframeSubject,
-        frame: &Frame,
-        output: &mut Output,
-        count: u32,
-    ) -> Result<Rendered, Fallback> {
-        self.update_constants(frame, 0)?;
-        self.set_field(0, false)?;
-        self.start_measurement(frame);
-        let (mut now, mut next) = (0, 1);
-        for number in 0..count {
-            self.projected = Projected::default();
-            while !self.project(subject, frame.size, now)? {}
-            let prepared = self.prepare_lines(frame.size, now);
-            self.start_pass(prepared);
-            self.wait(TriangleEngine::geometry, output)?;
-            self.take_lines(frame, now);
-            if number > 0 {
-                self.wait(TriangleEngine::raster, output)?;
-            }
-            self.start_raster(frame, output, self.sets(now));
-            (now, next) = (next, now);
-        }
-        if count > 0 {
-            self.wait(TriangleEngine::raster, output)?;
-        }
-        Ok(self.rendered(frame, next))
     }
 }
