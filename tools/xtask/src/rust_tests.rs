@@ -21,7 +21,7 @@ const AT_A_TIME: usize = 3;
 /// alone at the end.
 const LONGEST: [(&str, &str); 6] = [
     ("glint", "board"),
-    ("testbench", "soc"),
+    ("glint", "soc"),
     ("testbench", "triangle"),
     ("virtual-board", "board"),
     ("reference", "reference"),

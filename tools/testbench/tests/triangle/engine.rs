@@ -11,9 +11,9 @@ mod objects;
 
 use bench::Bench;
 use expected::{CLEAR, SIZES, expected, expected_on, expected_smooth};
-use glint::{convert, generate};
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q32_32, Turns};
+use glint_mesh::{convert, generate};
 use glint_vectors::meshes::{self, ahead, at};
 use glint_vectors::scenes::{inside, scenes};
 use rand::RngExt;

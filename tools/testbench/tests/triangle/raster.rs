@@ -3,11 +3,11 @@
 mod bench;
 mod triangles;
 
-use glint::{convert, generate, view};
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
-use glint_core::fixed::U8_28;
+use glint_core::fixed::{Q32_32, Turns, U8_28};
 use glint_core::mesh::Mesh;
+use glint_mesh::{convert, generate};
 use glint_model::triangle::shade::Lit;
 use glint_model::triangle::vertex::GUARD;
 use glint_model::{FrameBuffer, Options, Projected, ScreenVertex, trace};
@@ -325,7 +325,8 @@ fn mesh(name: &str) -> Vec<u8> {
 
 /// Makes a camera in which the mesh's bounding sphere fills 96 % of the picture's height.
 fn filling(mesh: &Mesh) -> View {
-    let camera = view::spherical("3,30,60").unwrap();
+    let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
+    let camera = View::spherical(Q32_32::from_num(3), degrees(30), degrees(60)).unwrap();
     let radius = f64::from(mesh.radius()) / 16384.0;
     let half_width = radius / (9.0 - radius * radius).sqrt() / 0.96 * 16.0 / 9.0;
     View::new_checked(

@@ -1,7 +1,6 @@
 //! Tests of the triangle engine's build without triangles, which draws what a raymarcher sends. The model stands for the
 //! raymarcher: it sends the pixels of each band in a random order.
 
-use glint::render::{FieldSubject, Frame, Subject, on_model};
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
 use glint_core::fixed::Q32_32;
@@ -10,8 +9,9 @@ use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_model::raymarch::Rays;
 use glint_model::triangle::descriptor::band_rows;
+use glint_model::{FieldSubject, Frame, Subject};
 use glint_testbench::raymarch::{Pixel, Place, pixel};
-use glint_vectors::Camera;
+use glint_vectors::{Camera, Picture as Drawn};
 use rand::RngExt;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64Mcg;
@@ -44,7 +44,7 @@ impl Picture {
             }),
             ..Frame::new(Subject::Field(subject), view, size)
         };
-        let image = on_model(&frame).unwrap().image;
+        let image = Drawn::of_frame(&frame);
         let constants = frame.constants().unwrap();
         let field = constants.field().unwrap();
         let (setup, mut rays) = (&field.setup, Rays::new(&field.setup));
