@@ -4,7 +4,7 @@
 const VERTICES: usize = 8;
 /// Number of triangles of the cube.
 const TRIANGLES: usize = 12;
-/// Length of a record in bytes (docs/formats.md, "Mesh in memory"); the header is as long as two records.
+/// Length of a record in bytes (docs/formats/mesh.md, "Mesh in memory"); the header is as long as two records.
 const RECORD: usize = 16;
 /// 1.0 in Q2.14.
 const ONE: i16 = 1 << 14;

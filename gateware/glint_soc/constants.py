@@ -120,7 +120,7 @@ def packages():
             ]),
         ("triangle", "list_pkg"): _package(
             "list_pkg",
-            "Places of the band lists in memory, in words of 16 bytes (docs/formats.md): behind the table of their lengths, and apart by\n"
+            "Places of the band lists in memory, in words of 16 bytes (docs/formats/triangle.md): behind the table of their lengths, and apart by\n"
             "their length and a row of a memory bank, so that the lists of eight bands lie in eight banks, which stay open. LiteDRAM\n"
             "puts BANK_WORDS neighbours into a row of a bank, and the next ones into the next bank.", [
                 f"    localparam int unsigned TABLE_WORDS = {LIST_TABLE_WORDS};",

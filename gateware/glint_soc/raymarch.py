@@ -301,7 +301,7 @@ class Raymarcher(LiteXModule):
             self.sync += If(self._sphere.re, Case(entry, {number: place.eq(value) for number, place in places.items()}))
             self.comb += write.eq(self._sphere.re & (entry[3:] == 0b001))
         sphere = Struct("sphere_t", "A sphere: its material, {blue, green, red}; the inverse of its radius and a shift "
-            "(docs/formats.md, \"Light\"); its radius, and its centre.", {
+            "(docs/formats/raymarch.md, \"Light on spheres\"); its radius, and its centre.", {
             "material": value, "shift": inverse[17:], "inverse": inverse[:17], "radius": radius, "centre": centre})
         lights = Struct("lights_t", "Light on spheres: number of the last light, ambient light, colours of the lights, and "
             "directions to the lights, s1.16.", {

@@ -254,7 +254,7 @@ class TriangleEngine(LiteXModule):
                for name, register in (("light_colour", self._light_colour), ("ambient", self._ambient))},
             "colour": self._colour.storage,
         })
-        view = Struct("view_t", "Camera and light of the geometry pass: docs/formats.md, \"Frame constants\".", {
+        view = Struct("view_t", "Camera and light of the geometry pass: docs/formats/camera.md, \"Frame constants\".", {
             "scale_shift": self._scale_shift.storage,
             **{f"row_{row}": [register.storage for register in registers] for row, registers in rows.items()},
             **{f"t{axis}": Cat(*(register.storage for register in registers)) for axis, registers in translation.items()},

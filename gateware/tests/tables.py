@@ -25,7 +25,7 @@ def _differences(found, expected):
 
 
 def check_roots():
-    """Checks `ROOTS` of docs/formats.md: 18 fraction bits of each entry, and the distance to the next entry."""
+    """Checks `ROOTS` of docs/formats/raymarch.md: 18 fraction bits of each entry, and the distance to the next entry."""
     roots = [isqrt(max(i, 128) << 29) for i in range(512)]
     following = [isqrt((max(i, 128) + 1) << 29) for i in range(512)]
     expected = [(root - (1 << 18) << 10) + after - root for root, after in zip(roots, following)]
@@ -33,7 +33,7 @@ def check_roots():
 
 
 def check_round_inverses():
-    """Checks `ROUND_INVERSE` of docs/formats.md: the root of 2^10/(i + 1), reduced by the fraction 2^-16 of itself, u8.9."""
+    """Checks `ROUND_INVERSE` of docs/formats/raymarch.md: the root of 2^10/(i + 1), reduced by the fraction 2^-16 of itself, u8.9."""
     expected = [isqrt(((1 << 28) - (1 << 13)) // (i + 1)) for i in range(1024)]
     return _differences(_yosys("round_inverse", "inverses"), expected)
 

@@ -1,4 +1,4 @@
-//! Images of a board's SPI flash: bitstream, firmware, and contents (docs/formats.md, "Flash image").
+//! Images of a board's SPI flash: bitstream, firmware, and contents (docs/formats/flash.md, "Flash image").
 //!
 //! [`Image::new_checked`] checks a whole image, [`Contents::new_checked`] the list of the contents alone, as a board does at start: an
 //! item's bytes are checked when it is used ([`Item::checked`]).

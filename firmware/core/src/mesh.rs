@@ -1,4 +1,4 @@
-//! Meshes in memory, files and uploads (docs/formats.md, "Mesh in memory").
+//! Meshes in memory, files and uploads (docs/formats/mesh.md, "Mesh in memory").
 //!
 //! [`Mesh::new_checked`] checks every byte once and returns a view whose accessors do not fail.
 

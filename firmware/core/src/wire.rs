@@ -1,4 +1,4 @@
-//! Uploads and downloads over a byte stream that may lose, change or repeat bytes (docs/formats.md, "Transfers").
+//! Uploads and downloads over a byte stream that may lose, change or repeat bytes (docs/formats/transfer.md, "Transfers").
 //!
 //! [`Sender`] and [`Receiver`] are state machines without clock or transport: bytes go in, bytes come out, and the caller
 //! gives the time in milliseconds. Firmware and host use the same code in both directions.

@@ -3,9 +3,9 @@
 use glint_core::fixed::Q32_32;
 
 /// The scale K of depth codes, as `mantissa`·2^`exponent`: in perspective a surface at depth z along the camera's axis n has the
-/// code K/z, and a code stands for the depth K/code (docs/formats.md, "Frame constants").
+/// code K/z, and a code stands for the depth K/code (docs/formats/camera.md, "Frame constants").
 ///
-/// In orthographic projection codes are linear: a code is 2^(`exponent` − 19) world units (docs/formats.md, "Orthographic
+/// In orthographic projection codes are linear: a code is 2^(`exponent` − 19) world units (docs/formats/camera.md, "Orthographic
 /// projection").
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DepthScale {

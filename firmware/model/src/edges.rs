@@ -1,4 +1,4 @@
-//! Edges of meshes as lines, each in front of its own faces by a bias that follows from their slopes (docs/formats.md, "Lines").
+//! Edges of meshes as lines, each in front of its own faces by a bias that follows from their slopes (docs/formats/line.md, "Lines").
 //!
 //! [`EdgeList`] finds each edge of a mesh once, in memory of the caller, and makes the segments of a frame.
 

@@ -1,4 +1,4 @@
-//! Bit-exact model of the gesture engine: from the pins of an image sensor to the statistics of its frames (docs/formats.md,
+//! Bit-exact model of the gesture engine: from the pins of an image sensor to the statistics of its frames (docs/formats/gesture.md,
 //! "Gestures").
 //!
 //! [`channels`] converts a colour, and [`Settings`] says which pixels are marked. [`Sums`] adds up the marked pixels of a line that

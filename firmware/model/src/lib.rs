@@ -1,6 +1,6 @@
 //! Bit-exact software models of Glint's accelerators: the triangle engine, the line engine, the raymarcher and the gesture engine.
 //!
-//! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats.md` in integers. It is the renderer of
+//! The crate computes the triangle pipeline, the lines and the raymarcher of `docs/formats` in integers. It is the renderer of
 //! the CPU backend, and the reference of the gateware's tests. A [`Frame`] describes a picture, and [`Frame::draw`]
 //! draws it: the mesh of the picture by [`triangle`], the rays of its distance field by [`raymarch`];
 //! [`line`](mod@line) draws segments, [`edges`] makes those of a mesh, and [`wireframe`] the programs of the wireframe simulator.

@@ -1,4 +1,4 @@
-//! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats.md, "Lines").
+//! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats/line.md, "Lines").
 //!
 //! A line has one pixel in each column if its end points are further apart horizontally than vertically, else one in each
 //! row. This axis is its *major* axis, the other one its *minor* axis. Which pixels belong to it is the diamond-exit rule:
@@ -50,7 +50,7 @@ impl Segment {
     /// Number of 32-bit words in memory.
     pub const WORDS: usize = 8;
 
-    /// The segment in memory (docs/formats.md, "Segments in memory").
+    /// The segment in memory (docs/formats/line.md, "Segments in memory").
     #[must_use]
     pub const fn words(&self) -> [u32; Self::WORDS] {
         let [a, b] = self.ends;
@@ -186,7 +186,7 @@ impl Coordinate {
 }
 
 impl Line {
-    /// The set-up (docs/formats.md, "Lines") of a segment from the first to the second end point; `None` for a segment that
+    /// The set-up (docs/formats/line.md, "Lines") of a segment from the first to the second end point; `None` for a segment that
     /// leaves no diamond, or with an end point outside of the format s12.8.
     pub fn new([a, b]: &[ScreenVertex; 2]) -> Option<Self> {
         if [a.x, a.y, b.x, b.y].iter().any(|x| !REACH.contains(x)) {

@@ -1,4 +1,4 @@
-//! A mesh in a field: one scale of depth codes for both (formats.md, "A mesh in a field").
+//! A mesh in a field: one scale of depth codes for both (docs/formats/raymarch.md, "A mesh in a field").
 
 use glint_core::camera::View;
 use glint_core::field::Field;

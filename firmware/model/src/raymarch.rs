@@ -1,4 +1,4 @@
-//! The raymarcher: frames of a distance field (formats.md, "Distance fields").
+//! The raymarcher: frames of a distance field (docs/formats/raymarch.md, "Distance fields").
 //!
 //! Distances are in the maximum norm: the distance at a point is half the side of an empty cube about the point. A
 //! ray's direction is scaled so that its largest component is just below 1, so a step by the whole distance ends at the

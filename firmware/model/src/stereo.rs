@@ -1,4 +1,4 @@
-//! Stereo: the frames of two eyes, and the composition of their pictures (docs/formats.md, "Stereo").
+//! Stereo: the frames of two eyes, and the composition of their pictures (docs/formats/camera.md, "Stereo").
 //!
 //! The rays of a field alone are cast for both eyes in one frame. Other subjects are drawn as two frames of one eye each.
 

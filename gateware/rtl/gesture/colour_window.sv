@@ -1,4 +1,4 @@
-// Converts a pixel to 8-bit channels and tests two of them: the pixel is marked if each is in its window (docs/formats.md,
+// Converts a pixel to 8-bit channels and tests two of them: the pixel is marked if each is in its window (docs/formats/gesture.md,
 // "Gestures").
 //
 //   pixel ─▶ green's share ─▶ + red's ─▶ + blue's ─▶ two channels ─▶ mark

@@ -1,5 +1,5 @@
 // Counts columns and lines, and judges each frame: it is whole if it has `height` lines of `width` pixels, without a fault
-// (docs/formats.md, "Gestures").
+// (docs/formats/gesture.md, "Gestures").
 //
 // Outputs come one clock after `item`: `x` and `y` are those of the pixel, or of the clock behind the end of the line;
 // `inside_region` says that they are in the region. With `out_item.frame`, `whole` is the verdict. The first frame begins at the

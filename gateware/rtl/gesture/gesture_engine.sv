@@ -1,5 +1,5 @@
 // The gesture engine: takes the frames of an image sensor and finds the hand by its colour. Number, sums and box of the pixels in
-// the hand's colour are the results of each whole frame; software divides and filters (docs/gesture.md; docs/formats.md,
+// the hand's colour are the results of each whole frame; software divides and filters (docs/gesture.md; docs/formats/gesture.md,
 // "Gestures").
 //
 //    pclk                              clk

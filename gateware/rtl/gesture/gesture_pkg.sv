@@ -1,4 +1,4 @@
-// Types of the values that the modules of the gesture engine exchange. docs/formats.md, "Gestures", explains them.
+// Types of the values that the modules of the gesture engine exchange. docs/formats/gesture.md, "Gestures", explains them.
 
 `default_nettype none
 

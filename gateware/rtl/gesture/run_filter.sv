@@ -1,5 +1,5 @@
 // Keeps the marked pixels of a line that belong to a run of at least `reach` + 1 of them, and drops all others: a horizontal
-// opening (docs/formats.md, "Gestures").
+// opening (docs/formats/gesture.md, "Gestures").
 //
 //   marked    . M . M M M M . .        reach 2
 //   run       0 1 0 1 2 3 3 0 0        marked pixels before this clock, at most 15

@@ -1,4 +1,4 @@
-// Types of the values that the modules of the line engine exchange. docs/formats.md, "Lines", explains the number formats.
+// Types of the values that the modules of the line engine exchange. docs/formats/line.md, "Lines", explains the number formats.
 
 `default_nettype none
 

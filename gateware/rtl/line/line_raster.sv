@@ -1,4 +1,4 @@
-// Draws the pieces of lines that are in a band (docs/formats.md, "Lines"): from a piece to groups of eight pixels, of which one is
+// Draws the pieces of lines that are in a band (docs/formats/line.md, "Lines"): from a piece to groups of eight pixels, of which one is
 // set.
 //
 //   piece ─▶ walk: a pixel a clock ─▶ code, 5 * line ─▶ * stride / 5 + column ─▶ pipeline_fifo ─▶ group

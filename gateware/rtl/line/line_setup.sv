@@ -1,4 +1,4 @@
-// Set-up of segments (docs/formats.md, "Lines"): finds the first pixel, the error and the depth of each line, follows it through
+// Set-up of segments (docs/formats/line.md, "Lines"): finds the first pixel, the error and the depth of each line, follows it through
 // the bands of the picture, and sends a piece for each band that it has a pixel in.
 //
 //        A╲         ┌ first pixel, error, depth

@@ -1,4 +1,4 @@
-// Computes the distance to the union of a flat solid and a sphere, sharp or with a fillet (docs/formats.md, "Unions"
+// Computes the distance to the union of a flat solid and a sphere, sharp or with a fillet (docs/formats/raymarch.md, "Unions"
 // and "Smooth unions").
 //
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2

@@ -1,5 +1,5 @@
 // Table with the results of the cones of a picture: for each block of pixels the depth up to which all rays of the block are
-// free of the field's surface (docs/formats.md, "Cones").
+// free of the field's surface (docs/formats/raymarch.md, "Cones").
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //

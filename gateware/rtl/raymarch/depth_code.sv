@@ -1,5 +1,5 @@
 // Computes the code that the depth buffer stores for a depth: K/depth, rounded to nearest and clamped to the range from 1 to
-// 2^18 - 1 (docs/formats.md, "Ends").
+// 2^18 - 1 (docs/formats/raymarch.md, "Ends").
 //
 //   depth ─▶ normalise ─▶ m ─▶ seed ─▶ two Newton steps, four products ─▶ 1/m ─▶ times K, shift, round ─▶ code
 //

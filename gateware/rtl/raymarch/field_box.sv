@@ -1,4 +1,4 @@
-// Distance to a box, in the maximum norm: single or repeated every 64 units, from outside or inside (docs/formats.md,
+// Distance to a box, in the maximum norm: single or repeated every 64 units, from outside or inside (docs/formats/raymarch.md,
 // "Fields").
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface

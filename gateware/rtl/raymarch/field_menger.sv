@@ -1,4 +1,4 @@
-// Distance to a Menger sponge of half side 40.5, in the maximum norm, without a multiplier (docs/formats.md, "Fields").
+// Distance to a Menger sponge of half side 40.5, in the maximum norm, without a multiplier (docs/formats/raymarch.md, "Fields").
 //
 //             high bits ─▶ menger_level 27 ─▶ 9 ─▶ 3 ─▶ 1 ──────┐
 //   point ─┬─▶ order of the low bits ─────────▲                 ├─▶ ... ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface

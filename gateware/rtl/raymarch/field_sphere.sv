@@ -1,4 +1,4 @@
-// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats.md, "Round fields").
+// Distance to one of up to eight spheres, in the Euclidean norm, rounded down (docs/formats/raymarch.md, "Round fields").
 //
 //   point - centre ─▶ |x|, |y|, |z| ─▶ shift ─▶ three squares, one sum ─▶ root ─▶ shift back ─▶ - radius ─▶ distance
 //                                        │                                            ▲

@@ -1,5 +1,5 @@
 // One level of the Menger sponge: folds space by mirrors, so that one cube of the level's 3x3x3 cubes stands for all of them
-// (docs/formats.md, "Fields"). S is the side of this cube.
+// (docs/formats/raymarch.md, "Fields"). S is the side of this cube.
 //
 //         ┌───┬───┬───┐
 //         │   │   │   │     1  S - |x| of each coordinate: above S/2 in the middle third

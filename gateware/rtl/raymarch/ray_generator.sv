@@ -1,4 +1,4 @@
-// Computes the rays of a frame, one a clock, without division or square root (docs/formats.md, "Rays").
+// Computes the rays of a frame, one a clock, without division or square root (docs/formats/raymarch.md, "Rays").
 //
 //   columns, lines ─▶ D = first + x·across + y·down ─▶ largest component ─▶ its inverse ─▶ direction = D·inverse
 //                                                          │                                  │

@@ -1,5 +1,5 @@
 // Computes pixels from the ends of rays: the colour of the surface, darkened by the occlusion and faded by the fog, and the
-// depth code (docs/formats.md, "Ends").
+// depth code (docs/formats/raymarch.md, "Ends").
 //
 //             ┌─▶ t·inverse ─▶ depth ─┬─▶ depth_code ───────────────────────────────┐
 //   ends ─────┤                       └─▶ fog ─┐                                    ├─▶ group of one pixel

@@ -1,4 +1,4 @@
-// Shared constants and types of the raymarcher (docs/formats.md, "Distance fields").
+// Shared constants and types of the raymarcher (docs/formats/raymarch.md, "Distance fields").
 
 `default_nettype none
 
@@ -27,7 +27,7 @@ package raymarch_pkg;
     localparam int unsigned PLACE_BITS = 19;
 
     // A ray before its first step, or a cone of the prepass. `length` is the index of the length of D in the table of inverses
-    // (docs/formats.md, "Rays"), `start` the first t. In a cone the low bits of `place` are the number of the cone, and
+    // (docs/formats/raymarch.md, "Rays"), `start` the first t. In a cone the low bits of `place` are the number of the cone, and
     // `spread` is not 0; in a ray `spread` is 0.
     typedef struct packed {
         logic [SPREAD_BITS-1:0]    spread;

@@ -25,8 +25,8 @@ package raymarch_registers_pkg;
         logic repeated;
     } solid_t;
 
-    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats.md, "Light"); its
-    // radius, and its centre.
+    // A sphere: its material, {blue, green, red}; the inverse of its radius and a shift (docs/formats/raymarch.md, "Light on
+    // spheres"); its radius, and its centre.
     typedef struct packed {
         logic [23:0] material;
         logic [4:0] shift;

@@ -1,4 +1,4 @@
-// The raymarcher: computes the pixels of a distance field (docs/formats.md, "Distance fields"), band by band, for the band
+// The raymarcher: computes the pixels of a distance field (docs/formats/raymarch.md, "Distance fields"), band by band, for the band
 // buffer. A band is a horizontal strip of the picture.
 //
 //                    ┌─▶ ring_lane ─┐            ┌──────────────────┐
@@ -48,7 +48,7 @@ module raymarcher #(
     // Parameters of the frame. `size` is 0 for 320x180, 1 for 640x360 and 2 for 1280x720.
     input  wire  [1:0]                size,
     input  wire                       stereo,
-    // Rays and positions of both eyes, the left one first, and the box about the field (docs/formats.md, "Rays").
+    // Rays and positions of both eyes, the left one first, and the box about the field (docs/formats/raymarch.md, "Rays").
     input  wire  [1:0][2:0][31:0]     first,
     input  wire  [2:0][31:0]          across,
     input  wire  [2:0][31:0]          down,
@@ -64,7 +64,7 @@ module raymarcher #(
     input  wire raymarch_registers_pkg::sphere_t sphere,
     input  wire raymarch_registers_pkg::lights_t lights,
     // Whether the frame has a prepass with cones, and the offset and the spread of their blocks in units of the ray direction
-    // D (docs/formats.md, "Cones").
+    // D (docs/formats/raymarch.md, "Cones").
     input  wire                       prepass,
     input  wire  [2:0][31:0]          cone_offset,
     input  wire  [13:0]               cone_spread,

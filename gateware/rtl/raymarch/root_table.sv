@@ -1,5 +1,5 @@
 // Table of sqrt(x) for x from 1 to 4 in steps of 1/128, and of the difference to the next entry, both with 18 fraction bits and
-// rounded down (docs/formats.md, "Round fields").
+// rounded down (docs/formats/raymarch.md, "Round fields").
 //
 // `index` is 128·x; an index below 128 reads the entry of 128. `root` omits the leading bit of the root, which is 1. Latency 2
 // clocks, throughput one result a clock.

@@ -1,5 +1,5 @@
 // Table of lower bounds of 1/sqrt(q) by the first ten bits i of q: sqrt(2^10/(i + 1)), reduced by a part of 2^-16, u8.9
-// (docs/formats.md, "Rays").
+// (docs/formats/raymarch.md, "Rays").
 //
 // Latency 2 clocks, throughput one result a clock.
 

@@ -1,4 +1,4 @@
-// Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats.md, "Round fields").
+// Computes the light on spheres: a colour for each ray that ends on a sphere or fillet (docs/formats/raymarch.md, "Round fields").
 //
 //   end ─▶ o + t·d ─▶ - centre ─▶ · light ─▶ / radius ─▶ times its colour, summed ─▶ times the material ─▶ end, colour
 //                                   └──────────── once for each light ────────────┘

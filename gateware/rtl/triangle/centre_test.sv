@@ -1,4 +1,4 @@
-// Tests whether a tiny triangle covers one of 2×2 pixel centres: evaluates its three edge functions there (docs/formats.md,
+// Tests whether a tiny triangle covers one of 2×2 pixel centres: evaluates its three edge functions there (docs/formats/triangle.md,
 // "Triangle setup"). A triangle is tiny if it has at most 2×2 pixel centres in its bounds, so its extents are below 3 pixels,
 // and 11 bits hold each difference of coordinates. Other triangles pass.
 //

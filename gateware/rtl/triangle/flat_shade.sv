@@ -1,4 +1,4 @@
-// Flat shading (docs/formats.md, "Pixels" and "Light on meshes"): intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of
+// Flat shading (docs/formats/triangle.md, "Pixels" and "Light on meshes"): intensity = clamp(nearest(∓N·l·2^8), 0, 1), with N the normal of
 // the triangle, l the row of the light, and − for a front face; then the share of each channel, min(1, ambient +
 // nearest(light·intensity)), and colour·share, rounded to nearest.
 //

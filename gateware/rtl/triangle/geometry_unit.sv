@@ -18,7 +18,7 @@
 // continue those of the mesh before; size, places and `list_shift` must be the same. Exceptions have their numbers in their mesh.
 // After `restart` there is nothing to continue, and the lists are emptied.
 //
-// With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats.md, "Segments in memory"): mesh_walk reads
+// With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
 // them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
 //
 // Throughput is that of the slowest part: 11 clocks a drawn triangle (33 with smooth shading), 3 a culled one, 6 a vertex that is

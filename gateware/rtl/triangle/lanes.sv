@@ -1,6 +1,6 @@
-// Computes which of the eight pixels (lanes) of a group a triangle covers, and their depth codes (docs/formats.md, "Pixels").
+// Computes which of the eight pixels (lanes) of a group a triangle covers, and their depth codes (docs/formats/triangle.md, "Pixels").
 //
-// Coverage: E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a lane if E' is at least
+// Coverage: E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if E' is at least
 // 0 there. E' is largest in the edge's best lane, which is lane 7 of a rising edge and lane 0 of a falling one, and falls by
 // |step_x| from lane to lane. If E' is at least 0 in the best lane, the edge passes in that lane and in the next min(7,
 // floor(E' / |step_x|)) lanes; the quotient comes from three steps of a division. From E' = 2^23 on, which exceeds 7 * 2^20, the

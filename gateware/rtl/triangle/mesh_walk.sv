@@ -1,4 +1,4 @@
-// Reads the triangles of a mesh in memory, chunk by chunk (docs/formats.md, "Mesh in memory").
+// Reads the triangles of a mesh in memory, chunk by chunk (docs/formats/mesh.md, "Mesh in memory").
 //
 // Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertex stage
 // reads the vertices of the chunk, from `vertex_base` on. Triangles that were sent still need the vertices of their chunk, so

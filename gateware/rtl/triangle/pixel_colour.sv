@@ -1,5 +1,5 @@
 // Computes the colour of a pixel from its accumulators of depth and light: divides each light by the depth, with a table of
-// reciprocals (docs/formats.md, "Smooth shading").
+// reciprocals (docs/formats/triangle.md, "Smooth shading").
 //
 //   clock   0          1           2               3                      4, 5, 6        7
 //           depth ─▶ zeros by 4 ─▶ zeros, index ─▶ table: inverse y ──┐

@@ -4,7 +4,7 @@
 
 package raster_pkg;
     // A triangle at the row where it enters the band, in its start group. A group is eight neighbouring pixels of a row, lanes
-    // 0 (left) to 7. E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a lane if its
+    // 0 (left) to 7. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a lane if its
     // E' is at least 0 there. E' is linear, so within a group its largest value is in lane 7 if the edge rises to the right,
     // and in lane 0 otherwise: `best`. `beside` is E' one lane outside of the opposite end of the group, in lane -1 if the edge
     // rises, and in lane 8 otherwise. It shows whether the edge passes anywhere in the next group on that side.

@@ -1,5 +1,5 @@
 // Computes the reciprocal y = 2^47/m of a mantissa m in [2^23, 2^24), from a table and two Newton steps
-// (docs/formats.md, "The reciprocal").
+// (docs/formats/triangle.md, "The reciprocal").
 //
 // `out_y` comes with `out_valid` (one clock) 15 clocks after m, and stays until the next result; nothing stalls. Throughput:
 // `in_ready` admits one m in 10 clocks. One DSP48 makes the four products:

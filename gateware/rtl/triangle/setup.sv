@@ -1,4 +1,4 @@
-// Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats.md, "Triangle
+// Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats/triangle.md, "Triangle
 // setup"). The *start* is the pixel at which the edge functions and the depth in a descriptor_t are given.
 //
 //         3 clocks a triangle            11 clocks a triangle, all four in step with `count`
@@ -18,7 +18,7 @@
 // differences of the three vertices add up to 0, so the sum does not depend on the point, and at vertex 0 the sum is E1.
 //
 // With SMOOTH, each channel of light has a plane, a linear function on the screen like the depth. Stage 1 computes its values P
-// at the vertices (docs/formats.md, "Smooth shading"). The channels then follow each other through one datapath, in rounds of 11
+// at the vertices (docs/formats/triangle.md, "Smooth shading"). The channels then follow each other through one datapath, in rounds of 11
 // clocks, three to a beat of a frame with smooth shading:
 //
 //   beat           2                       3                       4
@@ -113,7 +113,7 @@ module setup #(
         end
     end
 
-    // Stage 1. Returns the bias of an edge (docs/formats.md, "Triangle setup"): 1 if the edge is neither top nor left.
+    // Stage 1. Returns the bias of an edge (docs/formats/triangle.md, "Triangle setup"): 1 if the edge is neither top nor left.
     // `right_to_left` is the sign of the edge's step_y. Both steps are 0 only for an edge of length 0.
     function automatic logic bias(input logic [20:0] step_x, input logic right_to_left);
         bias = step_x[20] || step_x == '0 && right_to_left;

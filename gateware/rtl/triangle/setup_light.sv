@@ -1,5 +1,5 @@
 // Stage 1 of the triangle setup for smooth shading: computes P = nearest((w + 1/2)·L) of each vertex and channel
-// (docs/formats.md, "Smooth shading"), with w the depth of the vertex and L its light. The results have the form that a plane
+// (docs/formats/triangle.md, "Smooth shading"), with w the depth of the vertex and L its light. The results have the form that a plane
 // needs: P at vertex 0 (`value`), and the differences of the other vertices from it (`p10`, `p20`).
 //
 // A round computes the three products of a channel, vertex after vertex, for the triangle in stage 1. The results wait in a queue

@@ -12,7 +12,7 @@
 // and raster_unit explain their parameters and results. `events` has the growth of each counter, some clocks late.
 //
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
-// is interpolated over the depth, with a division at each pixel (docs/formats.md, "Smooth shading"). Descriptors then have
+// is interpolated over the depth, with a division at each pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then have
 // twice the words.
 //
 // LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments in place of a mesh.

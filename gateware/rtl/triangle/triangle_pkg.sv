@@ -1,4 +1,4 @@
-// Types of the values that the modules of the triangle engine exchange. docs/formats.md explains the number formats.
+// Types of the values that the modules of the triangle engine exchange. docs/formats/triangle.md explains the number formats.
 
 `default_nettype none
 
@@ -18,7 +18,7 @@ package triangle_pkg;
         screen_vertex_t place;
     } projected_t;
 
-    // Increments of an edge function E' (docs/formats.md, "Triangle setup", step 5) over one pixel down (y) and over one pixel
+    // Increments of an edge function E' (docs/formats/triangle.md, "Triangle setup", step 5) over one pixel down (y) and over one pixel
     // to the right (x), s21.
     typedef struct packed {
         logic [20:0] y;
@@ -44,7 +44,7 @@ package triangle_pkg;
     } descriptor_t;
 
     // Light of a vertex with smooth shading: whether it belongs to back faces, and the shaded colour L of each channel
-    // (docs/formats.md, "Smooth shading"), red and blue in units of 2^-13, green in units of 2^-14. Builds without smooth
+    // (docs/formats/triangle.md, "Smooth shading"), red and blue in units of 2^-13, green in units of 2^-14. Builds without smooth
     // shading replace this type and each of the following types by one bit, 0.
     typedef struct packed {
         logic        back;

@@ -48,7 +48,7 @@ package triangle_registers_pkg;
         logic [15:0] colour;
     } geometry_t;
 
-    // Camera and light of the geometry pass: docs/formats.md, "Frame constants".
+    // Camera and light of the geometry pass: docs/formats/camera.md, "Frame constants".
     typedef struct packed {
         logic [4:0] scale_shift;
         logic [2:0][24:0] row_u;

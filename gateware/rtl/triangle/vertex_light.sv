@@ -1,4 +1,4 @@
-// Computes the light of a vertex (docs/formats.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each channel, and
+// Computes the light of a vertex (docs/formats/triangle.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each channel, and
 // the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With `cull_back` only front
 // faces are seen, so the light is that of front faces. Without, it is that of the side towards the light; the other side is dark, so
 // there must be no ambient light.

@@ -1,4 +1,4 @@
-// Step 6 of the vertex stage (docs/formats.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh) by
+// Step 6 of the vertex stage (docs/formats/triangle.md): X' = nearest(X·2^−sh) in 25 bits, saturated, and Y' = nearest(Y·2^−sh) by
 // the same shifter.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`.

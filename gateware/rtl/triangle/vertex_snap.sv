@@ -1,4 +1,4 @@
-// Steps 7 and 8 of the vertex stage (docs/formats.md): computes the position x, y on the screen, the flag of a vertex beyond
+// Steps 7 and 8 of the vertex stage (docs/formats/triangle.md): computes the position x, y on the screen, the flag of a vertex beyond
 // the guard band, and w, the depth code before its rounding.
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`; products follow three clocks after their factors.
@@ -33,7 +33,7 @@ module vertex_snap (
     output triangle_pkg::projected_t vertex
 );
     // w is the product km·y divided by 2^(16 + depth_shift), with km = `depth_mantissa`; it saturates for a negative
-    // depth_shift. `lead` of docs/formats.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so
+    // depth_shift. `lead` of docs/formats/triangle.md is 40 − zeros. The registers `depth_shifts` and `behinds` shift every 6 clocks, so
     // that their five places follow the vertices through the stage, from clock 8 and from clock 9 of a vertex on.
     logic [4:0][4:0]   depth_shifts;
     logic [4:0]        behinds;

@@ -1,5 +1,5 @@
 // The vertex stage: computes the position on the screen and the depth of mesh vertices, in order. It performs steps 1 to 8 of
-// docs/formats.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` those of
+// docs/formats/triangle.md, "Vertex stage", which also defines the letters (f, m, y, X, Y, X', Y' and so on); with `orthographic` those of
 // "Orthographic projection", in the same clocks.
 //
 // A vertex takes 6 clocks; latency 39 clocks, plus up to 5 until its slot in the schedule. Four multipliers work in a fixed
@@ -21,7 +21,7 @@ module vertex_stage (
     input  wire                rst,
     // Frame constants.
     input  wire                orthographic,
-    input  wire  [4:0]         scale_shift, // f of docs/formats.md, or f + 1 − ke in orthographic projection
+    input  wire  [4:0]         scale_shift, // f of docs/formats/camera.md, or f + 1 − ke in orthographic projection
     input  wire  [2:0][24:0]   row_u,       // x component in the lowest bits
     input  wire  [2:0][24:0]   row_v,
     input  wire  [2:0][24:0]   row_n,

@@ -1,4 +1,4 @@
-// Steps 1 to 4 of the vertex stage (docs/formats.md): transforms a position P to camera coordinates X, Y, Z, compares Z with
+// Steps 1 to 4 of the vertex stage (docs/formats/triangle.md): transforms a position P to camera coordinates X, Y, Z, compares Z with
 // the near plane, and normalises Z to its mantissa. In orthographic projection the frame's depth scale, in place of Z, gives the
 // bits that the mantissa takes.
 //

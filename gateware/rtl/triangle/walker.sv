@@ -1,5 +1,5 @@
 // Visits the part of a triangle in a band in groups of eight pixels, one group a clock, and sends the groups that the triangle
-// may cover. E' is the value of an edge function (docs/formats.md, "Triangle setup"); an edge passes in a pixel with E' >= 0
+// may cover. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a pixel with E' >= 0
 // and fails otherwise. A group has lanes 0 to 7 from left to right; lanes -1 and 8 are the pixels next to it.
 //
 //        ┌──────┐     row by row, from group_start:

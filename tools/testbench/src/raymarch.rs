@@ -118,9 +118,9 @@ pub struct End {
     pub steps: u64,
     /// Length of the ray's direction, as an index into the table of inverse lengths.
     pub length: u64,
-    /// Distance of the face from the point at `t` (*gap* in docs/formats.md).
+    /// Distance of the face from the point at `t` (*gap* in docs/formats/raymarch.md).
     pub gap: u64,
-    /// Slope of the ray towards the face (*slope* in docs/formats.md).
+    /// Slope of the ray towards the face (*slope* in docs/formats/raymarch.md).
     pub slope: u64,
     /// Direction of a ray that hits a sphere.
     pub direction: [i32; 3],

@@ -1,4 +1,4 @@
-//! Meshes of triangles that share no vertices, as bytes of the mesh format (docs/formats.md, "Mesh in memory").
+//! Meshes of triangles that share no vertices, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in memory").
 
 use glint_core::camera::View;
 use rand::RngExt;

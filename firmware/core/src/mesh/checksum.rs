@@ -3,7 +3,7 @@
 use super::HEADER;
 use crate::wire::CRC_32;
 
-/// Offset of the checksum in the header (docs/formats.md, "Mesh in memory").
+/// Offset of the checksum in the header (docs/formats/mesh.md, "Mesh in memory").
 const OFFSET: usize = 24;
 
 /// The checksum in the header of a mesh; `None` for bytes without a whole header.

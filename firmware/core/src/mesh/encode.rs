@@ -1,4 +1,4 @@
-//! Encoding of meshes (docs/formats.md, "Mesh in memory"), for hosts with a heap.
+//! Encoding of meshes (docs/formats/mesh.md, "Mesh in memory"), for hosts with a heap.
 
 use alloc::vec::Vec;
 use core::fmt;

@@ -2,7 +2,7 @@
 
 use super::{HEADER, Mesh, RECORD};
 
-/// Offset of the normal in a vertex and in a triangle (docs/formats.md, "Mesh in memory").
+/// Offset of the normal in a vertex and in a triangle (docs/formats/mesh.md, "Mesh in memory").
 const OF_VERTEX: usize = 6;
 const OF_TRIANGLE: usize = 8;
 

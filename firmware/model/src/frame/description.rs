@@ -89,7 +89,7 @@ pub struct FieldSubject<'a> {
     pub appearance: &'a Appearance,
     /// Quality, which determines the precision of the rays. The frame has the picture's size.
     pub quality: Quality,
-    /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats.md, "Cones").
+    /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats/raymarch.md, "Cones").
     pub prepass: bool,
 }
 

@@ -90,7 +90,7 @@ impl FieldSetup {
     }
 
     /// Depth along the camera's forward axis n of the cone's point at the parameter t, in field units times 2^e
-    /// (docs/formats.md, "Cones"): u11.7, rounded down.
+    /// (docs/formats/raymarch.md, "Cones"): u11.7, rounded down.
     pub fn cleared(&self, cone: &Cone, t: u32) -> u32 {
         let depth = (u64::from(t) * u64::from(self.inverse(cone.ray.length))) >> 9;
         depth.min(FARTHEST.into()) as u32 >> (FRACTION - DEPTH_FRACTION)

@@ -4,7 +4,7 @@ use glint_core::camera::View;
 use glint_core::fixed::Q2_23;
 
 /// Directions of the pixels' rays with 51 fraction bits, scaled so that their component along the camera's forward axis n
-/// is 1. `narrow` converts them to the directions D of docs/formats.md ("Rays").
+/// is 1. `narrow` converts them to the directions D of docs/formats/raymarch.md ("Rays").
 pub(super) struct Directions {
     /// Direction of the first pixel's ray, for each eye.
     pub first: [[i64; 3]; 2],

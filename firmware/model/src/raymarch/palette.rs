@@ -23,7 +23,7 @@ pub struct Palette {
     /// Colour of the sky at the horizon and below, and of the fog.
     pub horizon: [u8; 3],
     /// Share of a surface's colour that fog hides; 255 hides all of it. The index is the hit's depth along n times
-    /// 2^−`fog_shift`, rounded down; depths are in field units multiplied by 2^e (docs/formats.md, "Rays" and "Ends").
+    /// 2^−`fog_shift`, rounded down; depths are in field units multiplied by 2^e (docs/formats/raymarch.md, "Rays" and "Ends").
     pub fog: [u8; 256],
     /// Exponent of the depth step of the table `fog`, 0 to 7.
     pub fog_shift: u32,

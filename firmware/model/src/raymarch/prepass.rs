@@ -8,7 +8,7 @@ const CONES: u32 = 1 << 14;
 pub struct Cones {
     /// Exponent of the block size, 2, 3 or 4: blocks have 2^`block` by 2^`block` pixels.
     pub block: u32,
-    /// Change of the unscaled ray direction D (docs/formats.md, "Rays") from a block's first pixel to its
+    /// Change of the unscaled ray direction D (docs/formats/raymarch.md, "Rays") from a block's first pixel to its
     /// middle, 30 fraction bits.
     pub offset: [i32; 3],
     /// Largest difference of D between the middle and any pixel of a block, in the maximum norm, or in the Euclidean

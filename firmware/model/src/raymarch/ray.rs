@@ -45,7 +45,7 @@ pub struct Ray {
     pub eye: usize,
     /// Direction, s1.17, of length 1 at most: in the maximum norm, or in the Euclidean norm for scenes with spheres.
     pub direction: [i32; 3],
-    /// Length index: the first ten fraction bits of the largest component of the unscaled direction D (docs/formats.md,
+    /// Length index: the first ten fraction bits of the largest component of the unscaled direction D (docs/formats/raymarch.md,
     /// "Rays"), or of |D|² for scenes with spheres. It selects the table entry that scales D to `direction`.
     pub length: u32,
     /// Parameter t at the start of the ray, u11.12: at the near plane, or where the ray enters the bounding box.

@@ -25,11 +25,11 @@ pub struct Eye {
     pub origin: [i32; 3],
     /// Distance outside of the bounding box along each axis, u12.12; 0 inside, and for unbounded fields.
     pub outside: [u32; 3],
-    /// Unscaled direction D (docs/formats.md, "Rays") of the first pixel's ray, 30 fraction bits, modulo 2^32.
+    /// Unscaled direction D (docs/formats/raymarch.md, "Rays") of the first pixel's ray, 30 fraction bits, modulo 2^32.
     pub first: [i32; 3],
 }
 
-/// The constants of a frame (formats.md, "Distance fields").
+/// The constants of a frame (docs/formats/raymarch.md, "Distance fields").
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldSetup {
     /// Width of the picture in pixels.

@@ -1,4 +1,4 @@
-//! Descriptors and band lists, the input of the raster pass (docs/formats.md).
+//! Descriptors and band lists, the input of the raster pass (docs/formats/triangle.md).
 
 mod contents;
 

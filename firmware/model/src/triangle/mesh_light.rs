@@ -1,4 +1,4 @@
-//! Light on meshes from a direction, with a colour, and ambient light (docs/formats.md, "Light on meshes").
+//! Light on meshes from a direction, with a colour, and ambient light (docs/formats/triangle.md, "Light on meshes").
 
 use glint_core::camera::View;
 use glint_core::fixed::Q2_23;

@@ -8,7 +8,7 @@ use crate::error::{MAX_EYE, RenderError, SIZES};
 use crate::triangle::rounding::nearest;
 use crate::triangle::volume::{Clip, Volume};
 
-/// The frame constants of the vertex stage (formats.md, "Frame constants").
+/// The frame constants of the vertex stage (docs/formats/camera.md, "Frame constants").
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct MeshSetup {
@@ -196,7 +196,7 @@ const LEAST_EXPONENT: i32 = -6;
 /// The smallest exponent ke of an orthographic frame with objects, from which each object subtracts up to 6.
 const LEAST_OF_OBJECTS: i32 = 0;
 
-/// The scale s·2^f (docs/formats.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
+/// The scale s·2^f (docs/formats/camera.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
 /// picture and h the half width of the view with 28 fraction bits.
 ///
 /// It depends on the width of the picture and the half width only, and takes a division.

@@ -1,4 +1,4 @@
-//! Objects: meshes with a place in the world (docs/formats.md, "Objects").
+//! Objects: meshes with a place in the world (docs/formats/camera.md, "Objects").
 
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q8_24, U4_28, U8_28};

@@ -1,4 +1,4 @@
-//! Smooth shading: the division of light by depth that gives the colour of each pixel (docs/formats.md, "Smooth
+//! Smooth shading: the division of light by depth that gives the colour of each pixel (docs/formats/triangle.md, "Smooth
 //! shading").
 
 use glint_core::colour::Rgb565;

@@ -160,7 +160,7 @@ impl Brush for Smooth {
     }
 }
 
-/// The number type of an edge function E' (docs/formats.md, "Triangle setup"): `i32` for a narrow setup, else `i64`.
+/// The number type of an edge function E' (docs/formats/triangle.md, "Triangle setup"): `i32` for a narrow setup, else `i64`.
 trait Accumulator:
     Copy
     + Default

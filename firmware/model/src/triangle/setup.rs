@@ -21,7 +21,7 @@ pub struct Oriented {
 }
 
 impl Oriented {
-    /// Computes steps 1 to 3 of the setup (docs/formats.md, "Triangle setup"); `None` for a triangle without area.
+    /// Computes steps 1 to 3 of the setup (docs/formats/triangle.md, "Triangle setup"); `None` for a triangle without area.
     ///
     /// A difference of two positions is s21 (at most 4095 pixels), a product is below 2^40.
     pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
@@ -141,7 +141,7 @@ pub struct Edge {
 }
 
 impl Edge {
-    /// Computes steps 4 and 5 of the setup (docs/formats.md, "Triangle setup") for the edge from `a` to `b`, with the
+    /// Computes steps 4 and 5 of the setup (docs/formats/triangle.md, "Triangle setup") for the edge from `a` to `b`, with the
     /// start pixel in column i and row j.
     ///
     /// |E| < 2^20·(2047.5 + 1280 + 2047.5 + 720)·2^8, which is below 2^41.
@@ -171,7 +171,7 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Computes steps 6 to 8 of the setup (docs/formats.md, "Triangle setup") for the values w0, w1, w2 of depth or light
+    /// Computes steps 6 to 8 of the setup (docs/formats/triangle.md, "Triangle setup") for the values w0, w1, w2 of depth or light
     /// at the vertices, u18.6.
     ///
     /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45.
@@ -246,7 +246,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Computes steps 4 to 8 of the setup (docs/formats.md, "Triangle setup"), for a flat triangle.
+    /// Computes steps 4 to 8 of the setup (docs/formats/triangle.md, "Triangle setup"), for a flat triangle.
     pub fn new(triangle: &Oriented, bounds: Bounds) -> Self {
         let [v0, v1, v2] = triangle.vertices;
         let topmost = if v0.y <= v1.y && v0.y <= v2.y {
@@ -273,7 +273,7 @@ impl Setup {
         }
     }
 
-    /// Computes steps 4 to 9 of the setup (docs/formats.md, "Triangle setup"), for a triangle under smooth shading. `lit`
+    /// Computes steps 4 to 9 of the setup (docs/formats/triangle.md, "Triangle setup"), for a triangle under smooth shading. `lit`
     /// is the light of its vertices, in the order of the vertices.
     ///
     /// Not inlined, so that flat triangles do not load this code into the instruction cache.

@@ -5,7 +5,7 @@ use glint_core::colour::Rgb565;
 use crate::triangle::facing::{Facing, along};
 use crate::triangle::rounding::nearest;
 
-/// Half a depth code, u18.6: the addition to the weight of light (docs/formats.md, "Smooth shading").
+/// Half a depth code, u18.6: the addition to the weight of light (docs/formats/triangle.md, "Smooth shading").
 pub const HALF_CODE: u32 = 1 << 5;
 
 /// Intensity clamp(−N·l, 0, 1), u1.8, for the normal N (s2.14) and the row l of the light (s2.23). A back face negates N.
@@ -26,7 +26,7 @@ pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
     Rgb565(r << 11 | g << 5 | b)
 }
 
-/// The light L of a vertex (docs/formats.md, "Smooth shading"): red, green and blue after shading. Each is a fraction of
+/// The light L of a vertex (docs/formats/triangle.md, "Smooth shading"): red, green and blue after shading. Each is a fraction of
 /// the channel's range in u0.14, at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);

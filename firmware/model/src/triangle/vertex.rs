@@ -68,7 +68,7 @@ impl Projected {
     }
 }
 
-/// Transforms a position to camera coordinates: steps 1 and 2 of the vertex stage (docs/formats.md).
+/// Transforms a position to camera coordinates: steps 1 and 2 of the vertex stage (docs/formats/triangle.md).
 ///
 /// The position P with |P| ≤ 2·√3 is less than 2^15.8 in its units, and a row is shorter than 2^24.01 (2^23.01 for n), so
 /// each scalar product is below 2^39.9. A translation is at most 8 times the length of a row, 2^41.1. So |X|, |Y| <
@@ -89,7 +89,7 @@ pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
 }
 
 /// Projects a vertex to the screen, or finds that it is nearer than the near plane: steps 3 to 8 of the vertex stage
-/// (docs/formats.md).
+/// (docs/formats/triangle.md).
 pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     if vertex.z < frame.near {
         return Projected::Behind;
@@ -103,7 +103,7 @@ pub fn project(frame: &MeshSetup, vertex: &CameraVertex) -> Projected {
     }
 }
 
-/// Projects a vertex at or beyond the near plane to the screen: steps 4 to 8 of the vertex stage (docs/formats.md).
+/// Projects a vertex at or beyond the near plane to the screen: steps 4 to 8 of the vertex stage (docs/formats/triangle.md).
 ///
 /// A position more than 4096 pixels from the centre saturates at 4096 pixels or more: it stays outside the guard band.
 ///

@@ -23,7 +23,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         [0, 1, 2].map(|k| v1[k] - v0[k]),
         [0, 1, 2].map(|k| v2[k] - v0[k]),
     );
-    // Steps 6 to 8 of the triangle setup, as written in docs/formats.md.
+    // Steps 6 to 8 of the triangle setup, as written in docs/formats/triangle.md.
     let Reciprocal { y, lead } = Reciprocal::of(triangle.doubled_area);
     let gradient =
         |n: i128| ((n * i128::from(y) + (1 << (lead + 7))) >> (lead + 8)).rem_euclid(1 << 40);

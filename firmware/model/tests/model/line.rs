@@ -240,7 +240,7 @@ fn slope(corners: [ScreenVertex; 3], axis: usize) -> f64 {
     (rise / cross(0, 1)).abs() * 256.0 / 64.0
 }
 
-/// With the bias that docs/formats.md states, the edges of a face are never hidden by the face.
+/// With the bias that docs/formats/line.md states, the edges of a face are never hidden by the face.
 #[test]
 fn edges_with_bias_lie_in_front_of_their_face() {
     let mut random = Random(5);

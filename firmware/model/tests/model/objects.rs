@@ -99,7 +99,7 @@ fn vertices_of_objects_against_f64() {
                 let error = (f64::from(found.x) - 256.0 * x)
                     .abs()
                     .max((f64::from(found.y) - 256.0 * y).abs());
-                // The bound of docs/formats.md.
+                // The bound of docs/formats/camera.md.
                 let scale = f64::from(width) / 2.0 / view.half_width().to_num::<f64>();
                 let length = dot(world(position), world(position)).sqrt();
                 let d = [0, 1, 2].map(|i| place[i] - eye[i]);

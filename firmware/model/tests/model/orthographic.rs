@@ -84,7 +84,7 @@ fn aimed(random: &mut Random, size: (u32, u32), half_width: f64, reach: f64) -> 
     }
 }
 
-/// The bound of docs/formats.md for the error of a position, in 1/256 pixel: the snap, and the rows for a point at `distance`.
+/// The bound of docs/formats/camera.md for the error of a position, in 1/256 pixel: the snap, and the rows for a point at `distance`.
 fn bound(frame: &MeshSetup, distance: f64) -> f64 {
     0.54 + 256.0 * 3f64.sqrt() * 0.5f64.powi(frame.scale_shift as i32 + 1) * distance
 }
@@ -138,7 +138,7 @@ fn places_and_depths_against_f64() {
     }
 }
 
-/// The projection as its steps in docs/formats.md, in 128 bits.
+/// The projection as its steps in docs/formats/camera.md, in 128 bits.
 #[test]
 fn steps_as_written() {
     let mut random = Random(51);

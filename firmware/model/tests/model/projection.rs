@@ -155,7 +155,7 @@ fn fields_of_view_against_f64() {
                 worst.count, worst.screen, worst.guard
             );
             assert!(worst.count > 1_000);
-            // The bound of docs/formats.md, with |D|/Z in a corner of the picture.
+            // The bound of docs/formats/triangle.md, with |D|/Z in a corner of the picture.
             let longest = (1.0 + 1.3164 * half_width * half_width).sqrt();
             let rows = 0.5f64.powi(shift as i32 + 1) + f64::from(width) * 0.5f64.powi(25);
             let bound = 0.75 + 256.0 * 3f64.sqrt() * longest * rows;
@@ -291,7 +291,7 @@ fn extremes() {
     assert!(seen > 5000, "{seen}");
 }
 
-/// Compares the vertex stage with its steps in docs/formats.md, computed in 128 bits.
+/// Compares the vertex stage with its steps in docs/formats/triangle.md, computed in 128 bits.
 #[test]
 fn steps_as_written() {
     let mut random = Random(4);

@@ -9,7 +9,7 @@ use glint_core::flash::{CONTENTS, FIRMWARE, Image};
 use glint_core::wire::crc32;
 use std::path::PathBuf;
 
-/// Make, list or check images for a board's SPI flash: bitstream, firmware and scenes (docs/formats.md, "Flash image").
+/// Make, list or check images for a board's SPI flash: bitstream, firmware and scenes (docs/formats/flash.md, "Flash image").
 #[derive(Subcommand)]
 pub enum ImageCommand {
     Make(MakeArguments),

@@ -79,7 +79,7 @@ impl Exact {
     }
 }
 
-/// Luminance of a colour, with the weights of docs/formats.md.
+/// Luminance of a colour, with the weights of docs/formats/camera.md.
 fn luminance(colour: Vector) -> f64 {
     dot(colour, [77.0, 150.0, 29.0]) / 256.0
 }

@@ -9,7 +9,7 @@ use glint_model::raymarch::{Cones, FieldOptions, FieldSetup, Rays, Stereo, Tint}
 use glint_reference::camera::Camera;
 use glint_reference::raymarch::{Field, views};
 
-/// Largest error by the truncation of a point and of a face's position, in field units (docs/formats.md).
+/// Largest error by the truncation of a point and of a face's position, in field units (docs/formats/raymarch.md).
 const STEPS: f64 = 2.0 / 4096.0;
 
 /// Result of comparing a picture's rays with and without a prepass.

@@ -216,7 +216,7 @@ fn edges() {
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }
-        // With the largest translations, the place on the screen and X', from which it is computed (docs/formats.md), saturate.
+        // With the largest translations, the place on the screen and X', from which it is computed (docs/formats/triangle.md), saturate.
         for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
             frame.translation[axis] = far;
             bench.check(&frame, &[at]);
@@ -279,7 +279,7 @@ fn orthographic_edges() {
 }
 
 /// The camera coordinates of a vertex at the origin are the translation. The tested translations cover mantissas of Z at
-/// both ends of the range of each seed (table entry) of the reciprocal, and X' (docs/formats.md) on both sides of rounding
+/// both ends of the range of each seed (table entry) of the reciprocal, and X' (docs/formats/triangle.md) on both sides of rounding
 /// limits.
 #[test]
 fn mantissas_and_shifts() {

@@ -18,7 +18,7 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Reads the parameters. A shift, a near plane or an exponent out of the range of docs/formats.md becomes the nearest one in the
+    /// Reads the parameters. A shift, a near plane or an exponent out of the range of docs/formats/camera.md becomes the nearest one in the
     /// range: there is no frame with such constants.
     pub fn new(flags: Geometry, parameters: &Parameters, size: Size) -> Self {
         let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));

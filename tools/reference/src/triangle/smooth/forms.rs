@@ -90,7 +90,7 @@ impl Light<'_> {
         }
     }
 
-    /// Returns light over depth at a pixel, as docs/formats.md defines it in "Smooth shading", with any reciprocal.
+    /// Returns light over depth at a pixel, as docs/formats/triangle.md defines it in "Smooth shading", with any reciprocal.
     fn divided(&self, inverse: Inverse, pixel: &Pixel) -> [f64; 3] {
         let value = |plane: &Plane| {
             let right = (pixel.column - self.setup.start_column) as u32;

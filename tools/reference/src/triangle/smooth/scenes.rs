@@ -11,7 +11,7 @@ use rand_pcg::Pcg64Mcg;
 use super::{Content, Scene};
 
 /// Returns a bound of the error of a channel, in steps, for depth codes of at least `farthest`. It is half a step for the last
-/// rounding, plus the bound in docs/formats.md, "Smooth shading".
+/// rounding, plus the bound in docs/formats/triangle.md, "Smooth shading".
 fn bound(farthest: f64) -> f64 {
     0.5 + 0.032 + 43.0 / farthest
 }

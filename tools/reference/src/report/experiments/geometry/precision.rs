@@ -270,7 +270,7 @@ fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
 }
 
 /// Errors of positions on the screen in 1/256 pixel, up to half a picture of 1280 pixels from its middle, for all mantissas of the
-/// depth: step 7 of the vertex stage (docs/formats.md), with its rounding.
+/// depth: step 7 of the vertex stage (docs/formats/triangle.md), with its rounding.
 fn positions(reciprocal: fn(u32) -> u32) -> Errors {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let mut errors = Errors::default();

@@ -20,7 +20,7 @@ pub struct Row {
     pub pixels: u64,
     /// Smallest depth code of a covered pixel.
     pub smallest_depth_code: u32,
-    /// Upper bound of the model's error (docs/formats.md, "Smooth shading", plus half a step for the last rounding).
+    /// Upper bound of the model's error (docs/formats/triangle.md, "Smooth shading", plus half a step for the last rounding).
     pub bound: f64,
     /// Largest error of the model's colours.
     pub max_err: f64,

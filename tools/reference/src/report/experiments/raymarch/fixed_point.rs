@@ -8,7 +8,7 @@ use crate::raymarch::metrics::Outcome;
 use crate::raymarch::raymarched::{RenderedRay, Subject};
 use crate::raymarch::{Face, Field};
 
-/// Number of fraction bits of a length in the model. Lengths are in field units (docs/formats.md).
+/// Number of fraction bits of a length in the model. Lengths are in field units (docs/formats/raymarch.md).
 pub const MODEL_FRACTION: u32 = 12;
 
 /// Twice the number of field units per world unit. The sponge's half side is 1 world unit or 40.5 field units.
@@ -20,7 +20,7 @@ pub struct FixedPoint {
     setup: FieldSetup,
     /// Number of fraction bits of a length in field units, from 8 to 16.
     fraction: u32,
-    /// Sides S of the cells of each level, in field units with `fraction` bits: see `menger` in docs/formats.md.
+    /// Sides S of the cells of each level, in field units with `fraction` bits: see `menger` in docs/formats/raymarch.md.
     levels: Vec<i32>,
     /// Half the sponge's side, in field units with `fraction` bits.
     bound: u32,

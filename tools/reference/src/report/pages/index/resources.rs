@@ -19,7 +19,7 @@ const ACCELERATORS: [(&str, &str, &str, &str); 14] = [
         "setup",
         "edges, planes and light of triangles",
         "edges exact, planes rounded",
-        "formats.md#pixels",
+        "formats/triangle.md#pixels",
     ),
     (
         "triangle_raster",
