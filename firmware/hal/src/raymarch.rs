@@ -46,7 +46,7 @@ pub type Tables<'a> = [&'a [u8; 256]; 2];
 /// A colour: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// The constants of a field, by the registers that hold them (docs/registers.md). Numbers have the formats of docs/formats.md.
+/// The constants of a field, by the registers that hold them (docs/registers.md). Numbers have the formats of docs/formats/raymarch.md.
 #[derive(Clone, Copy)]
 pub struct Field<'a> {
     /// What is drawn. The driver sets `enable`.
