@@ -11,7 +11,7 @@ use crate::scenes::{Library, List};
 const NEXT: u8 = 1 << 0;
 /// Button 1: the previous scene.
 const PREVIOUS: u8 = 1 << 1;
-/// Button 2, where no motion sensor steers the camera: keep the scene, or go on.
+/// Button 2, where no motion sensor steers the camera: keep the scene, or continue.
 const HOLD: u8 = 1 << 2;
 
 /// Number of the error that the contents of the flash are damaged (docs/boards.md).

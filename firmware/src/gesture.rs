@@ -1,7 +1,7 @@
 //! The hand in front of the image sensor: its frames, and how it steers the camera.
 //!
 //! The interrupt at the end of an image sensor's frame notes the time. The main loop then reads the statistics of this frame,
-//! computes the camera's place, and sets what the engine counts in the next frame.
+//! computes the camera's position, and sets what the engine counts in the next frame.
 
 use core::cell::Cell;
 use core::time::Duration;
@@ -147,8 +147,8 @@ impl Gesture {
         });
     }
 
-    /// Looks whether the image sensor sends whole frames. If not, and it has lost its registers, it was unplugged, or had no supply: it
-    /// is set up again as soon as it answers, and the control goes on with the camera's place. The gyroscope's samples wait in their
+    /// Checks whether the image sensor sends whole frames. If not, and it has lost its registers, it was unplugged, or had no supply: it
+    /// is set up again as soon as it answers, and the control continues with the camera's position. The gyroscope's samples wait in their
     /// queue meanwhile.
     #[cold]
     #[inline(never)]
@@ -193,7 +193,7 @@ impl Gesture {
         self.waiting = None;
     }
 
-    /// Takes the statistics of a frame if one has ended; otherwise looks at the image sensor at times.
+    /// Takes the statistics of a frame if one has ended; otherwise polls the image sensor from time to time.
     #[inline(never)]
     pub fn poll(&mut self) {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
@@ -214,7 +214,7 @@ impl Gesture {
         }
     }
 
-    /// The place to which the camera is to move; `None` if it is there.
+    /// The position to which the camera moves; `None` if it has arrived.
     pub fn move_to(&mut self) -> Option<Pose> {
         let pose = self.control.pose();
         let is_new = matches!(self.sensor, Some(Ok(_))) && self.steered != Some(pose);
@@ -239,7 +239,7 @@ impl Gesture {
         self.waiting = None;
     }
 
-    /// The mark of the hand's place, if it is to be drawn.
+    /// The mark of the hand's position, if it is to be drawn.
     pub fn mark(&self) -> Option<Mark> {
         let blob = self.seen().and_then(Result::ok);
         self.is_marked.then(|| {
@@ -252,7 +252,7 @@ impl Gesture {
         })
     }
 
-    /// Sets whether the hand's place is drawn in a corner of the picture.
+    /// Sets whether the hand's position is drawn in a corner of the picture.
     pub const fn set_marked(&mut self, is_marked: bool) {
         self.is_marked = is_marked;
     }
@@ -275,7 +275,7 @@ impl Gesture {
         enlarged + if is_colour { 3 } else { 1 }
     }
 
-    /// The words of the small picture, if its frame has ended.
+    /// The words of the small picture, if its frame is complete.
     pub fn picture(&self) -> Option<impl Iterator<Item = u16> + Clone> {
         self.engine.picture()
     }
@@ -315,7 +315,7 @@ impl Gesture {
         self.control.presence()
     }
 
-    /// What the last frame showed, while the image sensor is on.
+    /// Content of the last frame; `None` while the image sensor is off.
     pub fn seen(&self) -> Option<Result<Blob, Doubt>> {
         matches!(self.sensor, Some(Ok(_))).then(|| self.control.seen())
     }
@@ -325,7 +325,7 @@ impl Gesture {
         self.size.pixels()
     }
 
-    /// The camera's place.
+    /// The camera's position.
     pub fn pose(&self) -> Pose {
         self.control.pose()
     }

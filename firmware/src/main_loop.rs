@@ -219,7 +219,7 @@ impl MainLoop {
         }
     }
 
-    /// Computes the camera's place from a frame of the image sensor.
+    /// Computes the camera's position from a frame of the image sensor.
     fn follow_hand(&mut self) {
         if GESTURE.is_built
             && let Some(gesture) = &mut self.machine.gesture
@@ -228,7 +228,7 @@ impl MainLoop {
         }
     }
 
-    /// Turns the camera to the sensor's attitude or moves it to the place that the hand demands, if a frame can be drawn.
+    /// Turns the camera to the sensor's attitude or moves it to the position that the hand sets, if a frame can be drawn.
     fn steer(&mut self) {
         let Machine {
             renderer,
@@ -346,7 +346,7 @@ impl MainLoop {
             Job::Render => Poll::Ready(statistics::print(machine, false)),
             Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
             Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
-            // No command of this build leaves another job.
+            // No command of this build starts another job.
             _ => Poll::Ready(Ok(())),
         };
         if let Poll::Ready(result) = result {

@@ -1,4 +1,4 @@
-//! The place of the hand, drawn small in the lower right corner of a picture.
+//! The position of the hand, drawn small in the lower right corner of a picture.
 
 use glint_core::fixed::U20_12;
 use glint_core::picture::Size;
@@ -11,7 +11,7 @@ const STANDS: u16 = 0xad55;
 /// Parts of the picture's width that the mark has.
 const PARTS: u32 = 8;
 
-/// The mark of the hand's place in a frame of the image sensor.
+/// The mark of the hand's position in a frame of the image sensor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Mark {
     /// Coordinates x and y of the hand's centre in 1/256 of the frame, if there is a hand.

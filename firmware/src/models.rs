@@ -47,7 +47,7 @@ pub enum RemoveError {
 }
 
 /// The built-in meshes and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes. An
-/// uploaded mesh takes the place of a built-in one with its name.
+/// uploaded mesh replaces a built-in one with its name.
 pub struct Models {
     arena: Arena,
     /// The uploaded meshes and their memory.
@@ -194,7 +194,7 @@ impl Models {
         self.arena.staging().get_mut(..length)
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and keeps them under `name`, in place of an earlier mesh
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and keeps them under `name`, instead of an earlier mesh
     /// of this name.
     ///
     /// # Errors
@@ -225,7 +225,7 @@ impl Models {
         Ok(())
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program in place of the
+    /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program instead of the
     /// last one.
     ///
     /// # Errors

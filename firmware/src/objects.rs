@@ -1,4 +1,4 @@
-//! The objects of the scene: several meshes, each with a place and a colour.
+//! The objects of the scene: several meshes, each with a position and a colour.
 
 use core::fmt::{self, Display};
 use core::slice;
@@ -12,7 +12,7 @@ use heapless::{String, Vec};
 
 use crate::arena::Arena;
 
-/// Text for objects in place of the name of a mesh.
+/// Text for objects instead of the name of a mesh.
 pub const OBJECTS: &str = "objects";
 
 /// Number of normals that are turned between two calls of `progress` in [`Objects::turn_normals`].
@@ -66,7 +66,7 @@ impl Display for ObjectError {
 pub struct Objects {
     /// The mesh of each object.
     sources: Vec<Source, MAX_OBJECTS>,
-    /// The objects as they are drawn.
+    /// The objects as drawn.
     objects: Vec<Object<'static>, MAX_OBJECTS>,
     /// Memory for the copies.
     memory: Arena,
@@ -78,7 +78,7 @@ pub struct Objects {
 struct Source {
     name: String<MAX_NAME>,
     mesh: Mesh<'static>,
-    /// The copy that is drawn in place of the mesh.
+    /// The copy that is drawn instead of the mesh.
     copy: Option<Copy>,
 }
 
@@ -255,7 +255,7 @@ impl Objects {
         is_complete
     }
 
-    /// Draws the object with its own mesh from now on, at the same place.
+    /// Draws the object with its own mesh from now on, at the same position.
     fn restore(&mut self, index: usize) {
         if let Some(object) = self.objects.get(index) {
             let placement = Placement::new(*object.placement.matrix());

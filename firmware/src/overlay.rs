@@ -40,7 +40,7 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Writes a line, and goes on with the next one.
+    /// Writes a line, and continues with the next one.
     pub fn line(&mut self, text: fmt::Arguments) {
         // Drawing does not fail.
         let _ = fmt::write(self, text);

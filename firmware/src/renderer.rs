@@ -35,9 +35,9 @@ pub struct Renderer {
 }
 
 impl Renderer {
-    /// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns `None` while
-    /// the gateware draws, and while the frame buffer to draw into is still on the screen; `models` and `scene` must not
-    /// change meanwhile. Drawing by the CPU takes long and calls `progress` at short intervals.
+    /// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns
+    /// `None` while the gateware draws, and while the frame buffer to draw into is still on the screen; `models` and `scene` must
+    /// not change meanwhile. Drawing by the CPU takes long and calls `progress` at short intervals.
     pub fn draw(
         &mut self,
         models: &Models,
@@ -76,7 +76,7 @@ impl Renderer {
         Some(drawn)
     }
 
-    /// Draws the mark of the hand's place, if there is one, into the frame that was just drawn.
+    /// Draws the mark of the hand's position, if there is one, into the frame that was just drawn.
     fn draw_mark(&mut self, scene: &Scene) {
         let (Some(mark), Some(back)) = (scene.mark(), self.display.back()) else {
             return;
@@ -239,8 +239,8 @@ impl Renderer {
         })
     }
 
-    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and what the CPU needs for its part. Returns `None` if the
-    /// gateware has no triangle engine, or while no frame buffer is free.
+    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and what the CPU needs for its
+    /// part. Returns `None` if the gateware has no triangle engine, or while no frame buffer is free.
     fn unseen<T>(
         &mut self,
         draw: impl FnOnce(&mut GatewareRenderer, &mut RightEye, &mut Output, &mut Cpu) -> T,

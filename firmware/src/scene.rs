@@ -238,7 +238,7 @@ impl Scene {
         self.field.is_some() && self.wireframe.is_none() && !self.objects
     }
 
-    /// Shows a field, or the mesh alone for `None`, in place of wireframe or objects if they are shown. A field sets the edges of a mesh
+    /// Shows a field, or the mesh alone for `None`, instead of wireframe or objects if they are shown. A field sets the edges of a mesh
     /// off.
     pub fn set_field(&mut self, field: Option<Field>) {
         self.changed |= self.wireframe.take().is_some() || self.objects || self.field != field;
@@ -442,12 +442,12 @@ impl Scene {
         self.wants_depth = wanted;
     }
 
-    /// The mark of the hand's place, if it is drawn.
+    /// The mark of the hand's position, if it is drawn.
     pub const fn mark(&self) -> Option<Mark> {
         self.mark
     }
 
-    /// Sets the mark of the hand's place; `None` draws none.
+    /// Sets the mark of the hand's position; `None` draws none.
     pub fn set_mark(&mut self, mark: Option<Mark>) {
         self.changed |= self.mark != mark;
         self.mark = mark;

@@ -30,7 +30,7 @@ pub enum Found {
     BuiltIn(&'static BuiltIn),
 }
 
-/// What a scene or a list shows.
+/// Content of a scene or a list.
 #[derive(Clone, Copy, Debug)]
 pub enum Shows {
     /// Console commands, a line each.
@@ -40,7 +40,7 @@ pub enum Shows {
 }
 
 impl Found {
-    /// What the scene or list shows.
+    /// Content of the scene or list.
     ///
     /// # Errors
     /// The flash is damaged.

@@ -25,19 +25,19 @@ const SAMPLE: Duration = Duration::from_millis(300);
 
 /// Result of a test.
 pub enum Verdict {
-    /// The part is there and works.
+    /// The part is present and works.
     Passed,
     /// The board, the gateware or the firmware lacks the part.
     Absent,
-    /// The part is there and does not work.
+    /// The part is present and does not work.
     Failed(Failure),
 }
 
-/// What a test has found.
+/// Result of a test.
 pub enum Failure {
     /// The build ids of gateware and firmware differ.
     Identity,
-    /// A counter of time stands still.
+    /// A clock does not advance.
     Stopped,
     /// A word of memory.
     Memory {
@@ -274,7 +274,7 @@ fn draw(machine: &mut Machine, picture: TestPicture) -> Verdict {
             Some(Err(error)) => Verdict::Failed(Failure::Engine(error)),
         };
     };
-    // No picture has a camera that is refused.
+    // The camera of every picture is valid.
     let _ = picture.describe(mesh, &mut draw);
     verdict
 }

@@ -27,7 +27,7 @@ pub fn receive(
     run(uart, clock, receiver)
 }
 
-/// The sender of downloads. Each transfer has a session number, one more than that of the transfer before, modulo 256.
+/// The sender of downloads. Each transfer has a session number, one more than that of the previous transfer, modulo 256.
 pub struct Downloads {
     uart: &'static ConsoleUart,
     clock: Clock,

@@ -3,7 +3,7 @@
 use glint_core::wireframe::{Debouncer, Key, Requests};
 use glint_hal::timer::Clock;
 
-/// Text for a wireframe program in place of the name of a mesh.
+/// Text for a wireframe program instead of the name of a mesh.
 pub const WIREFRAME: &str = "wireframe";
 
 /// Switch 0: the arrows rotate instead of pan.

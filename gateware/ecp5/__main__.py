@@ -55,7 +55,7 @@ class Build:
 
     @property
     def products(self):
-        """The files that stay."""
+        """Files that are kept."""
         return self.folder / f"{self.name}.bit", self.folder / "bitstream.txt"
 
     def synthesis(self):
@@ -107,7 +107,7 @@ class Build:
         return os.path.relpath(path, self.gateware)
 
     def _run(self, program, *arguments):
-        """Runs a program where the images of the ROMs are."""
+        """Runs a program in the folder of the ROM images."""
         done = subprocess.run([_PROGRAMS / program, *map(str, arguments)], cwd=self.gateware, check=False)
         if done.returncode != 0:
             sys.exit(f"{program} ended with {done.returncode}")

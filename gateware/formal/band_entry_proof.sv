@@ -24,7 +24,7 @@ module band_entry_proof (
     logic [BITS-1:0] in_band_0 = '0, in_band_1 = '0;
     logic [3:0]      unseen = '0, refused = '0;
 
-    // The triangle at the output in the clock before, whose late fields are there now.
+    // The triangle at the output in the previous clock, whose late fields are there now.
     logic            was_valid = 1'b0, was_odd;
     logic [BITS-1:0] was_number;
 

@@ -1,4 +1,4 @@
-// Proof that `classify` lets each triangle leave once, as regular, as an exception or as unseen, in order, with its own fields and
+// Proof that `classify` outputs each triangle once, as regular, as an exception or as off screen, in order, with its own fields and
 // its own number. The limits count only clocks in which no triangle waits at an output for its consumer. A triangle at the
 // input waits for at most 3 such clocks.
 

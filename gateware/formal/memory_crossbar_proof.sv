@@ -2,7 +2,7 @@
 // which banks complete theirs, at most one command in a clock, and any data. A model keeps the commands that each bank has not
 // completed. A command in a clock passes from one port to the queue of its bank, unchanged. No queue gets a command for which it
 // has no room. The answer of each command goes to its port, and the commands of a port are answered in their order. An idle memory
-// takes a command at once, and a port waits only for commands of the bank it asks for, for its own, and a few clocks for its turn.
+// takes a command at once, and a port waits only for commands of the bank it requests, for its own, and a few clocks for its turn.
 
 `default_nettype none
 

@@ -265,7 +265,7 @@ MUTATIONS = {
         # Fault: the module ignores a line's extent in the last frame, or takes it from the other frame buffer.
         _extents("united(earlier, now_3);", "now_3;", "in_order"),
         _extents("to       <= from;", "to       <= {1'b0, from[PLACE_BITS-2:0]};", "in_order"),
-        # Fault: the module goes on to further lines while no span is taken.
+        # Fault: the module continues to further lines while no span is taken.
         _extents("        if (advance) begin", "        if (1'b1) begin", "none_left_out"),
         # Fault: an extent stays after a sweep or for the next band, or keeps only its last group.
         _extents("sweeps_2 ? EMPTY : united", "united", "in_order"),
@@ -323,7 +323,7 @@ MUTATIONS = {
         _crossbar("ended & done_write, self.write_latency", "ended & done_write, self.write_latency + 1", "data_asked"),
         _crossbar("Mux(ended, len(writers), 0)", "Mux(ended, 0, len(writers))", "data_pass"),
         _crossbar("arbiter.ce.eq(1)", "arbiter.ce.eq(valid)", "idle_takes"),
-        # Fault: a port keeps its bank for ever.
+        # Fault: a port keeps its bank forever.
         _crossbar("owner & ~level[0] & ~(port.cmd.valid & stays)", "0", "taken_in_time"),
     ],
     "classify": [

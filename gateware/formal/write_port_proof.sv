@@ -21,7 +21,7 @@ module write_port_proof (
     logic rst = 1'b1;
     always_ff @(posedge clk) rst <= 1'b0;
 
-    // Words that came, words whose command was taken, and words whose data were taken, now and in the previous clock.
+    // Numbers of received words, words whose command was taken, and words whose data were taken, now and in the previous clock.
     logic [NUMBER_BITS-1:0] came, commanded, went, went_before, cmd_addr;
     logic [127:0]           wdata;
     logic [15:0]            wdata_strobe;

@@ -1,4 +1,4 @@
-"""Identity of the gateware: what the firmware compares with its own facts, and what it takes from here."""
+"""Identity of the gateware: values that the firmware checks or uses."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect.csr import CSRStatus

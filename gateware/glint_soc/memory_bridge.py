@@ -59,7 +59,7 @@ class MemoryBridge(LiteXModule):
         # Address of the next word of the line, kept because the bus access may have ended before memory takes its command.
         next_word = Signal.like(port.cmd.addr)
         is_last = Signal()
-        # The bus has given up the burst before all commands of its line were taken.
+        # The bus abandoned the burst before all commands of its line were taken.
         given_up = Signal()
 
         # Number of words of the port that were requested and not yet taken out of `reads`.

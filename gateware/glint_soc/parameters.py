@@ -79,7 +79,7 @@ class PassParameters(LiteXModule):
         self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
         self.specials += words, self._write, self._read
 
-        # `turn` is the place of the word that is read in `order`. The word moves into its chain one clock later.
+        # `turn` is the position of the word that is read in `order`. The word moves into its chain one clock later.
         self._order = [register for chain in chains for register in chain]
         self._turn = turn = Signal(max=len(self._order))
         waiting, reading, moving = (Signal(len(chains)) for _ in range(3))

@@ -70,7 +70,7 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
-    # Nothing tells the flash of this board to use four lines: the FPGA loads from it on one.
+    # The flash of this board is not set to four data lines: the FPGA loads from it on one.
     possible_blocks = GlintSoC.possible_blocks - {"flash"}
     # With the raymarcher nextpnr takes twice the time, and ends late (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}

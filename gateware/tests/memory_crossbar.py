@@ -53,7 +53,7 @@ class _Memory:
         banks = [getattr(controller, f"bank{number}") for number in range(_BANKS)]
         queues = [deque() for _ in banks]
         # Each clock delays by one what the simulation writes to a signal, and the crossbar adds a clock to both latencies.
-        # Commands take effect when the data of writes are there.
+        # Commands take effect when the data of writes have arrived.
         phy = controller.settings.phy
         commands = deque([(False, None)] * (phy.write_latency + 2))
         reads = deque([0] * (phy.read_latency - phy.write_latency - 1))

@@ -160,7 +160,7 @@ def check_placement():
     run_yosys("synth_xilinx -family xc7 -top placement_sample -flatten; select placement_sample; "
               "write_json -selected netlist.json", [TESTS / "placement_sample.sv"], folder)
     netlist = Netlist.read(folder / "netlist.json")
-    # Of the flip-flops that an enable without a name controls, any may describe it.
+    # An enable without a name is described by any flip-flop that it controls.
     fan_outs = sorted((re.sub(r"\[\d\]", "", name), loads) for name, loads in netlist.fan_outs(4))
     counts = placement(netlist, 1, 2)
     expected = [

@@ -95,7 +95,7 @@ pub enum SampleError {
         axis: usize,
         /// The difference in LSB.
         by: u32,
-        /// The accepted maximum in LSB.
+        /// Largest accepted value in LSB.
         most: u32,
     },
     /// The force of a sample differs too much from the force of the first sample.
@@ -106,7 +106,7 @@ pub enum SampleError {
         axis: usize,
         /// The difference in LSB.
         by: u32,
-        /// The accepted maximum in LSB.
+        /// Largest accepted value in LSB.
         most: u32,
     },
     /// The mean rates of the first and the second half of the samples differ too much.
@@ -124,7 +124,7 @@ pub enum SampleError {
         axis: usize,
         /// The mean rate in LSB, rounded away from zero, so that it is beyond `most`.
         mean: i32,
-        /// The accepted maximum in LSB.
+        /// Largest accepted value in LSB.
         most: u32,
     },
     /// All samples have the same rates. A sensor that measures has noise, so this sensor does not measure.

@@ -167,8 +167,9 @@ impl View {
     /// Returns the camera at `eye` that looks in the direction `gaze`, with the direction `up` upwards on the screen as far as
     /// possible: n = gaze/|gaze|, u = n × up/|n × up|, v = n × u. Both directions have any length except 0.
     ///
-    /// If the angle between `gaze` and `up`, or their opposites, has a sine below 2^−10 (0.056°), the coordinate axis to which `up` is least
-    /// inclined takes the place of `up`; of equally inclined axes the first. So with `up` = z and a gaze along z, x points up.
+    /// If the angle between `gaze` and `up`, or their opposites, has a sine below 2^−10 (0.056°), the coordinate axis to which
+    /// `up` is least inclined replaces `up`; of equally inclined axes the first. So with `up` = z and a gaze along z, x points
+    /// up.
     ///
     /// Each component of the basis is within 0.51 units (2^−23) of its exact value; u and v have an additional error of 2^−29 over
     /// the sine.
@@ -204,8 +205,9 @@ impl View {
         })
     }
 
-    /// Returns this camera in perspective, with another horizontal field of view: its half width is the tangent of half of `angle`, within a part of
-    /// 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a picture of W×H pixels.
+    /// Returns this camera in perspective, with another horizontal field of view: its half width is the tangent of half of
+    /// `angle`, within a part of 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a
+    /// picture of W×H pixels.
     ///
     /// # Errors
     /// The angle is not from 1° to 179°.
@@ -267,8 +269,8 @@ impl View {
         }
     }
 
-    /// Returns this camera with its eye `aside` world units to the right, at most 1, and the middle of the picture shifted by `shift`, which
-    /// is at most 1 in magnitude, for one of two eyes.
+    /// Returns this camera with its eye `aside` world units to the right, at most 1, and the middle of the picture shifted by
+    /// `shift`, which is at most 1 in magnitude, for one of two eyes.
     pub(crate) fn beside(&self, aside: Q32_32, shift: Q4_28) -> Self {
         let eye = [0, 1, 2].map(|i: usize| {
             // The product of the distance and u has 24 + 23 fraction bits, of which 32 remain, rounded down.

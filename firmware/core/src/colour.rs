@@ -68,7 +68,7 @@ pub enum Winding {
     /// The order of the vertices in the mesh: counter-clockwise on the screen is the front.
     #[default]
     Mesh,
-    /// The place on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is seen, whatever the
+    /// The position on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is seen, whatever the
     /// order of its vertices in the mesh, and normals are turned towards the camera.
     Screen,
 }

@@ -8,7 +8,7 @@ pub const TURN_MS: u64 = 10_000;
 pub enum Move {
     /// To the next scene, after the last one to the first.
     Next,
-    /// To the previous scene, before the first one to the last.
+    /// Show the previous scene; before the first one comes the last.
     Previous,
 }
 
@@ -88,7 +88,7 @@ impl Demo {
         self.is_on() && (self.is_due || !self.is_held && now >= self.end)
     }
 
-    /// The number of the scene to show now, from 0, if another turn begins.
+    /// Index of the scene to show, if a new time slot began.
     pub fn poll(&mut self, now: u64) -> Option<usize> {
         if !self.is_ready(now) {
             return None;

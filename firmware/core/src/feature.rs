@@ -44,7 +44,7 @@ macro_rules! features {
 features! {
     /// Meshes, and the options of their triangles.
     MESH = "mesh";
-    /// Several meshes in a picture, each with a place of its own.
+    /// Several meshes in a picture, each with its own position.
     OBJECT = "object";
     /// Edges of a mesh.
     EDGES = "edges";
@@ -84,7 +84,7 @@ features! {
     BENCH = "bench";
 }
 
-/// What every build has.
+/// Features of every build.
 pub const BASE: Feature = Feature {
     name: "",
     is_built: true,

@@ -28,7 +28,7 @@ pub type U4_28 = FixedU32<U28>;
 /// Format of the half width of a camera: units of 2^−28, in [0, 256).
 pub type U8_28 = FixedU64<U28>;
 
-/// Format of a place in a camera frame: units of 2^−12 pixels.
+/// Format of a position in a camera frame: units of 2^−12 pixels.
 pub type U20_12 = FixedU32<U12>;
 /// Format of a part of a whole: units of 2^−16, in [0, 1).
 pub type U0_16 = FixedU16<U16>;

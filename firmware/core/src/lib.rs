@@ -1,6 +1,6 @@
-//! Code shared by firmware and host: cameras, also those that show whole meshes, sines, the sensor and its attitude, the hand and its image sensor, distance fields and
-//! lights, the formats of meshes and flash images, wireframe programs, transfers over a serial line, the console's grammar, scenes, and the
-//! demo of a board that runs alone.
+//! Code shared by firmware and host: cameras, also those that show whole meshes, sines, the sensor and its attitude, the hand and
+//! its image sensor, distance fields and lights, the formats of meshes and flash images, wireframe programs, transfers over a
+//! serial line, the console's grammar, scenes, and the demo of a board that runs alone.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]

@@ -188,7 +188,7 @@ impl Matrix {
         self.linear
     }
 
-    /// The translation t in world units: the place of the mesh's origin.
+    /// The translation t in world units: the position of the mesh's origin.
     pub const fn place(&self) -> [Q8_24; 3] {
         self.translation
     }

@@ -51,7 +51,7 @@ impl<'a> Mesh<'a> {
     /// the header contains all vertices. The checksum is not checked: it protects files, and [`checksum()`] computes it.
     ///
     /// # Errors
-    /// The first deviation from the format, with its place.
+    /// The first deviation from the format, with its position.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, MeshError> {
         let found = bytes.len();
         // A length of more than 32 bits is reported as the largest 32-bit number.
@@ -433,7 +433,7 @@ fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), M
 pub struct MeshError {
     /// Offset of the error in bytes from the start of the mesh.
     pub offset: u32,
-    /// The number or value that was expected at this place.
+    /// The number or value that was expected at this position.
     pub expected: Expected,
     /// The number that was found instead.
     pub found: u32,

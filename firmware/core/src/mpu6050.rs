@@ -1,6 +1,6 @@
 //! The MPU-6050, and chips with the same registers: from power-on to samples with time stamps.
 //!
-//! [`Mpu6050`] configures the chip over any [`I2c`]; the caller provides the delays. [`Stream`] runs without end: it finds the
+//! [`Mpu6050`] configures the chip over any [`I2c`]; the caller provides the delays. [`Stream`] runs endlessly: it finds the
 //! chip, wakes it, reads each sample once, and recovers from every error of the bus. The bus repeats one read at a steady pace
 //! ([`PeriodicI2c`]); [`Pace`] computes the times of the samples from the times of these reads.
 //!
@@ -300,7 +300,7 @@ impl<B: I2c> Mpu6050<B> {
 /// reads as ones. EXT_SENS_DATA_00 shows that the chip was there until the end of its sample.
 type Look = [u8; 1 + Measurement::BYTES + 1];
 
-/// What a byte reads as, when no device sends it.
+/// Value of a byte that no device sends.
 const RELEASED: u8 = 0xff;
 
 impl<B: PeriodicI2c> Mpu6050<B> {
@@ -319,7 +319,7 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. In place of a sample that an
+    /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. Instead of a sample that an
     /// earlier read already returned, the result is `None`.
     ///
     /// # Errors

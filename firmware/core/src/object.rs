@@ -1,4 +1,4 @@
-//! Objects as they are written on the console and on the command line: the operations that make the place of a mesh.
+//! Objects as written on the console and on the command line: the operations that make the position of a mesh.
 
 use core::fmt;
 
@@ -14,11 +14,11 @@ use crate::words::{Word, Words};
 pub struct Place {
     /// The model matrix.
     pub matrix: Matrix,
-    /// Colour in place of those of the mesh.
+    /// Colour instead of those of the mesh.
     pub colour: Option<Rgb565>,
 }
 
-/// An operation on a place.
+/// An operation on a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// `scale S` or `scale X,Y,Z`.
@@ -53,7 +53,7 @@ const SCALE: &str = "a scale S or X,Y,Z";
 const VECTOR: &str = "a vector X,Y,Z";
 
 impl Default for Place {
-    /// The place of the mesh in its own coordinates, with the colours of the mesh.
+    /// The position of the mesh in its own coordinates, with the colours of the mesh.
     fn default() -> Self {
         Self {
             matrix: Matrix::IDENTITY,
@@ -124,7 +124,7 @@ impl Place {
         Ok(place)
     }
 
-    /// Returns the place after this one and then `next`, whose colour counts if it has one.
+    /// Returns the placement by this one and then by `next`, with the colour of `next` if it has one.
     ///
     /// # Errors
     /// The matrix is out of range or singular.

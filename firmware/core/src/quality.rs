@@ -30,14 +30,14 @@ pub struct Threshold {
     pub footprint: u32,
 }
 
-/// What a quality sets.
+/// Settings of a quality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preset {
     /// Size of the picture, which a monitor shows as 1280×720.
     pub size: Size,
     /// Threshold in fields whose faces are perpendicular to an axis: errors lie at edges alone.
     pub faces: Threshold,
-    /// Threshold in round fields, and in those with oblique faces: silhouettes and the normals of spheres show the place of a hit.
+    /// Threshold in round fields, and in those with oblique faces: silhouettes and the normals of spheres show the position of a hit.
     pub round: Threshold,
 }
 
@@ -46,7 +46,7 @@ const fn threshold(base: u32, footprint: u32) -> Threshold {
 }
 
 impl Quality {
-    /// What the quality sets.
+    /// Settings of this quality.
     pub const fn preset(self) -> Preset {
         match self {
             Self::Fast => Preset {

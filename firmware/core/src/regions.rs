@@ -72,7 +72,7 @@ impl<const N: usize> Regions<N> {
     }
 
     /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy` with each range that is
-    /// moved, and with the place of its first byte from then on, which is before the range and after all regions that were moved.
+    /// moved, and with the position of its first byte from then on, which is before the range and after all regions that were moved.
     pub fn close_gaps(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
         let mut end = 0;
         let later = |range: &&mut Range<usize>, end| range.start < range.end && range.start >= end;

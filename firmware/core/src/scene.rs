@@ -20,7 +20,7 @@ pub struct LineError<'a> {
 pub enum Reason<'a> {
     /// It is not a command.
     Parse(ParseError<'a>),
-    /// It is blank, or a command that does not set the picture.
+    /// The line is blank, or a command that does not set the picture.
     Effect,
 }
 

@@ -50,7 +50,7 @@ impl Tint {
 pub struct Stereo {
     /// Half separation: the distance from the camera to each eye, in world units, 0 to 1.
     pub half_separation: Q32_32,
-    /// Distance along the camera's direction n at which both eyes see a point at the same place of the picture (zero parallax):
+    /// Distance along the camera's direction n at which both eyes see a point at the same position of the picture (zero parallax):
     /// at least the half separation, and at least 0.1.
     pub zero_parallax: Q32_32,
     /// Colours of the glasses.
@@ -81,8 +81,8 @@ impl Stereo {
         Ok(self)
     }
 
-    /// The cameras of the left and the right eye: beside the eye of `view` along its direction u, with shifted pictures, so that both show a
-    /// point at the distance of zero parallax at the same place.
+    /// The cameras of the left and the right eye: beside the eye of `view` along its direction u, with shifted pictures, so that
+    /// both show a point at the distance of zero parallax at the same position.
     pub fn eyes(&self, view: &View) -> [View; 2] {
         let aside = self.half_separation;
         // The quotient of half separation and distance of zero parallax is at most 1, rounded down.

@@ -2,7 +2,7 @@
 
 use core::fmt::{self, Write as _};
 
-/// A word and its place in the line.
+/// A word and its position in the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Word<'a> {
     /// Text of the word, without blanks.

@@ -22,9 +22,9 @@ pub struct MeshPass<'a> {
     pub cull: bool,
     /// Source of the colours; `Flat` if the engine has no smooth shading.
     pub shading: Shading,
-    /// Colour in place of those of the mesh.
+    /// Colour instead of those of the mesh.
     pub colour: Option<Rgb565>,
-    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size with the
+    /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
     /// same colours of the light.
     pub lists: Option<Lists>,
 }

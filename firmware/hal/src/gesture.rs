@@ -17,7 +17,7 @@ use crate::Absent;
 /// Largest coordinate of a region.
 const LAST: u16 = 2047;
 
-/// What the image sensor sends, for messages.
+/// Output of the image sensor, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signal {
     /// Whether the sensor's clock PCLK runs.
@@ -136,7 +136,7 @@ impl GestureEngine {
         (registers.sequence().read() == sequence).then_some(counts)
     }
 
-    /// What the image sensor sends.
+    /// Output of the image sensor.
     #[must_use]
     pub fn signal(&self) -> Signal {
         let status = self.registers.status().read();
@@ -166,7 +166,7 @@ impl GestureEngine {
     #[must_use]
     pub fn picture(&self) -> Option<impl Iterator<Item = u16> + Clone> {
         let state = self.registers.snapshot_state().read();
-        // A place for each word, because an iterator may be cloned and both may go on.
+        // A place for each word, because an iterator may be cloned and both may continue.
         let words = (0..state.words()).map(|place| {
             self.registers.snapshot_place().write(place);
             self.registers.snapshot_word().read()

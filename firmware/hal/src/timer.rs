@@ -20,7 +20,7 @@ pub struct Clock {
     frequency: Frequency,
 }
 
-/// Error: the uptime counter stands still, because the SoC has no such counter.
+/// The uptime counter does not advance, because the SoC has none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stopped;
 

@@ -2,7 +2,7 @@
 //!
 //! A frame takes a geometry pass for each of its meshes and one raster pass. A geometry pass writes descriptors and band lists of a
 //! mesh, and a list of the triangles that need clipping. The raster pass draws a frame from these lists, and from a second set
-//! that the program may write (docs/formats/triangle.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
+//! that the program may write (docs/formats.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
 //! time, for two frames.
 //!
 //! The engine accesses memory by address and bypasses the CPU's data cache, so starting a pass is unsafe: see
@@ -102,9 +102,9 @@ pub struct Geometry<'a> {
     /// Light and ambient light, u1.8 for each channel, at most 1; a pass without `lists` leaves them as they are. There must be no
     /// ambient light with smooth shading and without `cull`.
     pub lights: [[u16; 3]; 2],
-    /// Colour in place of those of the mesh, RGB565.
+    /// Colour instead of those of the mesh, RGB565.
     pub colour: Option<u16>,
-    /// Output of the pass, empty before it; `None` if it continues the output of the pass before, for a picture of the same size with the
+    /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
     /// same colours of the light.
     pub lists: Option<Lists>,
 }
@@ -267,7 +267,7 @@ impl TriangleEngine {
         registers.mesh().write(segments.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(segments) as u32);
         self.write_output(lists);
-        // Lines have no exceptions: the list of them has a place, because the engine checks it, and no room.
+        // Lines have no exceptions: their list has an address, because the engine checks it, and no room.
         registers.exceptions().write(lists.lists);
         registers.exception_limit().write(0);
         Prepared {

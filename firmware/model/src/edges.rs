@@ -95,7 +95,7 @@ const fn is_drawn(frame: &MeshSetup, area: i64, cull: bool) -> bool {
 
 /// The biases for a face, by three of its vertices, the doubled area of their triangle, and the range of the depths of all its vertices.
 ///
-/// A pixel of a line is up to half a pixel beside the edge, along its minor axis. There the face is nearer by at most half its slope,
+/// A pixel of a line is up to half a pixel away from the edge, along its minor axis. There the face is nearer by at most half its slope,
 /// and by at most the difference of its depths; the roundings of both depths add 1.52 codes.
 #[inline(never)]
 fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {

@@ -88,7 +88,7 @@ impl Segment {
         }
     }
 
-    /// What precedes `segments` segments in memory, as long as a segment.
+    /// Header of `segments` segments in memory; it is as long as a segment.
     #[must_use]
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]

@@ -73,8 +73,8 @@ impl<'a> Frame<'a> {
 }
 
 impl Eyes<'_> {
-    /// Replaces the picture of the left eye by that of both eyes, in the colours of the glasses. A word is two pixels, the left one in its lower
-    /// half. Calls `progress` at short intervals.
+    /// Replaces the picture of the left eye by that of both eyes, in the colours of the glasses. A word is two pixels, the left
+    /// one in its lower half. Calls `progress` at short intervals.
     pub fn compose(&self, left: &mut [u32], right: &[u32], progress: &mut dyn FnMut()) {
         let (left, left_rest) = left.as_chunks_mut::<LINE>();
         let (right, right_rest) = right.as_chunks::<LINE>();
@@ -85,7 +85,7 @@ impl Eyes<'_> {
             let (of_right, of_left) = (*right, *left);
             let (a, b) = (of_left[0], of_right[0]);
             if of_left.iter().all(|&x| x == a) && of_right.iter().all(|&x| x == b) {
-                // Most lines have one colour for each eye, and that of the line before.
+                // Most lines have one colour for each eye, and that of the previous line.
                 *left = [self.remembered(&mut last, [a, b]); LINE];
             } else {
                 for (left, (a, b)) in left.iter_mut().zip(of_left.into_iter().zip(of_right)) {
@@ -130,8 +130,8 @@ fn luminance(pixel: u16) -> u8 {
     ((LOW[usize::from(low)] + HIGH[usize::from(high)]) >> 8) as u8
 }
 
-/// Shares of the lower and of the higher byte of a pixel in its luminance, in units of 2^−8; the lower one's with the rounding. The luminance
-/// is a sum of both, because the bits of green that are repeated are all in the higher byte.
+/// Shares of the lower and of the higher byte of a pixel in its luminance, in units of 2^−8; the lower one's with the rounding.
+/// The luminance is a sum of both, because the bits of green that are repeated are all in the higher byte.
 static LOW: [u16; 256] = shares(0, HALF_LUMINANCE);
 static HIGH: [u16; 256] = shares(8, 0);
 

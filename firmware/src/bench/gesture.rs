@@ -49,7 +49,7 @@ pub fn gesture(report: Report) {
     });
 }
 
-/// A pseudo-random place of the hand within 1/16 of the range.
+/// A pseudo-random position of the hand within 1/16 of the range.
 fn input(phase: u32) -> Q4_28 {
     Q4_28::from_bits(phase.cast_signed() >> 8)
 }

@@ -74,7 +74,7 @@ pub fn run<'l>(
 }
 
 /// Measures the drawing of `count` frames of the present scene, back to back: the geometry pass of a frame runs during
-/// the raster pass of the frame before. The frames are not shown.
+/// the raster pass of the previous frame. The frames are not shown.
 fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>> {
     let Machine {
         terminal,

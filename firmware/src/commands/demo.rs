@@ -10,7 +10,7 @@ use crate::machine::Machine;
 /// Executes `demo`.
 ///
 /// # Errors
-/// The demo is off, and the action is for one that is on.
+/// The action needs the demo to be on.
 pub fn execute<'l>(machine: &mut Machine, action: Option<DemoAction>) -> Outcome<'l> {
     let Machine {
         terminal,

@@ -1,4 +1,4 @@
-//! The command `object`: several meshes in a frame, each with a place of its own.
+//! The command `object`: several meshes in a frame, each with its own position.
 
 use glint_core::console::{ObjectAction, ObjectCommands};
 

@@ -224,7 +224,7 @@ pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
     Ok(Reply::Lines(lines))
 }
 
-/// What a scene or list shows.
+/// Content of a scene or list.
 ///
 /// # Errors
 /// The flash is damaged, or this build lacks parts of the firmware.

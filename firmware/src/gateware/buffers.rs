@@ -49,7 +49,7 @@ pub struct Buffers {
     pub clipped_descriptors: &'static mut [u32],
     /// Band lists of clipped triangles, or of the lines of a mesh's edges.
     pub clipped_lists: &'static mut [u32],
-    /// What the clipper has written to `clipped_descriptors` and `clipped_lists`, if there is the second one of `sets`.
+    /// Output of the clipper in `clipped_descriptors` and `clipped_lists`, if there is the second one of `sets`.
     pub clipped_counts: ListCounts,
     /// The sets of lists written by the geometry passes and by the clipper.
     pub sets: [Option<Set>; 2],
@@ -90,7 +90,7 @@ impl Buffers {
         self.clipped_descriptors.as_chunks_mut().0
     }
 
-    /// Removes the sets and counts of the frame before.
+    /// Removes the sets and counts of the previous frame.
     pub fn clear(&mut self) {
         (self.sets, self.stats) = ([None; 2], Stats::default());
     }

@@ -17,7 +17,7 @@ use super::renderer::{GatewareRenderer, Output};
 pub struct RightEye {
     /// Its colours.
     pub colour: &'static mut [u16],
-    /// What its frame took, while that of the left eye is drawn.
+    /// Cost of its frame, while the frame of the left eye is drawn.
     rendered: Option<Rendered>,
 }
 
@@ -106,7 +106,7 @@ impl RightEye {
         eyes.compose(left, right, progress);
     }
 
-    /// Makes the left eye's picture in `output` that of both eyes. Returns the clock cycles.
+    /// Composes the picture of both eyes in `output`, which holds that of the left eye. Returns the clock cycles.
     fn compose(
         &self,
         gateware: &mut GatewareRenderer,

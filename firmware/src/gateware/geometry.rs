@@ -1,6 +1,6 @@
 //! The geometry passes of a frame: one for each mesh, and clipping by the CPU.
 //!
-//! While the pass of a mesh runs, the CPU clips the exceptions of the mesh before, computes the constants of the mesh after, and
+//! While the pass of a mesh runs, the CPU clips the exceptions of the previous mesh, computes the constants of the mesh after, and
 //! writes them to the registers of the engine, which has copied those of the running pass.
 //!
 //! Some options of meshes need the CPU for all steps before the raster pass, which it then does for all meshes of the frame.
@@ -303,7 +303,7 @@ const fn joins_clipped(frame: &Frame) -> bool {
     matches!(frame.subject, Subject::Edges(..))
 }
 
-/// The first option of the meshes of a frame that geometry passes lack.
+/// The first option of a frame's meshes that geometry passes do not support.
 fn lack(frame: &Frame) -> Option<Lack> {
     let lacking = frame.subject.meshes().find_map(|subject| {
         let sees_dark_sides = subject.shading == Shading::Smooth && !subject.cull;

@@ -13,7 +13,7 @@ pub struct Rendered {
     pub waited: u64,
     /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
-    /// Growth of the triangle engine's counters during the frame.
+    /// Increments of the triangle engine's counters during the frame.
     pub counters: Counters,
     /// The reason why the CPU made the descriptors of the frame, if it did.
     pub lack: Option<Lack>,

@@ -307,7 +307,7 @@ impl GatewareRenderer {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
             waited: self.waited,
             engine: self.engine.counters(),
-            // Comes last, because the reading of the counters is no part of the frame.
+            // Comes last, because the reading of the counters is not a part of the frame.
             cycles: cpu::cycles(),
         };
     }

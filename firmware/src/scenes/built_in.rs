@@ -9,11 +9,11 @@ pub struct BuiltIn {
     pub name: &'static str,
     /// The parts of the firmware that it needs.
     pub features: &'static [Feature],
-    /// What it shows.
+    /// Its content.
     pub content: Content,
 }
 
-/// What a built-in scene shows.
+/// Content of a built-in scene.
 #[derive(Debug)]
 pub enum Content {
     /// The console commands that set the picture and start what moves the camera, a line each, from the state at start on.

@@ -55,7 +55,7 @@ impl LowPass {
     }
 }
 
-/// The α-β filter: the Kalman filter of a place with constant velocity, in its steady state. It knows no times: the steps are equal.
+/// The α-β filter: the Kalman filter of a position with constant velocity, in its steady state. It knows no times: the steps are equal.
 #[derive(Clone, Copy, Debug)]
 pub struct AlphaBeta {
     /// Gains with 16 fraction bits.

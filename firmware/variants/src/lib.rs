@@ -1,4 +1,4 @@
-//! Other kernels than those in use: of other word lengths, by other methods, and of other libraries.
+//! Kernels that Glint does not use: other word lengths, other methods, and other libraries.
 //!
 //! The report measures their errors on the host and their cycles on the soft core (`cargo xtask report`), from this one
 //! source. Nothing else uses them.

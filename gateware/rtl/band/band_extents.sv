@@ -84,7 +84,7 @@ module band_extents #(
     logic [COLUMN_BITS-1:0] column_1, column_2;
     logic [EXTENT_BITS-1:0] old, updated;
 
-    // Of each bank: the extent that is read, and whether the same line is written in this clock.
+    // For each bank: the extent that is read, and whether the same line is written in this clock.
     logic [EXTENT_BITS-1:0] kept [0:1];
     logic [1:0]             same;
 

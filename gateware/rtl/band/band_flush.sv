@@ -20,7 +20,7 @@
 // is reserved before a row is read, so `out_ready` may stay low for any time.
 //
 // `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one row a clock, while `sweeping` is high.
-// Nothing may be drawn then. Words that were already read go out meanwhile or later.
+// Nothing may be drawn then. Words that were already read are output meanwhile or later.
 
 `default_nettype none
 

@@ -34,7 +34,7 @@ module credit_fifo #(
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
 
     // Credits that no item has. The FIFO has a place in its output register too. Both changes of the count come from registers,
-    // so the last credit stays for an item that is sent while the count does not know of the one before.
+    // so the last credit stays for an item that is sent while the count does not know of the previous one.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

@@ -39,7 +39,7 @@ module fifo #(
     assign load     = !read_valid || read_ready;
 
     always_ff @(posedge clk) begin
-        // Written without clock enables: flip-flops with an enable of their own take a slice of the FPGA.
+        // Written without clock enables: flip-flops with different enables cannot share a slice of the FPGA.
         head       <= head + (PLACE_BITS + 1)'(in_valid && in_ready);
         tail       <= tail + (PLACE_BITS + 1)'(load && stored);
         read_valid <= stored || read_valid && !read_ready;

@@ -26,7 +26,7 @@ module read_port #(
     parameter int unsigned CLIENTS      = 4,
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned DEPTH        = 32,
-    // Clients whose FIFO is in block RAM: two RAMB36 in place of 88 LUTs.
+    // Clients whose FIFO is in block RAM: two RAMB36 instead of 88 LUTs.
     parameter bit [CLIENTS-1:0] BLOCK   = '0
 ) (
     input  wire                             clk,

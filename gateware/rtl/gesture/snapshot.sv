@@ -3,7 +3,7 @@
 //
 // A word has 16 pixels of the mask, the first one in its highest bit, or one RGB565 colour. Pixels come in the order of the frame;
 // those beyond the memory are dropped. After `start` the next frame is kept, or the first one after it that is whole: then
-// `ready` rises. `word` is the word at the place of the reader, two clocks after the place was set (`set`) or moved on (`move`).
+// `ready` rises. `word` is the word at the position of the reader, two clocks after the place was set (`set`) or moved on (`move`).
 
 `default_nettype none
 

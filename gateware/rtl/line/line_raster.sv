@@ -9,7 +9,7 @@
 // ends with its last pixel, with its last pixel in the band, or a clock after the line has left the picture. The next piece
 // follows without a gap.
 //
-// Streams are valid/ready. The stages behind the walk cannot be stopped; the walk stands still while the FIFO has no room for all
+// Streams are valid/ready. The stages behind the walk cannot be stopped; the walk stops while the FIFO has no room for all
 // pixels on the way. Latency 5 clocks, throughput a pixel a clock. `size` and `first_row`, the size code of the picture and the
 // first row of the band, must hold while pieces are inside. If memory is damaged and a piece leaves the band, only its pixels in
 // the band are drawn. `idle` is low from the clock after a piece is taken until its last group is taken.

@@ -19,7 +19,7 @@
 //
 // A coordinate is mirrored (`~(x - 1)`) on an axis along which the segment runs backward, so both walk upward. `edge_row`, mirrored
 // too, is the first row behind the band that the line is in; `entered` is high until the piece of this band is made. A piece is
-// copied, so that the walk goes on while it waits at the output.
+// copied, so that the walk continues while it waits at the output.
 //
 // Streams are valid/ready. A segment moves after its last piece, so its fields need no copy. It takes 31 clocks, or 59 with a depth
 // step (not with equal depths, nor if it is less than a pixel long); one for each pixel up to the one where it leaves the picture,
@@ -210,7 +210,7 @@ module line_setup (
     logic [4:0]         blocks;
     band_pkg::cut_t     cut;
 
-    // The size holds from before the segment. The width of the picture is 64 times `blocks`.
+    // The size is constant since before the segment. The width of the picture is 64 times `blocks`.
     always_ff @(posedge clk) begin
         cut          <= band_pkg::cut(size);
         height       <= 10'(picture_pkg::HEIGHT) << size;
@@ -224,7 +224,7 @@ module line_setup (
     assign at_border = edge_row == (up ? '0 : {3'd0, height});
     assign shown     = column[12:11] == '0 && column[10:6] < blocks;
     assign tracks    = (at[24] || walking) && reached && !at_border;
-    // Behind the last row, or beyond the side to which the line runs.
+    // The pixel is behind the last row, or beyond the side to which the line runs.
     assign leaves    = reached ? at_border : !shown && column[12] == left;
     assign sends     = entered && shown && !reached;
     assign walks     = walking && !reached && !sends;

@@ -98,7 +98,7 @@ module field_sphere (
         places_4 <= {eights_3, twos, 1'b0};
     end
 
-    // In clock 9 the sum of the squares is there, from 2^32 to 3·2^34.
+    // In clock 9 the sum of the squares is valid, from 2^32 to 3·2^34.
     logic [2:0][16:0]   part_4;
     logic [16:0]        part_y_5, part_z_6;
     logic signed [36:0] x_7, x_y_8, square_9;

@@ -316,7 +316,7 @@ module ray_generator #(
         wire _unused = &{1'b0, scaled[42:34], scaled[15:0], product_12[8:0], gone_16[41], gone_16[16:0], sum_20[42], sum_20[8:0]};
     end
 
-    // In clock 21 the t of the near plane is there, in the same clock as those of the entries into the box.
+    // In clock 21 the t of the near plane is valid, as are those of the entries into the box.
     multiply_add #(.BITS(34)) at_near (
         .clk, .enable(1'b1), .a({2'b0, near_18}), .b({7'b0, part_18}), .c('0), .p(near_product)
     );

@@ -26,7 +26,7 @@
 // each eye otherwise.
 //
 // Each lane makes one evaluation of the field a clock. `restart` and reset cancel the frame. Groups are a valid/ready stream,
-// whose payload holds until the transfer. `events` has the growth of each counter in this clock.
+// whose payload holds until the transfer. `events` has the increment of each counter in this clock.
 
 `default_nettype none
 

@@ -6,8 +6,8 @@
 //             └───────────────────── t + distance ◀───────────────────────────────┘
 //
 // The ring has raymarch_pkg::field_clocks + 6 slots and never stalls. o is the eye, d the direction of a ray and t its
-// parameter. The point o + t·d is computed anew in each round, so errors do not accumulate. A slot whose ray has ended takes
-// the next ray in the same clock. A ray enters only if the FIFO of ends has a free place for its end: the FIFO has PLACES, and
+// parameter. The point o + t·d is computed again in each round, so errors do not accumulate. A slot whose ray has ended takes
+// the next ray in the same clock. A ray enters only if the FIFO of ends has a free entry for its end: the FIFO has PLACES, and
 // each ray in the ring reserves one. `evaluates` is high in clocks in which an occupied slot passes the field, `waits` in
 // clocks in which a ray was offered to an empty slot while no place was free.
 //
@@ -64,7 +64,7 @@ module ring_lane #(
     localparam bit          OCTANTS   = (FIELDS & fields_pkg::OCTANTS) != 0;
     localparam int unsigned KEPT_BITS  = raymarch_pkg::end_bits(ROUND, BLEND);
 
-    // What stays as it is while a ray is in the ring. A place in LUT memory for each slot holds it, written when the ray enters
+    // Constants of a ray in the ring. A word of LUT memory for each slot holds them, written when the ray enters
     // the slot.
     typedef struct packed {
         raymarch_pkg::place_t                         place;
@@ -140,7 +140,7 @@ module ring_lane #(
         end
     end
 
-    // The point o + t·d. The origin o of the eye is selected two clocks after the slot, when the product t·d is there.
+    // The point o + t·d. The origin o of the eye is selected two clocks after the slot, when the product t·d is valid.
     logic                  eye_2;
     logic [2:0]            backwards;
     logic [2:0][raymarch_pkg::WIDE_BITS-1:0] point;
@@ -384,7 +384,7 @@ module ring_lane #(
 
     delay #(.WIDTH(11), .CLOCKS(2)) blended (.clk, .enable(1'b1), .in({face, share}), .out({face_end, share_end}));
 
-    // `end_ready` is always high when a ray ends, because each ray has a reserved place.
+    // `end_ready` is always high when a ray ends, because each ray has a reserved entry.
     logic [KEPT_BITS-1:0] kept;
 
     fifo #(.WIDTH(KEPT_BITS), .DEPTH(PLACES)) ends (

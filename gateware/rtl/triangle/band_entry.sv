@@ -61,7 +61,7 @@ module band_entry #(
     logic [2:0]  pass;
     logic [3:1]  ending;
 
-    // Free while no triangle is in its passes, and in the last pass.
+    // A new triangle may enter while no triangle is in its passes, and in the last pass.
     held_register #(.WIDTH($bits(in_descriptor) + 10 + 1)) inputs (
         .clk, .rst, .free(in_ready), .in_valid, .in({in_odd, in_y0, in_descriptor}),
         .leaves(dropped || pass == LAST_BUT_ONE), .out({odd, y0, triangle})

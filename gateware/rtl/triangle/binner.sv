@@ -11,7 +11,7 @@
 // written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
 // these changes rare.
 //
-// With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and takes the place of a
+// With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and replaces a
 // triangle's descriptor (line_pkg::stored_t). `in_line` must hold from `restart` until `done`.
 //
 // Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the

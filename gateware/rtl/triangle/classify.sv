@@ -1,7 +1,7 @@
 // Decides what happens to a triangle after the vertex stage (`Renderer::path` of glint-model): it goes to the setup, or its
 // number goes to the firmware's clipper as an exception, or it is dropped.
 //
-//   all vertices behind, or none behind and all off the same side of the picture   dropped, with a pulse of `unseen`
+//   all vertices behind, or none behind and all beyond the same side of the picture   dropped, with a pulse of `unseen`
 //   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
 //   otherwise                                                                      regular: goes to the setup
 //
@@ -20,7 +20,7 @@ module classify #(
     input  wire  [10:0]              width,
     input  wire  [9:0]               height,
     output logic                     idle,
-    // High for one clock for each triangle that is dropped as unseen.
+    // High for one clock for each triangle that is dropped because it is off screen.
     output logic                     unseen,
     output logic [31:0]              count,
     input  wire                      in_valid,

@@ -304,7 +304,7 @@ module cull #(
         .out_valid(result_valid), .out_covers(result)
     );
 
-    // Never full: each result in it belongs to a triangle in the queue.
+    // This FIFO is never full: each of its results belongs to a triangle in the queue.
     fifo #(.WIDTH(1), .DEPTH(PLACES)) results (
         .clk, .rst, .in_valid(result_valid), .in_ready(result_room), .in_data(result),
         .out_valid(tested), .out_ready(pop), .out_data(covers)

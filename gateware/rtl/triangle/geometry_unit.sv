@@ -15,11 +15,11 @@
 // the descriptors that were written. `restart` (any time) cancels the frame; the next start must wait until read_port is idle.
 //
 // A frame of several meshes takes a start for each. With `flags.append` descriptors, lists, exceptions, their counts and `full`
-// continue those of the mesh before; size, places and `list_shift` must be the same. Exceptions have their numbers in their mesh.
+// continue those of the previous mesh; size, places and `list_shift` must be the same. Exceptions have their numbers in their mesh.
 // After `restart` there is nothing to continue, and the lists are emptied.
 //
 // With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
-// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which take the place of descriptors.
+// them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which replace descriptors.
 //
 // Throughput is that of the slowest part: 11 clocks a drawn triangle (33 with smooth shading), 3 a culled one, 6 a vertex that is
 // not in the cache, and in the binner 6 clocks a triangle (9 with SMOOTH) and 2 more for each of its bands after the first. Memory:

@@ -49,7 +49,7 @@ module mesh_walk #(
     logic [ADDRESS_BITS-1:0] header;
     logic [COUNT_BITS-1:0]   vertices, triangles;
     logic [SUM_BITS-1:0]     triangles_base, end_base;
-    // The complements of the numbers of triangles that are still to be asked for and to be sent: counting up takes fewer LUTs.
+    // The complements of the numbers of triangles that are still to be requested and to be sent: counting up takes fewer LUTs.
     logic [COUNT_BITS-1:0]   asks_left, gives_left;
     logic                    asked, more, wild, too_many;
 

@@ -5,8 +5,9 @@
 //                                   c
 //
 // Latency 3 clocks in which `enable` is high, counted from `a` and `b`, and 1 clock counted from `c`. Throughput one product a
-// clock. `c` may depend on `p`, to accumulate: in the form `select ? p : other` the DSP48 itself selects, without LUTs. Users multiply a factor that is too wide for an input in pieces: unsigned pieces
-// of 17 bits, and a signed piece with the highest bits.
+// clock. `c` may depend on `p`, to accumulate: in the form `select ? p : other` the DSP48 itself selects, without LUTs. Users
+// multiply a factor that is too wide for an input in pieces: unsigned pieces of 17 bits, and a signed piece with the highest
+// bits.
 
 `default_nettype none
 

@@ -273,7 +273,7 @@ module raster_unit #(
         wire _unused = &{1'b0, ask_ready, data_valid, data, drawn_ready, line_ready};
     end
 
-    // Whether groups come from the raymarcher in this clock; without TRIANGLES, from nowhere else.
+    // Whether groups come from the raymarcher in this clock; without TRIANGLES it is the only source.
     logic from_field;
 
     assign from_field = FIELDS && (field_sink.open || !TRIANGLES);

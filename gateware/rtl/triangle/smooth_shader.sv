@@ -8,7 +8,7 @@
 //
 // A group of a flat triangle takes one clock. A group of a smooth triangle takes a clock for each pixel from the first one, or
 // the fifth one if the first four are not covered, to the last covered one: an average of some five, at most eight. Three
-// multipliers then do the divisions of a pixel, in place of 24 for a group a clock.
+// multipliers then do the divisions of a pixel, instead of 24 for a group a clock.
 //
 // Groups come from a pipeline that cannot be stopped. It sends only while `room` is high, FLIGHT clocks before a group is here
 // (see pipeline_fifo). Latency 2 clocks for a flat group, 13 more than its pixels for a smooth one; the order of the groups stays.
@@ -42,7 +42,7 @@ module smooth_shader #(
     output logic [GROUP_BITS-1:0] out_group,
     output logic [7:0][15:0]      out_colours
 );
-    // Groups, until their colours are there.
+    // Groups that wait for their colours.
     logic             group_valid, group_smooth, group_gone, colours_valid;
     logic [15:0]      group_colour;
     logic [7:0][15:0] smooth_colours;
@@ -90,7 +90,7 @@ module smooth_shader #(
         if (rst) is_first <= 1'b1;
     end
 
-    // The place of a pixel in its group goes with it through pixel_colour.
+    // The position of a pixel in its group goes with it through pixel_colour.
     logic [LATENCY:0] valid;
     logic             ends_1, ends, finished, colours_room;
     logic [2:0]       place;

@@ -89,7 +89,7 @@ module triangle_control #(
 
     assign size = rastering ? raster_kept.size : geometry_kept.size;
 
-    // The code 3 is no size in any build.
+    // The code 3 is not a size in any build.
     localparam logic [3:0] SUPPORTED = {1'b0, 3'(SIZES)};
 
     assign bands = band_pkg::bands(size);

@@ -9,13 +9,13 @@
 // memory bank only when the previous bank is idle, four clocks later, so each of these streams has its own port. Write ports
 // serve descriptors, lists, and the frame's words in even and in odd banks. `cancel` (one clock, at any time) ends both passes.
 // `status.ready` is high when no read is under way and the band buffer is clear, so that either unit may start. geometry_unit
-// and raster_unit explain their parameters and results. `events` has the growth of each counter, some clocks late.
+// and raster_unit explain their parameters and results. `events` has the increment of each counter, some clocks late.
 //
 // SMOOTH builds smooth shading, which the flag `smooth` of the geometry pass enables for a frame: the light of the vertices
 // is interpolated over the depth, with a division at each pixel (docs/formats/triangle.md, "Smooth shading"). Descriptors then have
 // twice the words.
 //
-// LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments in place of a mesh.
+// LINES builds the line engine: the flag `lines` of the geometry pass makes a frame of segments instead of a mesh.
 //
 // FIELDS builds the link to a raymarcher. Without TRIANGLES, the engine draws what a raymarcher sends and nothing else: the
 // geometry unit, the part of the raster unit that draws triangles, and the ports that they use are not built.

@@ -25,7 +25,7 @@ package triangle_pkg;
         logic [20:0] x;
     } steps_t;
 
-    // A triangle after the setup, 384 bits, as it is stored in memory: three words of 128 bits, the lowest first. A group is 8
+    // A triangle after the setup, 384 bits, as stored in memory: three words of 128 bits, the lowest first. A group is 8
     // columns of a row. `start` and `depth_start` are the values of E' and of the depth at the first column of group_start in
     // row `top`. The steps are an array of vectors, not of steps_t, because Yosys reads an array of structs as a narrower type,
     // without a message.

@@ -7,7 +7,7 @@
 //                                      ▲                                │
 //                                      └────────────── room ────────────┘
 //
-// With SMOOTH, a triangle comes with the planes of its three colour channels, and `smooth_shader` stands in the place of
+// With SMOOTH, a triangle comes with the planes of its three colour channels, and `smooth_shader` replaces
 // `pipeline_fifo`. It takes a clock for each pixel of a group of a smooth triangle.
 //
 // A group is {line = y - y0 with y0 the first row of the band, column = x / 8, row address in the band buffer = line * stride +

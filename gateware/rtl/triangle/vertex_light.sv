@@ -1,7 +1,7 @@
-// Computes the light of a vertex (docs/formats/triangle.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each channel, and
-// the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With `cull_back` only front
-// faces are seen, so the light is that of front faces. Without, it is that of the side towards the light; the other side is dark, so
-// there must be no ambient light.
+// Computes the light of a vertex (docs/formats/triangle.md, "Smooth shading" and "Light on meshes"): the shaded colour L of each
+// channel, and the side of a triangle to which this light belongs. N is the vertex normal, l the row of the light. With
+// `cull_back` only front faces are seen, so the light is that of front faces. Without, it is that of the side towards the light;
+// the other side is dark, so there must be no ambient light.
 //
 // One multiplier makes six products: three for N·l, and one for each share of a channel; the other one makes the three products of
 // colour and share. A vertex takes 6 clocks, in step with `vertex_stage`: `take` is high for one clock when a vertex enters that
@@ -26,7 +26,7 @@ module vertex_light (
     input  wire              give,
     output logic [40:0]      out_light // {to back faces, red u13, green u14, blue u13}
 );
-    // The FIFO has more places than vertex_stage can hold vertices.
+    // The FIFO has more entries than vertex_stage can hold vertices.
     localparam int unsigned PLACES = 16;
 
     // Bit k of `since` is high when a vertex entered k + 1 clocks ago.

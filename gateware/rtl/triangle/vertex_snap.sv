@@ -9,7 +9,7 @@
 //   33…36        km·y is shifted to w, rounded and saturated
 //   37           `vertex` is valid
 //
-// In orthographic projection the factor of X' and Y' is 2^23 in place of y.
+// In orthographic projection the factor of X' and Y' is 2^23 instead of y.
 
 `default_nettype none
 

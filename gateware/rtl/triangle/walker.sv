@@ -15,7 +15,7 @@
 //  * An edge that fails at both ends of a group fails in the whole group. If it rises, column a is further right; if it falls,
 //    column b is further left. The covered columns lie on that side. The row is empty if two failing edges point to different
 //    sides, if the direction returns to a group where an edge has failed or leaves the bounds, or if a horizontal edge fails.
-//    So seeking never gives up a row with coverage, and never ends in a group without coverage:
+//    So seeking never abandons a row with coverage, and never ends in a group without coverage:
 //  * in a group g0…g7 where no edge fails everywhere, a <= g7 and b >= g0. So in a row with coverage (a <= b) the group
 //    covers max(a, g0)…min(b, g7). In an empty row the group is sent without coverage, and the row is done.
 //  * The covered columns are contiguous, so they continue to the left only if lane -1 is covered, and to the right only if
@@ -197,7 +197,7 @@ module walker #(
     assign out_group.slope = slope;
     assign out_group.rises = rises;
 
-    // The move of the clock before, which depth, line and colour make now.
+    // The move of the previous clock, which depth, line and colour make now.
     raster_pkg::move_t late_move;
     logic              late_keep, late_resume, late_advance;
     logic [31:0]       depth_step_y;
@@ -222,7 +222,7 @@ module walker #(
         .step_x(out_late.depth_step_x), .step_y(depth_step_y), .current(out_late.depth)
     );
 
-    // An earlier move, for light. Its controls wait, in place of the light, which has many more bits.
+    // An earlier move, for light. Its controls wait, instead of the light, which has many more bits.
     if (SMOOTH) begin : light
         raster_pkg::move_t      early_move, light_move;
         logic                   early_keep, early_resume, early_advance, light_keep, light_resume, light_advance;

@@ -232,7 +232,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Sends `info KEY` and returns the first word of the value in its reply.
+    /// Sends `info KEY` and returns the first word of the value in the reply.
     ///
     /// # Errors
     /// An unknown key, or no answer.

@@ -44,7 +44,7 @@ pub trait Board {
     }
 }
 
-/// Reads what `board` has sent as [`Board::read`] does, by calls of `step`, which reads for at most the given milliseconds.
+/// Reads the output of `board` as [`Board::read`] does. Each call of `step` reads for at most the given milliseconds.
 ///
 /// # Errors
 /// Errors of `step`.

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// The clock that a board is held back to.
+/// The clock that limits a board to real time.
 pub trait Clock {
     /// Time since the start of the clock.
     fn now(&self) -> Duration;
@@ -61,7 +61,7 @@ impl<C: Clock> Pace<C> {
         &self.clock
     }
 
-    /// Waits until real time has reached the board's cycle `cycle`. A board that is late by more than 50 ms goes on from there,
+    /// Waits until real time has reached the board's cycle `cycle`. A board that is late by more than 50 ms continues from there,
     /// without catching up.
     pub fn wait(&mut self, cycle: u64) {
         let early = self.early(cycle);

@@ -42,7 +42,7 @@ pub struct Frame {
     pub pixels: Vec<u16>,
 }
 
-/// What the simulated boards have in common.
+/// Common parts of the simulated boards.
 pub trait Simulation: Uart {
     /// Fills `bytes` with main memory from `address` on.
     ///

@@ -23,7 +23,7 @@ const UNUSED: u32 = u32::MAX;
 pub struct Access {
     /// The word that contains the address, for a load.
     pub value: u32,
-    /// Cycles that the CPU waits, beside those of the instruction.
+    /// Cycles that the CPU waits in addition to those of the instruction.
     pub cycles: u64,
     /// Whether a device was accessed, which may change interrupts and the time of the next event.
     pub device: bool,
@@ -71,7 +71,7 @@ impl Bus {
         }
     }
 
-    /// The word at `address`, a multiple of 4, if a memory is there.
+    /// The word at `address`, a multiple of 4, if it is in a memory.
     pub fn memory_word(&self, address: u32) -> Option<u32> {
         let bytes = match place(address) {
             Place::Rom(offset) => self.rom.get(offset..)?.first_chunk(),

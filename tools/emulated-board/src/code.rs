@@ -34,7 +34,7 @@ fn empty() -> Box<Page> {
 }
 
 impl Code {
-    /// Without decoded instructions.
+    /// An empty cache of decoded instructions.
     pub fn new() -> Self {
         let count = MEMORIES.into_iter().map(pages).sum();
         Self {

@@ -47,7 +47,7 @@ impl Cpu {
         }
     }
 
-    /// Resets the CPU; its counters go on.
+    /// Resets the CPU; its counters continue.
     pub fn reset(&mut self) {
         let retired = self.retired;
         *self = Self::new();
@@ -217,7 +217,7 @@ impl Cpu {
                         *place = Instruction::decode(word);
                         continue;
                     }
-                    // The bus answers after a time-out, with a word that is no instruction.
+                    // The bus answers after a time-out, with a word that is not an instruction.
                     let access = bus.fetch(pc, now);
                     waited += access.cycles;
                     now += access.cycles + CYCLES;

@@ -18,13 +18,13 @@ const IDENTIFIERS: [u32; 3] = [11, 22, litex_pac::EMULATED];
 
 /// Causes of exceptions, as in `mcause`.
 pub mod cause {
-    /// Jump to an address that is no multiple of 4.
+    /// Jump to an address that is not a multiple of 4.
     pub const FETCH_MISALIGNED: u32 = 0;
     /// An instruction or a control register that the CPU does not have.
     pub const ILLEGAL: u32 = 2;
-    /// Load from an address that is no multiple of its size.
+    /// Load from an address that is not a multiple of its size.
     pub const LOAD_MISALIGNED: u32 = 4;
-    /// Store to an address that is no multiple of its size.
+    /// Store to an address that is not a multiple of its size.
     pub const STORE_MISALIGNED: u32 = 6;
     /// `ecall`.
     pub const CALL: u32 = 11;
@@ -89,7 +89,7 @@ impl Csrs {
         let (reads, kind) = (word >> 7 & 0x7f != 0x20, word >> 12 & 3);
         let value = self.read(number, counts)?;
         if number >> 10 == 3 {
-            // A read-only register: VexRiscv ignores a write beside a read.
+            // A read-only register: VexRiscv ignores the write of an instruction that also reads.
             return reads.then_some(value);
         }
         let operand = if word >> 14 & 1 == 1 { field } else { source };

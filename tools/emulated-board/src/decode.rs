@@ -1,12 +1,12 @@
 //! Instructions, decoded once for many executions.
 
-/// What an instruction does. The names are those of the RISC-V specification.
+/// Operation of an instruction. The names are those of the RISC-V specification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Operation {
     /// Not decoded yet.
     Unknown,
-    /// No instruction of this CPU.
+    /// Not an instruction of this CPU.
     Illegal,
     Lui,
     Auipc,
@@ -68,7 +68,7 @@ pub const NOWHERE: u8 = 32;
 /// A decoded instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// What it does.
+    /// Its operation.
     pub operation: Operation,
     /// Register of the result; [`NOWHERE`] for register 0.
     pub rd: u8,

@@ -101,13 +101,13 @@ impl Devices {
             triangle: TriangleEngine::new(),
             gesture: GestureEngine::new(),
             digits: Digits::default(),
-            // Each block states its next event when it is asked for the first time.
+            // Each block states its next event when it is requested the first time.
             next: [0; BLOCKS.len()],
             lines: 0,
         }
     }
 
-    /// Resets the blocks, as the CPU has asked for: pins keep their levels, the digits what they show, and the video timing goes on.
+    /// Resets the blocks, as the CPU requested: pins keep their levels, the digits what they show, and the video timing continues.
     pub fn reset(&mut self) {
         self.controller = Controller::new();
         self.uart.reset();

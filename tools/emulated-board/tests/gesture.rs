@@ -226,7 +226,7 @@ fn faults_are_those_of_the_frames() {
         bench.engine.sensor().unwrap().fault = Some(fault);
         while bench.run(2 * FRAME) {}
         assert!(bench.read(offset::FRAMES_DROPPED) > dropped, "{fault:?}");
-        // The clock stands still in some part of these frames, and ticks in the other.
+        // The clock stops in some part of these frames, and ticks in the other.
         while matches!(fault, SensorFault::Stopped(_)) && bench.status().running() {
             bench.run(500);
         }

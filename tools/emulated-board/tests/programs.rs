@@ -1,4 +1,4 @@
-//! Small programs on the whole board, for what the firmware never does.
+//! Small programs on the whole board, for operations that the firmware never uses.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::memories::{FLASH, MAIN_RAM};
@@ -69,7 +69,7 @@ fn started(words: &[u32]) -> EmulatedBoard {
     EmulatedBoard::fast(&bytes(words)).expect("a program that fits")
 }
 
-/// The result at a place of the results.
+/// The result at a position of the results.
 fn result(board: &EmulatedBoard, place: u32) -> u32 {
     let mut word = [0; 4];
     let address = RESULTS + 4 * place;
@@ -91,7 +91,7 @@ fn frames_are_captured_while_accesses_wait_for_the_bus() {
 fn each_page_of_the_flash_runs_its_own_code() {
     let mut board = started(&[lui(A2, RESULTS), lui(A0, FLASH.base), jump(A0)]);
     for value in [1, 2] {
-        // Back to main memory in each round, as the first page goes on to the second.
+        // Back to main memory in each round, as the first page continues to the second.
         let mut words = [lui(A0, FLASH.base + PAGE), jump(A0)].to_vec();
         words.resize(PAGE as usize / 4, 0);
         words.extend([
@@ -124,7 +124,7 @@ fn an_access_that_fills_a_line_of_a_cache_is_eight_on_the_bus() {
         (lui(A0, UNUSED), sw(A1, 4, A0), 1),
         (lui(A0, UNUSED_IO), lw(A1, 4, A0), 1),
         (lui(A0, UNUSED_IO), sw(A1, 4, A0), 1),
-        // Ones are no instruction, and the handler is the next one here.
+        // The word of all ones is not an instruction; here the handler follows it.
         (lui(A0, UNUSED), jump(A0), 8),
         (lui(A0, UNUSED_IO), jump(A0), 8),
     ];

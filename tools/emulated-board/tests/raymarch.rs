@@ -36,7 +36,7 @@ const DESCRIPTORS: u32 = 0x4600_0000;
 const LISTS: u32 = 0x4700_0000;
 const LIST_SHIFT: u8 = 8;
 
-/// Both engines behind their addresses.
+/// Both engines at their addresses.
 struct Machine {
     engine: TriangleEngine,
     ram: MainMemory,
@@ -292,7 +292,7 @@ fn a_mesh_in_a_field() {
     };
     let _ = pass.prepare(&mut bench.engine);
     {
-        // The mesh is at another place than that of the host.
+        // The mesh is at another position than that of the host.
         let Machine { engine, ram, now } = &mut *bench.machine.0.borrow_mut();
         let place = ram.bytes_mut(MESH, bytes.len()).unwrap();
         place.copy_from_slice(&bytes);

@@ -7,7 +7,7 @@
 
 /// Largest number of bytes: addresses have 24 bits.
 pub const MAX_BYTES: usize = 1 << 24;
-/// What an erased flash reads.
+/// Value of an erased byte.
 pub const ERASED: u8 = 0xff;
 
 /// Fast read with quad output.

@@ -10,7 +10,7 @@ use glint_scene::Scene;
 
 /// Name of the list of scenes in an image, the first of which the board shows after power-up.
 pub const START: &str = "start";
-/// Name of the mesh that every board has beside the shapes.
+/// Name of the built-in mesh that is not a shape.
 const CUBE: &str = "cube";
 
 /// The bytes for the FPGA in a bitstream file: all of a raw file, those behind the header of a `.bit` file.
@@ -18,7 +18,7 @@ const CUBE: &str = "cube";
 /// # Errors
 /// The header is damaged.
 pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
-    // A field of nine bytes, and one of a single byte, which is no part of a raw bitstream.
+    // A field of nine bytes, and one of a single byte, which is not a part of a raw bitstream.
     const HEADER: [u8; 13] = [
         0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
     ];
@@ -104,7 +104,7 @@ fn is_built_in(mesh: &str) -> bool {
 /// Makes an image, whole and checked.
 ///
 /// # Errors
-/// A part is too long, or has not its format.
+/// A part is too long, or violates its format.
 pub fn make(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u8>, FormatError> {
     let image = encode(bitstream, firmware, pieces).map_err(|error| match error {
         EncodeError::Part(error) => format_error(error),
@@ -160,7 +160,7 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// Checks the commands of a scene, and that its meshes are there.
+/// Checks the commands of a scene, and that its meshes exist.
 fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
     let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());
     let error = |line, expected| FormatError::new(Place::Line(line), expected, quoted(line));

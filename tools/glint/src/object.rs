@@ -1,10 +1,10 @@
-//! Objects from the command line: a model and its place in the world.
+//! Objects from the command line: a model and its position in the world.
 
 use crate::error::{FormatError, quote};
 use glint_core::object::{Place, PlaceError};
 use glint_core::words::Words;
 
-/// An object as it is written: `MODEL` and the operations of a [`Place`].
+/// An object as written: `MODEL` and the operations of a [`Place`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// A mesh file or a generator's name.

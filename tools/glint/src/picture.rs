@@ -120,7 +120,7 @@ impl<W: Write> Animation<W> {
     /// Ends the animation.
     ///
     /// # Errors
-    /// It cannot be written, or it has fewer images than it began with.
+    /// The file cannot be written, or has fewer images than announced.
     pub fn finish(self) -> io::Result<()> {
         match self {
             Self::Png(writer) => Ok(writer.finish()?),
@@ -132,7 +132,7 @@ impl<W: Write> Animation<W> {
 /// Writes images of one size as an animated PNG.
 ///
 /// # Errors
-/// It cannot be written, or there is no image.
+/// The file cannot be written, or there is no image.
 pub fn write_animation(
     out: impl Write,
     images: &[Image],

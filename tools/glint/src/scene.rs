@@ -28,14 +28,14 @@ fn refuse(reason: impl Display) -> FormatError {
     FormatError::whole("a scene that boards can show", reason.to_string())
 }
 
-/// What a frame of a scene has in place of what the scene states.
+/// Settings of a frame that override those of its scene.
 #[derive(Clone, Copy, Default)]
 pub struct Changes {
     /// Shading of meshes.
     pub shading: Option<Shading>,
     /// Quality of the picture, with its size.
     pub quality: Option<Quality>,
-    /// Size of the picture, in place of that of the quality.
+    /// Size of the picture, instead of that of the quality.
     pub size: Option<Size>,
 }
 

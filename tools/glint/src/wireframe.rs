@@ -291,7 +291,7 @@ pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
 /// The form of the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MotionForm {
-    /// Each frame moves the points of the program anew.
+    /// Each frame moves the points of the program again.
     #[default]
     DriftFree,
     /// The motion of the original: each step rounds the end points in place.

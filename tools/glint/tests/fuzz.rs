@@ -3,7 +3,7 @@
 use glint::fuzz::{Inputs, Target, Verdict};
 
 fn run(target: Target) {
-    // The firmware starts anew for each input, which takes 20 ms.
+    // The firmware starts again for each input, which takes 20 ms.
     let count = match target {
         Target::Firmware => 400,
         _ => 20_000,

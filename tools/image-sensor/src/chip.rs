@@ -237,7 +237,7 @@ impl Chip {
         }
     }
 
-    /// Whether PCLK stands still while HREF is not active.
+    /// Whether PCLK stops while HREF is not active.
     #[must_use]
     pub fn gates_clock(&self) -> bool {
         self.model == Model::Ov7670 && self.register(ov7670::COM10) & 0x20 != 0

@@ -97,7 +97,7 @@ pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     u16::from(r >> 3) << 11 | u16::from(g >> 2) << 5 | u16::from(b >> 3)
 }
 
-/// What the sensor sees.
+/// The view of the sensor.
 pub trait Source: Send {
     /// The frame that is exposed at `time`, in s. All frames have the same size.
     fn frame(&mut self, time: f64) -> Frame;

@@ -10,7 +10,7 @@ const STILL: usize = 1_000;
 
 /// Levels of the port in one period of PCLK. They change at its beginning; PCLK rises in its middle.
 ///
-/// Bits 7:0 are the data, bit 8 HREF, bit 9 VSYNC. With bit 10, PCLK stands still in this period. With bit 11, PCLK is inverted.
+/// Bits 7:0 are the data, bit 8 HREF, bit 9 VSYNC. With bit 10, PCLK stops in this period. With bit 11, PCLK is inverted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels(pub u16);
 
@@ -106,7 +106,7 @@ pub enum Fault {
 pub struct ImageSensor {
     /// The chip on its SCCB wires.
     pub wires: Wires<Chip>,
-    /// What the sensor sees.
+    /// The view of the sensor.
     pub source: Box<dyn Source>,
     /// Pace of the port.
     pub timing: Timing,

@@ -39,7 +39,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// The way to a board of this name, for one page or for several, and the end of it where the session takes the commands.
+    /// The channel to the board with this name, for one page or several, and the channel's end from which the session takes commands.
     pub fn new(board: &dyn Live, name: &str, is_shared: bool) -> (Self, Receiver<Request>) {
         let (channels, requests) = Self::to_board(board.motion());
         channels.hub.send(&ToPage::Board {

@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Maximum number of viewers.
 pub const MAX_VIEWERS: usize = 16;
 
-/// Maximum number of bytes that wait for a viewer, beside one picture. A viewer that falls behind more is closed.
+/// Maximum number of bytes that wait for a viewer, in addition to one picture. A viewer that falls behind more is closed.
 const MAX_WAITING: usize = 4 << 20;
 
 /// Number of bytes of the console's output that a new viewer gets at least, if there are as many.

@@ -8,7 +8,7 @@ use glint_board::{Board, BoardError, Frame, Memory, SimulatedBoard, Simulation, 
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Time of the board in ms that it runs at once.
+/// Slice of board time in ms that runs without a pause.
 const SLICE_MS: u64 = 1;
 
 /// A board for the live page. A read from its line passes time in which the board runs, at most as fast as in reality.

@@ -11,7 +11,7 @@ pub const PICTURE_HEAD: usize = 8;
 /// Maximum size of a message from the page in bytes; an upload comes in several messages.
 pub const MAX_MESSAGE: usize = 128 << 10;
 
-/// A message to the page as it is sent. Copies share their bytes.
+/// A message to the page as sent. Copies share their bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
     /// A JSON text.
@@ -95,7 +95,7 @@ pub enum ToPage {
         /// Attitude of the motion sensor as a quaternion w, x, y, z.
         attitude: Option<[f64; 4]>,
     },
-    /// The attitude of the motion sensor and the place of the hand that pages have set last.
+    /// The attitude of the motion sensor and the position of the hand that pages have set last.
     Motion {
         /// As in [`FromPage::Turn`].
         attitude: [f64; 4],
@@ -139,7 +139,7 @@ pub struct Pins {
 }
 
 impl ToPage {
-    /// The message as it is sent.
+    /// The message as sent.
     #[must_use]
     pub fn encoded(&self) -> Message {
         let text = serde_json::to_string(self).expect("the messages have string keys only");

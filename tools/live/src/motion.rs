@@ -92,7 +92,7 @@ impl Motion {
         Wires::new(Chip::new(Source::Motion(Box::new(state)), NOISE, 1))
     }
 
-    /// A camera in front of which the page moves a hand.
+    /// The image sensor in front of which the page moves a hand.
     pub fn camera(self: &Arc<Self>) -> ImageSensor {
         let motion = Arc::clone(self);
         let [width, height] = CAMERA.map(|length| length as f64);

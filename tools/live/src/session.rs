@@ -189,7 +189,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Keeps a request until the console waits for a command. A newer model or picture replaces the one before. Descriptions above the
+    /// Keeps a request until the console waits for a command. A newer model or picture replaces the previous one. Descriptions above the
     /// limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting.retain(|earlier| match (earlier, &request) {

@@ -7,7 +7,7 @@ use glint_core::console::LINE_MAX;
 use glint_mesh::convert::Options;
 use glint_mesh::model;
 
-/// Maximum size of a file for an upload in bytes.
+/// Maximum upload size in bytes.
 const MAX_UPLOAD: usize = 64 << 20;
 
 /// Maximum number of characters of a file's name.
@@ -77,7 +77,7 @@ impl Viewer {
     /// Acts on a text from the page.
     ///
     /// # Errors
-    /// It is no message of the page, or a value in it is out of range.
+    /// It is not a message of the page, or a value in it is out of range.
     pub fn receive_text(&mut self, text: &str, channels: &Channels) -> Result<(), Reason> {
         let message =
             serde_json::from_str(text).map_err(|_| "expected a message of docs/live-page.md")?;
@@ -127,7 +127,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Takes bytes of an announced file from the page, and hands the whole file to the board.
+    /// Receives bytes of an announced file from the page, and passes the complete file to the board.
     ///
     /// # Errors
     /// No file has been announced, or it has fewer bytes.
@@ -213,7 +213,7 @@ mod tests {
         assert!(queue.try_recv().is_err());
     }
 
-    /// The next page with control gets no button that the last one held, and learns where sensor and hand are.
+    /// The next page with control does not inherit pressed buttons, and receives the positions of sensor and hand.
     #[test]
     fn control_passes_on_with_released_buttons_and_the_motion() {
         let motion = Arc::<Motion>::default();

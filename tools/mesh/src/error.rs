@@ -54,14 +54,14 @@ impl fmt::Display for Place {
 pub struct FormatError {
     /// Place of the violation.
     pub place: Place,
-    /// The requirement of the format at this place.
+    /// The requirement of the format at this position.
     pub expected: String,
-    /// The content of the input at this place.
+    /// The content of the input at this position.
     pub found: String,
 }
 
 impl FormatError {
-    /// Creates an error at a place.
+    /// Creates an error at a position.
     pub fn new(place: Place, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self {
             place,

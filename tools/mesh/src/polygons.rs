@@ -168,7 +168,7 @@ impl Polygons {
     /// Checks that there is a face, and that the points and normals of all corners exist.
     ///
     /// # Errors
-    /// There is no face, or an index is out of range; the error has the place of the largest index.
+    /// There is no face, or an index is out of range; the error has the position of the largest index.
     pub fn check_indices(&self) -> Result<(), FormatError> {
         self.largest_point.check(self.points.len(), "point")?;
         self.largest_normal.check(self.normals.len(), "normal")?;

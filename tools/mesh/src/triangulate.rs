@@ -16,7 +16,7 @@ pub struct Scratch {
     next: Vec<usize>,
     previous: Vec<usize>,
     is_ear: Vec<bool>,
-    /// The ears, with corners among them that are no ears any more.
+    /// The ears, and corners that were ears before.
     ears: VecDeque<usize>,
     tree: Tree,
     triangles: Vec<[Corner; 3]>,

@@ -120,7 +120,7 @@ impl ExactSegment {
     }
 
     /// The depth at a pixel's centre: linear along the major axis, which is that of columns if the end points are at least as far
-    /// apart horizontally as vertically. They must not be at the same place.
+    /// apart horizontally as vertically. They must not be at the same position.
     pub fn depth(&self, pixel: [i64; 2]) -> ExactDepth {
         let axis = usize::from(self.way[0].abs() < self.way[1].abs());
         let [from, to] = self.ends;

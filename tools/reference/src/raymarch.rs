@@ -64,7 +64,7 @@ pub enum Field {
         /// Half of the room's height.
         half: f64,
     },
-    /// The points that are in at least one of two fields.
+    /// The union of two fields.
     Union(Box<Self>, Box<Self>),
     /// The points that are in at least one of two fields, with a fillet where
     /// their surfaces are close (the quadratic smooth minimum of Quilez).
@@ -83,7 +83,7 @@ impl Field {
     /// `t_min` is in the solid already, the hit is at `t_min` and its face is [`Face::Inside`].
     ///
     /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a
-    /// ray may pass between the balls or cubes for ever.
+    /// ray may pass between the balls or cubes forever.
     ///
     /// # Panics
     /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps (see [`Unconverged`]).

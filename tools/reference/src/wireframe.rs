@@ -37,7 +37,7 @@ impl Form {
 pub enum Session {
     /// Rotations about one axis in one direction.
     Turning,
-    /// Rotations in turn up and down.
+    /// Alternating rotations up and down.
     Rocking,
     /// Rotations in all four directions, by a fixed random sequence.
     Wandering,
@@ -56,7 +56,7 @@ impl Session {
         }
     }
 
-    /// The steps of the session, without end.
+    /// The steps of the session, an infinite sequence.
     pub fn steps(self) -> impl Iterator<Item = Step> {
         let mut state = 1_u32;
         (0_u32..).map(move |number| {

@@ -34,7 +34,7 @@ impl Source<'_> {
         1 + before.filter(|&&byte| byte == b'\n').count()
     }
 
-    /// An error at a place of the file.
+    /// An error at a position of the file.
     pub fn error(self, span: &Range<usize>, message: impl Into<String>) -> SceneError {
         SceneError {
             line: Some(self.line(span.start)),

@@ -145,7 +145,7 @@ impl<'a> File<'a> {
     /// The words of a value, and of the members of a list: the arguments of console commands.
     ///
     /// # Errors
-    /// The value has a type that is no argument, or a member of a list that is no list.
+    /// The value has a type that is not an argument, or a member of a list that is not a list.
     pub fn words(
         &self,
         key: &str,

@@ -9,7 +9,7 @@ pub struct Key {
     pub command: &'static str,
     /// Whether the value may be a list, with a command for each of its members.
     pub is_list: bool,
-    /// Whether the file needs one of these keys beside it; empty: no other key.
+    /// Keys of which the file needs one; empty if it needs none.
     pub with: &'static [&'static str],
     /// Keys that exclude it.
     pub without: &'static [&'static str],
@@ -84,7 +84,7 @@ pub const COMMANDS: [Key; 25] = [
     key("program"),
 ];
 
-/// The keys that are no console commands.
+/// The keys that are not console commands.
 pub const OTHERS: [&str; 7] = [
     "title", "steer", "scenes", "depth", "lanes", "clock", "budget",
 ];

@@ -161,7 +161,7 @@ impl Needs {
         }
     }
 
-    /// The options of `cargo xtask gateware` for a gateware with exactly this.
+    /// The options of `cargo xtask gateware` for a gateware that has exactly these features.
     pub fn options(&self) -> Vec<String> {
         let mut options = vec!["--blocks".to_owned()];
         options.extend(self.blocks.iter().map(|block| block.name().to_owned()));

@@ -23,7 +23,7 @@ pub fn built_in(name: &str) -> Option<Scene> {
 /// Reads a scene: a built-in one by its name, or a scene file by its path, which ends in `.toml`; `-` is one from standard input.
 ///
 /// # Errors
-/// No built-in scene has the name, the file cannot be read, or it is no scene file.
+/// No built-in scene has the name, the file cannot be read, or it is not a scene file.
 pub fn read(name: &str) -> Result<Scene, SceneError> {
     if let Some(scene) = built_in(name) {
         return Ok(scene);

@@ -14,7 +14,7 @@ use crate::keys::{BUDGET, COMMANDS, Key};
 /// What moves the camera, or the segments of a wireframe program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Steer {
-    /// Nothing does.
+    /// Nothing moves the camera.
     #[default]
     Fixed,
     /// The buttons, which are the keys of a wireframe program.
@@ -34,9 +34,9 @@ pub struct Scene {
     /// Console commands that set the picture.
     settings: Vec<String>,
     steer: Steer,
-    /// The scenes of a list of scenes, in place of settings.
+    /// The scenes of a list of scenes, instead of settings.
     scenes: Vec<Scene>,
-    /// Whether depth codes are wanted beside the colours.
+    /// Whether depth codes are requested in addition to the colours.
     pub(crate) depth: bool,
     pub(crate) lanes: Option<u8>,
     clock: Option<f64>,

@@ -438,6 +438,6 @@ fn several_scenes_need_what_each_needs() {
     );
     assert_eq!(built_in("menger").unwrap().needs().fields.unwrap().lanes, 4);
     let demo = built_in("demo").unwrap().needs();
-    // No scene needs the flash.
+    // No scene needs the flash block.
     assert_eq!(demo.blocks.len(), Block::ALL.len() - 1);
 }

@@ -145,7 +145,7 @@ impl Record {
     /// Returns the name of an enumeration's value; `None` for a number without a name.
     ///
     /// # Panics
-    /// When there is no such part, or its type is no enumeration.
+    /// When there is no such part, or its type is not an enumeration.
     #[must_use]
     pub fn name(&self, path: &str) -> Option<&str> {
         let part = self.find(path);

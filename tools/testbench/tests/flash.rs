@@ -123,7 +123,7 @@ fn words_at_random_addresses_and_in_runs() {
     let mut follower = None;
     for _ in 0..300 {
         let first = bench.rng.random_range(0..words);
-        // Some runs go on where the last one ended.
+        // Some runs continue where the last one ended.
         let first = follower.filter(|_| bench.rng.random()).unwrap_or(first);
         let back_to_back: bool = bench.rng.random();
         for number in first..(first + bench.rng.random_range(1..20)).min(words) {

@@ -1,4 +1,4 @@
-//! ROM contents for the preloaded start: a few instructions in place of the BIOS.
+//! ROM contents for the preloaded start: a few instructions instead of the BIOS.
 
 use litex_pac::memories::MAIN_RAM;
 

@@ -22,7 +22,7 @@ impl Digits {
         }
     }
 
-    /// Segments of the digits from left to right, as they are seen in a cycle.
+    /// Lit segments of the digits from left to right in a cycle.
     pub fn seen(&self, cycle: u64) -> [u8; 8] {
         self.digits
             .map(|(segments, end)| if cycle < end { segments } else { 0 })

@@ -51,7 +51,7 @@ pub enum Error {
     /// The expected output or video did not come in time.
     #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {
-        /// What was expected.
+        /// Expected input.
         expected: String,
         /// Time-out in cycles.
         cycles: u64,

@@ -1,10 +1,10 @@
 //! The virtual board: Glint's verilated SoC and models of the devices around it.
 //!
 //! `cargo xtask gateware` compiles the SoC to a shared library. This crate loads it, drives its clocks and pins, and models its
-//! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons,
-//! switches, LEDs, digits, a SPI flash ([`VirtualBoard::plug_flash`]), an MPU-6050 ([`VirtualBoard::plug`]), an image sensor ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the
-//! video timing and captures pictures.
-//! A back door reads and writes DDR3 at run time, coherent with the CPU's caches.
+//! devices: a UART as a byte stream ([`VirtualBoard::uart_write`], or on a pseudo-terminal with [`pty::Pty`]), buttons, switches,
+//! LEDs, digits, a SPI flash ([`VirtualBoard::plug_flash`]), an MPU-6050 ([`VirtualBoard::plug`]), an image sensor
+//! ([`VirtualBoard::plug_image_sensor`]), and a [`Monitor`] that checks the video timing and captures pictures. A back door reads
+//! and writes DDR3 at run time, coherent with the CPU's caches.
 //!
 //! ```no_run
 //! use virtual_board::{Start, VirtualBoard};

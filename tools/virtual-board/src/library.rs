@@ -288,7 +288,7 @@ impl Soc {
         unsafe { (self.functions.video_record)(self.raw(), on.into()) }
     }
 
-    /// Passes the recorded video samples to `consume`, and then drops them.
+    /// Passes the recorded video samples to `consume`, and then discards them.
     pub fn video_take(&mut self, consume: impl FnOnce(&[u32])) {
         let mut count = 0;
         // SAFETY: the handle belongs to a live SoC that nothing else uses, and `count` is a valid place for the result.

@@ -114,7 +114,7 @@ pub struct Monitor {
 }
 
 impl Monitor {
-    /// Turns the monitor on, if it is off. A frame that has already begun is not captured.
+    /// Turns the monitor on, if it is off. The current frame is not captured.
     pub fn turn_on(&mut self) {
         if !self.on {
             *self = Self {
@@ -160,7 +160,7 @@ impl Monitor {
         self.picture.is_some()
     }
 
-    /// Removes and returns the picture of the last whole frame, if it was not taken yet.
+    /// Takes the picture of the last complete frame, if it was not taken before.
     pub fn take_picture(&mut self) -> Option<Picture> {
         self.picture.take()
     }

@@ -116,7 +116,7 @@ impl Picture {
     /// Returns the RGB565 frame, line by line, that scan-out enlarged by `scale` to this picture.
     ///
     /// # Errors
-    /// When the sides are no multiples of `scale`, a block of `scale` × `scale` pixels has several colours, or a colour
+    /// When the sides are not multiples of `scale`, a block of `scale` × `scale` pixels has several colours, or a colour
     /// is not an RGB565 colour widened by bit replication.
     pub fn scaled_back(&self, scale: usize) -> Result<Vec<u16>, PictureError> {
         let Self { width, height, .. } = *self;

@@ -163,7 +163,7 @@ fn run<B: Uart>(mut board: B, mut terminal: File, tasks: &Receiver<Task<B>>) -> 
     }
 }
 
-/// Whether the error only means that nothing can be transferred now, so that the thread goes on.
+/// Whether the error only means that nothing can be transferred now, so that the thread continues.
 fn is_passing(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::Interrupted)
 }

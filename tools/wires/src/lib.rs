@@ -141,7 +141,7 @@ impl<D: Device> Wires<D> {
         if since != 0 && now - since < least {
             let time = now - since;
             self.violations.push(format!(
-                "{what} of {time} ns at {now} ns: expected {least} ns"
+                "{what} of {time} ns at {now} ns: expected at least {least} ns"
             ));
         }
     }

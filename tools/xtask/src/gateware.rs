@@ -198,7 +198,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            // LiteX compiles the C library for each BIOS anew: the same commands on the same sources, in another folder.
+            // LiteX compiles the C library for each BIOS again: the same commands on the same sources, in another folder.
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
@@ -210,7 +210,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
-/// How the library of the virtual board is compiled.
+/// Compiler options for the library of the virtual board.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Library {
     /// For speed, with a profile of its branches.

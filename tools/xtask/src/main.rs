@@ -96,7 +96,7 @@ enum Task {
         /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`,
         /// the own blocks]
         blocks: Vec<String>,
-        /// Place and route on an ECP5 instead: clock rates of the blocks beside VexRiscv's
+        /// Place and route on an ECP5 instead: clock rates of the blocks and of VexRiscv
         #[arg(long)]
         route: bool,
         /// Print the sizes of the instances in the blocks [default: soc] instead, the largest first
@@ -105,7 +105,7 @@ enum Task {
         /// Depth of the tree
         #[arg(long, requires = "tree", default_value_t = 3)]
         depth: usize,
-        /// Measure the build of the Urbana for each built-in scene, beside the one for all scenes, and the cycles of their frames
+        /// Measure the build of the Urbana for each built-in scene and for all scenes, and the cycles of their frames
         #[arg(long, conflicts_with_all = ["blocks", "route", "tree", "json"])]
         scenes: bool,
         /// Print JSON; progress goes to standard error
@@ -123,7 +123,9 @@ enum Task {
     },
     /// Measure errors and run times of the algorithms, and write the pages in docs/report
     Report {
-        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`, `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of independent jobs]
+        /// Page to measure: `sine`, `triangle`, `gouraud`, `raymarch`, `imu`, `geometry`, `gesture`, `kernels`, `quality`,
+        /// `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of
+        /// independent jobs]
         page: Option<String>,
         /// Measure samples, into target/report
         #[arg(long)]

@@ -37,7 +37,7 @@ struct Program {
 }
 
 impl Program {
-    /// The program's place in [`LONGEST`], or the length of the list.
+    /// The program's position in [`LONGEST`], or the length of the list.
     fn rank(&self) -> usize {
         let is_it = |(package, target): &(&str, &str)| {
             self.package.ends_with(package) && self.target == *target
@@ -179,7 +179,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().expect("tests do not panic")
 }
 
-/// Returns the test program of a line of cargo's output, which also has lines that are no messages.
+/// Returns the test program of a line of cargo's output, which also has lines that are not messages.
 fn test_program(line: &str) -> Option<Program> {
     let Artifact {
         executable: Some(path),

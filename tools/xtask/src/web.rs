@@ -65,7 +65,7 @@ fn files_of(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     entries.map(file).collect()
 }
 
-/// Copies files to the folder `out` in place of an earlier one. Returns their number of bytes.
+/// Copies files to the folder `out` instead of an earlier one. Returns their number of bytes.
 fn replace(out: &Path, files: &[(PathBuf, String)]) -> Result<u64> {
     let has_files = fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
     if has_files && !out.join(BOARD).is_file() {

@@ -230,7 +230,7 @@ impl<T: Choice> WordArgument for T {
     }
 }
 
-/// A keyword that may stand in place of a value.
+/// A keyword that may replace a value.
 pub trait Keyword {
     /// The text of the keyword.
     const WORD: &'static str;

@@ -57,7 +57,7 @@ commands! {
         demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
 
-    /// Commands of objects: several meshes in a frame, each with a place of its own.
+    /// Commands of objects: several meshes in a frame, each with its own position.
     ObjectCommands {
         object Object(action: Option<Object>) in OBJECT: "list or show the objects, add one, change its place or colour, or remove it";
     }

@@ -15,10 +15,10 @@ pub const HISTORY: usize = 8;
 
 type Line = Vec<u8, LINE_MAX>;
 
-/// What the caller must handle after a byte from the terminal.
+/// Event that the caller must handle after a byte from the terminal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event<'a> {
-    /// Nothing to handle: at most the echo was written.
+    /// No event; at most the echo was written.
     None,
     /// A complete line: ASCII without control characters.
     Line(&'a str),
@@ -271,7 +271,7 @@ impl LineEditor {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
 
-    /// Writes prompt and line again, in place of the terminal's line.
+    /// Writes prompt and line again, instead of the terminal's line.
     ///
     /// # Errors
     /// Those of `echo`.

@@ -5,7 +5,7 @@ use super::object::ObjectAction;
 use super::values::{GestureAction, ImuAction};
 use crate::block::Block;
 
-/// What a command does to the picture.
+/// Effect of a command on the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// Nothing: it shows or measures something, or sets what does not belong to a scene.
@@ -17,7 +17,7 @@ pub enum Effect {
 }
 
 impl<'a> Command<'a> {
-    /// What the command does to the picture.
+    /// Effect of the command on the picture.
     pub const fn effect(&self) -> Effect {
         match self {
             Self::Load { .. }
@@ -85,7 +85,7 @@ impl<'a> Command<'a> {
         }
     }
 
-    /// The optional blocks of the gateware, beside scan-out, that draw or steer what the command sets.
+    /// The optional blocks of the gateware, other than scan-out, that the command needs.
     pub const fn blocks(&self) -> &'static [Block] {
         match self {
             Self::Scene { name: Some(_) }

@@ -13,7 +13,7 @@ use crate::object::PlaceError;
 use crate::stereo::StereoError;
 use crate::words::Word;
 
-/// Reason why a line is not a command. `Display` states the error, its place in the line, and the expected input.
+/// Reason why a line is not a command. `Display` states the error, its position in the line, and the expected input.
 #[derive(Clone, Copy, Debug)]
 pub struct ParseError<'a>(pub(super) ParseErrorKind<'a>);
 

@@ -25,7 +25,7 @@ pub enum ObjectAction<'a> {
     Change {
         /// Number of the object, from 1.
         number: u32,
-        /// The operation that follows those of the object's place, or its new colour.
+        /// The operation that follows those of the object's position, or its new colour.
         next: Place,
     },
     /// Remove the object with this number, from 1; `None` removes all objects.

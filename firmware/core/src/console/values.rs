@@ -412,7 +412,7 @@ pub enum GestureAction {
     Calibrate,
     /// Send a small picture of the pixels of the hand's colour.
     Mask,
-    /// Draw the place of the hand in a corner of the picture.
+    /// Draw the position of the hand in a corner of the picture.
     Mark,
     /// Draw it no longer.
     Unmark,

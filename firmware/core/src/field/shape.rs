@@ -13,7 +13,7 @@ pub trait Shape: Sized {
     type Solid;
     /// The name of the kind: the word before the colon of the text form.
     const NAME: &'static str;
-    /// The text form with names in place of numbers, for the help.
+    /// The text form with names instead of numbers, for the help.
     const FORM: &'static str;
     /// Description of the kind, for the help.
     const ABOUT: &'static str;

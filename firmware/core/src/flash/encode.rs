@@ -50,7 +50,7 @@ impl core::error::Error for EncodeError {}
 /// Encodes an image, and checks it. Erased bytes, 0xff, fill the gaps between the parts; without a bitstream its slot is erased.
 ///
 /// # Errors
-/// A part is too long, or has not its format.
+/// A part is too long, or violates its format.
 pub fn encode(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec<u8>, EncodeError> {
     for (part, bytes, limit) in [
         ("bitstream", bitstream, FIRMWARE),

@@ -7,7 +7,7 @@ use core::fmt;
 pub struct FlashError {
     /// Offset of the error in bytes from the start of the flash.
     pub offset: u32,
-    /// The number or value that was expected at this place.
+    /// The number or value that was expected at this position.
     pub expected: Expected,
     /// The number that was found instead.
     pub found: u32,

@@ -51,7 +51,7 @@ impl Region {
     }
 }
 
-/// What the gesture engine counted in one camera frame.
+/// Statistics of one camera frame, as counted by the gesture engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statistics {
     /// Columns and rows of the frame, as received.
@@ -124,7 +124,7 @@ pub struct Blob {
 }
 
 impl Blob {
-    /// How certain it is that this is one hand in a frame of `size` columns and rows, in units of 1/256. It grows with the area, from
+    /// Confidence that this is one hand in a frame of `size` columns and rows, in units of 1/256. It grows with the area, from
     /// the least area to four times that, and with the part of the bounds that the pixels fill, from 1/8 to 3/8.
     pub fn confidence(&self, size: [u16; 2]) -> u8 {
         let least = least_area(u32::from(size[0]) * u32::from(size[1]));

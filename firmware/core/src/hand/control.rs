@@ -16,7 +16,7 @@ pub const RUN_MOVING: u8 = 4;
 /// The same in the smaller region around a hand at rest: the tips of fingers that are 5 pixels wide are to count.
 pub const RUN_RESTING: u8 = 3;
 /// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame. It is also the
-/// longest time between two frames after which tracking goes on.
+/// longest time between two frames after which tracking continues.
 pub const PATIENCE: u32 = 250_000;
 /// Number of successive frames that must show a hand before it moves the camera.
 const FRAMES: u8 = 3;
@@ -54,7 +54,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Makes the camera at this place.
+    /// Makes the camera at this position.
     ///
     /// # Errors
     /// Numbers that do not come from a [`Control`] may be out of range.
@@ -87,7 +87,7 @@ impl fmt::Display for Presence {
     }
 }
 
-/// What the engine is to count in the next frame.
+/// Settings of the engine for the next frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
     /// Pixels outside do not count.
@@ -122,7 +122,7 @@ impl Setting {
     }
 }
 
-/// Area and place of the hand in the last frame.
+/// Area and position of the hand in the last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Last {
     /// Number of the hand's pixels; 0 if the frame counted longer runs.
@@ -147,7 +147,7 @@ enum State {
 struct Channel {
     filter: OneEuro,
     zone: Backlash,
-    /// Rest of the way from the place where the camera was held to the hand's new place. It fades through two low passes in series,
+    /// Rest of the way from the place where the camera was held to the hand's new position. It fades through two low passes in series,
     /// so that the camera also starts smoothly.
     offsets: [Q4_28; 2],
     output: Q4_28,
@@ -185,7 +185,7 @@ impl Channel {
     }
 }
 
-/// The control of the camera by the hand: takes the statistics of each camera frame, and states the camera's place and the
+/// The control of the camera by the hand: takes the statistics of each camera frame, and states the camera's position and the
 /// engine's setting for the next frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
@@ -193,7 +193,7 @@ pub struct Control {
     setting: Setting,
     /// Time in µs at which the last frame ended.
     ended: Option<u64>,
-    /// What the last frame showed.
+    /// Content of the last frame.
     seen: Result<Blob, Doubt>,
     /// Azimuth, polar angle and distance.
     channels: [Channel; 3],
@@ -214,7 +214,7 @@ impl Default for Control {
 }
 
 impl Control {
-    /// The camera's place.
+    /// The camera's position.
     pub fn pose(&self) -> Pose {
         let [theta, phi, r] = self.channels.map(|channel| channel.output.to_bits());
         Pose {
@@ -225,7 +225,7 @@ impl Control {
         }
     }
 
-    /// What the engine is to count in the next frame.
+    /// Settings of the engine for the next frame.
     pub const fn setting(&self) -> Setting {
         self.setting
     }
@@ -240,7 +240,7 @@ impl Control {
         }
     }
 
-    /// What the last frame showed.
+    /// Content of the last frame.
     ///
     /// # Errors
     /// It did not show the hand.
@@ -266,7 +266,7 @@ impl Control {
         self.seen
     }
 
-    /// Takes a frame, `gap` µs after the frame before. Every frame with a hand runs all of this code, which the instruction cache has to
+    /// Takes a frame, `gap` µs after the previous frame. Every frame with a hand runs all of this code, which the instruction cache has to
     /// load, so what runs rarely is in other functions.
     #[inline(never)]
     fn take(&mut self, gap: u32, statistics: &Statistics) {
@@ -295,7 +295,7 @@ impl Control {
         self.steer(target(&blob, size), Step::new(gap));
     }
 
-    /// Takes a frame that does not simply go on with a tracked hand, `gap` µs after the frame before.
+    /// Takes a frame that does not simply continue with a tracked hand, `gap` µs after the previous frame.
     #[cold]
     #[inline(never)]
     fn seek(&mut self, gap: u32, size: [u16; 2]) {
@@ -353,7 +353,7 @@ impl Control {
         }
     }
 
-    /// Begins to follow a hand: the filters start at its place, and the way from the camera's place to it becomes the offset.
+    /// Begins to follow a hand: the filters start at its place, and the way from the camera's position to it becomes the offset.
     fn enter(&mut self, blob: &Blob, size: [u16; 2]) {
         // The next frame counts shorter runs, so its area may be larger.
         self.state = State::Tracked(Last {
@@ -374,7 +374,7 @@ impl Control {
         azimuth.offsets = azimuth.offsets.map(within_a_turn);
     }
 
-    /// Moves the camera towards the place of the hand.
+    /// Moves the camera towards the position of the hand.
     fn steer(&mut self, target: [Q4_28; 3], step: Step) {
         let [theta, phi, r] = target;
         let [azimuth, polar, distance] = &mut self.channels;
@@ -400,7 +400,7 @@ const fn is_like(count: u32, blob: &Blob) -> bool {
     count == 0 || (2 * blob.count <= 3 * count && 2 * count <= 3 * blob.count)
 }
 
-/// Whether a hand may be that of the frame before: of nearly the same area, and at most an eighth of the frame away.
+/// Whether a hand may be that of the previous frame: of nearly the same area, and at most an eighth of the frame away.
 fn is_near(before: &Blob, blob: &Blob, size: [u16; 2]) -> bool {
     let moved = |axis: usize| {
         before.centre[axis]

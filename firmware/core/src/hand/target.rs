@@ -1,4 +1,4 @@
-//! From the hand's place and width in a camera frame to a place on the sphere about the origin.
+//! From the hand's position and width in a camera frame to a position on the sphere about the origin.
 
 use super::blob::Blob;
 use crate::fixed::{Q4_28, U0_16};

@@ -34,7 +34,7 @@ pub trait Sink<E> {
     fn on_error(&mut self, error: Error<E>);
 }
 
-/// Reads a chip without end.
+/// Reads a chip endlessly.
 ///
 /// Each sample is read once. After an error the stream searches for the chip every 30 ms. A chip that kept its configuration
 /// continues at once; any other chip is reset and configured.
@@ -54,7 +54,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         }
     }
 
-    /// Finds, configures and reads the chip without end.
+    /// Finds, configures and reads the chip endlessly.
     pub async fn run(&mut self) -> ! {
         let mut reset = false;
         let mut look = LOOK;

@@ -13,7 +13,7 @@
 //!
 //! ```text
 //! S = (e₁ − g·e₂)·h/(h + h₁)      g = h/h₁
-//! D = S − g²·S of the step before,      T = D·h/(h + h₁ + h₂)
+//! D = S − g²·S of the previous step,      T = D·h/(h + h₁ + h₂)
 //! A = (ω₂ + ω₃)/2 − (2·S + D·(h + 2·h₁)/(h + h₁ + h₂))/12
 //! E = e₁ + 9/5·T
 //! ```
@@ -178,7 +178,7 @@ impl Axis {
     /// step:
     ///
     /// ```text
-    /// 2·S = e₁ − e₂      2·D = 2·S − 2·S of the step before
+    /// 2·S = e₁ − e₂      2·D = 2·S − 2·S of the previous step
     /// A = (ω₂ + ω₃)/2 − (2·(2·S) + 2·D)/24
     /// E = e₁ + 3/10·(2·D)
     /// ```
@@ -265,7 +265,7 @@ impl History {
     /// vector of this step, φ/2, in radians with 48 fraction bits.
     ///
     /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample as the rate, 2 the
-    /// mean of two samples, 3 the parabola through three samples (with e₁ in place of E), and 4 or more the cubic through four
+    /// mean of two samples, 3 the parabola through three samples (with e₁ instead of E), and 4 or more the cubic through four
     /// samples. The first steps after a start have fewer earlier samples; together they leave an error of order h³.
     #[inline(always)]
     pub fn advance<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
@@ -326,8 +326,8 @@ const fn mul_high(a: i32, b: i32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
 
-/// The largest mean rate, 1.5·2^16 LSB with 12 fraction bits. With this limit the rate with its coning term fits 32 bits in the longest curved
-/// step of the most sensitive scale.
+/// The largest mean rate, 1.5·2^16 LSB with 12 fraction bits. With this limit the rate with its coning term fits 32 bits in the
+/// longest curved step of the most sensitive scale.
 const MOST_MEAN: i32 = 3 << 27;
 /// The largest change of the rate in a step, almost 2^17 LSB, with 8 fraction bits.
 const MOST_CHANGE: i32 = (1 << 25) - 1;

@@ -70,7 +70,7 @@ impl Tracker {
         self.resting = None;
     }
 
-    /// From now on, tracks the bias of the gyroscope at rest by `resting`.
+    /// Starts to track the bias of the gyroscope at rest by `resting`.
     pub fn follow_bias(&mut self, resting: RestBias) {
         self.set_bias(resting.bias());
         self.resting = Some(resting);

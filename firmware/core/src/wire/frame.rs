@@ -67,7 +67,7 @@ const CLOSE: u8 = 5;
 const ABORT: u8 = 6;
 const RESET: u8 = 7;
 
-/// Time in milliseconds without a byte after which the start of a frame is no start any more.
+/// Time in milliseconds without a byte after which the start of a frame is not a start any more.
 const GAP_MS: u64 = 50;
 /// The byte of the key Ctrl-C.
 const CTRL_C: u8 = 0x03;

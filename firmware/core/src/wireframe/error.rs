@@ -6,7 +6,7 @@ use super::format::{MAX_SEGMENTS, Opcode, WORD_BYTES};
 use crate::fixed::Q5_11;
 use crate::words::Word;
 
-/// A deviation of a program from its format, with its place.
+/// A deviation of a program from its format, with its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramError<'a> {
     /// The place.
@@ -27,9 +27,9 @@ pub enum Place {
 /// A deviation from the format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Violation<'a> {
-    /// What was expected.
+    /// Expected input.
     pub expected: Expected,
-    /// What was found instead.
+    /// Found input.
     pub found: Found<'a>,
 }
 
@@ -38,7 +38,7 @@ impl<'a> Violation<'a> {
         Self { expected, found }
     }
 
-    /// Adds the place.
+    /// Adds the line number.
     pub(super) const fn at(self, place: Place) -> ProgramError<'a> {
         ProgramError {
             place,
@@ -67,7 +67,7 @@ pub enum Expected {
     WholeWord,
     /// The end of the program.
     End,
-    /// Nothing after the end of the program.
+    /// The end of the program; nothing may follow it.
     NothingAfterEnd,
     /// Exactly one instruction of a kind.
     One(Opcode),
@@ -95,7 +95,7 @@ pub enum Expected {
     EndOfLine,
 }
 
-/// What was found in place of an [`Expected`].
+/// Input found instead of an [`Expected`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found<'a> {
     /// The three bits of an opcode.

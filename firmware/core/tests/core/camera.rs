@@ -211,7 +211,7 @@ fn fields_of_view_are_tangents() {
         );
         check(&wide, basis(&view));
     }
-    println!("half width within a part of 2^{:.2}", largest.log2());
+    println!("relative error of the half width: 2^{:.2}", largest.log2());
     assert!(largest <= 2f64.powi(-22));
     for degrees in [0.99, 179.01, 0.0, 180.0, 359.0] {
         let angle = Turns::from_degrees(Q32_32::from_num(degrees));

@@ -290,7 +290,7 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
         (Presence::Tracked, held)
     );
     run.frames(120, &hand(60, 60, 20));
-    // Absent for long: the whole frame is searched.
+    // The hand is absent for a long time: the whole frame is searched.
     run.frames(PATIENCE.div_ceil(FRAME) + 1, &EMPTY);
     assert_eq!(
         (run.control.presence(), run.control.setting()),

@@ -244,7 +244,7 @@ fn refusals_name_the_row() {
     for size in [MIN_ROW - Q8_24::DELTA, MAX_ENTRY + Q8_24::DELTA, zero] {
         assert!(Matrix::scale([one, size, one]).is_err());
     }
-    // A composition out of range is refused, far out of the format's range too.
+    // A composition out of range is refused, even far out of the format's range.
     let large = Matrix::scale([MAX_ENTRY; 3]).unwrap();
     assert!(matches!(
         large.then(&large),

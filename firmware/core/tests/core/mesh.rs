@@ -29,7 +29,7 @@ fn small() -> Vec<u8> {
     encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")
 }
 
-/// Returns the triangles of a mesh with their vertices in place of the indices.
+/// Returns the triangles of a mesh with their vertices instead of the indices.
 fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
     let corner =
         |chunk: &glint_core::mesh::Chunk, i: u16| chunk.vertex(i.into()).expect("a checked index");

@@ -11,7 +11,7 @@ use crate::triangle::{MeshSetup, Projected, project_chunk};
 /// Number of triangles between two calls of `progress`.
 const TRIANGLES_A_CALL: usize = 64;
 
-/// In place of the number of an edge without length.
+/// Instead of the number of an edge without length.
 const NONE: u32 = u32::MAX;
 /// Mark of the number of an edge in the first triangle at it, from which the edge is drawn.
 const FIRST: u32 = 1 << 31;
@@ -160,8 +160,8 @@ impl<'m> EdgeList<'m> {
     }
 }
 
-/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are projected into
-/// `scratch` first; otherwise they are there.
+/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are
+/// projected into `scratch` first; otherwise it has them already.
 ///
 /// Not inlined, as memory.x puts it beside what it calls, so that both stay in the instruction cache.
 #[inline(never)]

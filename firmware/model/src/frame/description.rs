@@ -46,18 +46,18 @@ pub enum Subject<'a> {
     Field(FieldSubject<'a>),
     /// A mesh in a distance field.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
-    /// Several meshes, each with a place of its own. Of equal depths the later object wins.
+    /// Several meshes, each with its own position. Of equal depths the later object wins.
     Objects(&'a [Object<'a>]),
     /// A program of the wireframe simulator.
     Wireframe(WireframeSubject<'a>),
 }
 
-/// A mesh with a place in the world.
+/// A mesh with a position in the world.
 // In this order for the reason given at the placement.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Object<'a> {
-    /// Colour in place of those of the mesh.
+    /// Colour instead of those of the mesh.
     pub colour: Option<Rgb565>,
     /// The mesh and its options.
     pub subject: MeshSubject<'a>,
@@ -171,7 +171,7 @@ impl<'a> Subject<'a> {
         Sphere::around(mesh.into_iter().chain(objects))
     }
 
-    /// The mesh with this number, with the colour in place of its own ones; `None` after the last mesh.
+    /// The mesh with this number, with the colour instead of its own ones; `None` after the last mesh.
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         match self {
@@ -183,7 +183,7 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The mesh of a subject without objects, with the colour in place of its own ones.
+    /// The mesh of a subject without objects, with the colour instead of its own ones.
     // Not inlined, so that the function above, which the firmware calls for each object of a frame, is short and loads no table.
     #[inline(never)]
     fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
@@ -191,8 +191,8 @@ impl<'a> Subject<'a> {
         Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
     }
 
-    /// The mesh with this number, and the options of its drawing in a light ([`FrameConstants::light`](super::FrameConstants::light)), of which `clear` has no effect;
-    /// `None` after the last mesh.
+    /// The mesh with this number, and the options of its drawing in a light
+    /// ([`FrameConstants::light`](super::FrameConstants::light)), of which `clear` has no effect; `None` after the last mesh.
     pub fn numbered_mesh<'s>(
         &'s self,
         number: usize,

@@ -57,7 +57,7 @@ pub struct Counts {
     pub lines_malformed: u32,
 }
 
-/// What the image sensor sends.
+/// Output of the image sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Pixels of the last line.
@@ -77,7 +77,7 @@ pub struct Engine {
     pub counts: Counts,
     /// First fault of the last frame.
     pub fault: Option<Fault>,
-    /// What the image sensor sends.
+    /// Output of the image sensor.
     pub seen: Seen,
     /// Polarities of the pins. They change while the engine is off.
     pub polarity: Polarity,

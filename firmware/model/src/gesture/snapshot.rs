@@ -17,7 +17,7 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// Makes an empty picture. `step` is at most 5.
+    /// Creates an empty picture. `step` is at most 5.
     #[must_use]
     pub const fn new(step: u8, is_colour: bool) -> Self {
         Self {

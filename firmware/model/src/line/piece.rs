@@ -64,7 +64,7 @@ impl Piece {
         let mut drawn = 0;
         let pixels = LinePixels {
             line: self.line,
-            // The end of the band is found by the place of each pixel.
+            // The end of the band is found by the position of each pixel.
             last: [i32::MAX; 2],
         };
         let is_inside = |column, row| {

@@ -178,12 +178,12 @@ impl FieldSetup {
         self.spheres().is_some()
     }
 
-    /// Number of evaluations that a step counts: one for each sphere of the scene, and one without spheres.
+    /// Evaluations of a step: one for each sphere of the scene, or one without spheres.
     pub fn passes(&self) -> u32 {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
 
-    /// Whether an eye is in a solid, where each of its rays ends at once.
+    /// Whether an eye is in a solid, so that each of its rays ends at once.
     pub fn has_eye_inside(&self) -> bool {
         let eyes = &self.eyes[..if self.stereo.is_some() { 2 } else { 1 }];
         let is_inside = |eye: &Eye| eye.outside == [0; 3] && self.sample(eye.origin).distance < 0;

@@ -29,7 +29,7 @@ impl<'a> Path<'a> {
     }
 }
 
-/// Whether all vertices are off the same side of the picture.
+/// Whether all vertices lie beyond the same side of the picture.
 #[inline]
 fn off_screen(frame: &MeshSetup, [a, b, c]: [&ScreenVertex; 3]) -> bool {
     // The bitwise and is negative if all values are negative.

@@ -54,9 +54,9 @@ pub enum Plane {
     Near,
     /// Inside is Z ≤ far: at the far plane or nearer.
     Far,
-    /// Inside is at or to the right of the left side.
+    /// Left side of the picture; inside is to the right.
     Left,
-    /// Inside is at or to the left of the right side.
+    /// Right side of the picture; inside is to the left.
     Right,
     /// Inside is at or below the top side.
     Top,

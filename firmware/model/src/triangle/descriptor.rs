@@ -16,8 +16,8 @@ pub use contents::Contents;
 /// Number of columns of a group, which is also the number of pixels that the raster pass draws in one clock.
 pub const GROUP: i32 = machine::GROUP as i32;
 
-/// A triangle after its setup, or a piece of a line, packed into words of 32 bits. The words for smooth shading, with the planes of light, come
-/// last: gateware without smooth shading reads only the words before them.
+/// A triangle after its setup, or a piece of a line, packed into words of 32 bits. The words for smooth shading, with the planes
+/// of light, come last: gateware without smooth shading reads only the words before them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Descriptor {
     words: [u32; SMOOTH_WORDS],

@@ -60,8 +60,8 @@ impl MeshSetup {
         Ok(setup)
     }
 
-    /// Computes the constants as [`new`](Self::new) does, in place: to copy them takes the soft core long. `scale` is kept from one frame to
-    /// the next.
+    /// Computes the constants as [`new`](Self::new) does, in place: to copy them takes the soft core long. `scale` is kept from
+    /// one frame to the next.
     ///
     /// # Errors
     /// As [`new`](Self::new); the constants must then not be used.
@@ -227,7 +227,7 @@ impl Scale {
     ///
     /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
     /// most 1, a component of u − shift·n is at most √2 times that.
-    // Not inlined, as most frames have the scale of the frame before.
+    // Not inlined, as most frames have the scale of the previous frame.
     #[inline(never)]
     fn new(width: u32, half_width: i64, is_shifted: bool) -> Self {
         /// The largest integer whose product with 1 + 2^−12 is below 2^24.

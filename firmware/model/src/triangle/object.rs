@@ -1,4 +1,4 @@
-//! Objects: meshes with a place in the world (docs/formats/camera.md, "Objects").
+//! Objects: meshes with a position in the world (docs/formats/camera.md, "Objects").
 
 use glint_core::camera::{Projection, View};
 use glint_core::fixed::{Q8_24, U4_28, U8_28};
@@ -19,8 +19,8 @@ pub struct Placement {
     matrix: Matrix,
     /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are turned.
     rotation: [[i32; 3]; 3],
-    /// A length that no vector of length 1 exceeds after the matrix, 24 fraction bits: the scale, if there is one, otherwise the
-    /// root of the sum of the squares of all entries.
+    /// Upper bound of the length to which the matrix stretches a vector of length 1, 24 fraction bits: the scale, if there is
+    /// one, otherwise the root of the sum of the squares of all entries.
     stretch: u32,
     /// Whether the normals are turned to the world or the mesh has such normals, so that the light is not turned.
     in_world: bool,
@@ -72,8 +72,8 @@ impl Placement {
         self.normals.as_ref()
     }
 
-    /// Returns the place of a copy of the mesh in which [`normals`](Self::normals), if there are any, have turned all normals. The picture
-    /// is the same, bit for bit.
+    /// Returns the position of a copy of the mesh in which [`normals`](Self::normals), if there are any, have turned all normals.
+    /// The picture is the same, bit for bit.
     #[must_use]
     pub const fn of_turned_mesh(&self) -> Self {
         Self {
@@ -93,7 +93,7 @@ impl Placement {
         (u64::from(radius) * u64::from(self.stretch)) as i64
     }
 
-    /// Returns the smallest and the largest depth of a mesh at this place, with 37 fraction bits, in the camera's frame constants
+    /// Returns the smallest and the largest depth of a mesh at this position, with 37 fraction bits, in the camera's frame constants
     /// `camera`. As the axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
     #[inline(always)]
     pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
@@ -104,7 +104,7 @@ impl Placement {
         [z - reach, z + reach]
     }
 
-    /// Computes the frame constants of a mesh at this place from those of the camera, whose depth scale serves all objects of a
+    /// Computes the frame constants of a mesh at this position from those of the camera, whose depth scale serves all objects of a
     /// frame.
     ///
     /// All homogeneous coordinates are multiplied by 2^−k, with the smallest k for which the row n and the farthest vertex fit

@@ -24,7 +24,7 @@ pub struct Options<'a> {
     pub shading: Shading,
     /// The rule that tells which side of a triangle is seen.
     pub winding: Winding,
-    /// Colour in place of those of the mesh.
+    /// Colour instead of those of the mesh.
     pub colour: Option<Rgb565>,
     /// Colours of the light; `None` for white light at the camera, without ambient light. The direction is in the frame constants.
     pub light: Option<&'a MeshLight>,
@@ -120,8 +120,8 @@ impl Placed {
         })
     }
 
-    /// Prepares a triangle of an object, with a colour in place of its own, in a light other than white light at the camera, or by its
-    /// place on the screen ([`Winding::Screen`]); the last is never culled.
+    /// Prepares a triangle of an object, with a colour instead of its own, in a light other than white light at the camera, or by its
+    /// position on the screen ([`Winding::Screen`]); the last is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]

@@ -191,7 +191,7 @@ pub fn draw_parts<'a>(
 /// Compiled once, with the optimisation of this crate.
 ///
 /// # Errors
-/// [`RenderError`]; if a later part is the cause, triangles of the parts before have been emitted.
+/// [`RenderError`]; if a later part is the cause, triangles of the previous parts have been emitted.
 #[inline(never)]
 pub fn set_up_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<Part<'a>>,
@@ -328,7 +328,7 @@ impl Renderer<'_, '_> {
         }
     }
 
-    /// Makes the triangles that need clipping, of which the frame has `left`. With `is_projected` the vertices of the mesh are in the
+    /// Draws the triangles that need clipping, of which `left` remain. With `is_projected` the vertices of the mesh are in the
     /// scratch memory. Returns the number of those that other meshes have.
     fn exceptions(
         &mut self,

@@ -41,7 +41,7 @@ impl Oriented {
         }
     }
 
-    /// The indices of the vertices of a triangle by their place on the screen: the upper left one first, which is the highest one and of
+    /// The indices of the vertices of a triangle by their position on the screen: the upper left one first, which is the highest one and of
     /// equally high ones the left one, then the others clockwise.
     pub fn screen_order(vertices: &[ScreenVertex; 3]) -> [usize; 3] {
         let [a, b, c] = vertices.each_ref().map(|v| (v.y, v.x));

@@ -1,4 +1,4 @@
-//! Lines beside triangles, other lines and depths: what the exact pixels of single segments, in `glint-reference`, do not show.
+//! Lines with triangles, other lines and depths: what the exact pixels of single segments, in `glint-reference`, do not show.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ fn pixels(ends: [ScreenVertex; 2], rectangle: Bounds) -> Vec<LinePixel> {
     pixels.into_iter().flatten().collect()
 }
 
-/// A random place in or near the picture, on a grid that meets ties, or anywhere.
+/// A random position in or near the picture, on a grid that meets ties, or anywhere.
 fn place(random: &mut Random) -> [i64; 2] {
     let grid = [1, 64, 128, 256][random.integer(0, 3) as usize];
     [SIZE.0, SIZE.1]

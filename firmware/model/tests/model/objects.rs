@@ -306,7 +306,7 @@ fn objects_share_one_depth() {
         };
         assert!(expected, "pixel {i}: {colour:#x}");
     }
-    // The same place: every pixel has the colour of the later object.
+    // The same position: every pixel has the colour of the later object.
     let twice = of(
         &[object(at(0.0, 0.0), red), object(at(0.0, 0.0), blue)],
         view,

@@ -60,7 +60,7 @@ fn code(frame: &MeshSetup, z: f64) -> f64 {
     2f64.powi(18) - (z - origin) * 2f64.powi(19 - frame.depth.exponent)
 }
 
-/// Returns a random orthographic camera within 8 world units of the origin, with a point of a mesh within ±`reach` at a place on
+/// Returns a random orthographic camera within 8 world units of the origin, with a point of a mesh within ±`reach` at a position on
 /// the screen.
 fn aimed(random: &mut Random, size: (u32, u32), half_width: f64, reach: f64) -> (View, [i16; 3]) {
     loop {

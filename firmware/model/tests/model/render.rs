@@ -67,7 +67,7 @@ fn culling_and_windings() {
     assert_eq!(culled.colour, both.colour);
     assert!(culled.drawn.iter().all(|t| t.facing == Facing::Front));
 
-    // Of a mesh turned inside out, the far side is drawn, and shading negates the normals.
+    // The far side of a mesh turned inside out is drawn, and shading negates its normals.
     let inverted = Picture::of(&sphere.flipped(), &view, SIZE, true);
     assert_eq!(inverted.coverage(), culled.coverage());
     assert!(

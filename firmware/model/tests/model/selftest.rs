@@ -7,7 +7,7 @@ use glint_model::Projected;
 use glint_model::selftest::{MESH_SHAPE, TestPicture};
 use glint_vectors::Picture;
 
-/// The stored checksums, in the form in which they are committed.
+/// The committed checksums.
 fn file(checksums: &[u32]) -> String {
     let lines: String = checksums
         .iter()

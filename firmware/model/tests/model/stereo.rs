@@ -66,7 +66,7 @@ fn eyes_against_f64() {
     }
 }
 
-/// What the glasses show of a pixel of each eye, by the formulas of docs/formats/camera.md in whole numbers.
+/// Anaglyph colour of a pixel of each eye, by the formulas of docs/formats/camera.md in whole numbers.
 fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     let grey = |pixel: u16| {
         let [r, g, b] = Rgb565(pixel).to_rgb888().map(u32::from);
@@ -121,7 +121,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         let expected = left.iter().zip(&right);
         let expected = expected.map(|(&left, &right)| composed(tint, left, right));
         let expected = words(&expected.collect::<Vec<_>>());
-        // Also pictures that end within a line of the cache.
+        // Includes pictures that end within a cache line.
         for pixels in [left.len(), 2 * 11] {
             let mut both = words(&left[..pixels]);
             let eyes = glint_model::Eyes { tint, ..eyes };

@@ -1,4 +1,4 @@
-//! The winding of triangles by their place on the screen.
+//! The winding of triangles by their position on the screen.
 
 use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::Q32_32;

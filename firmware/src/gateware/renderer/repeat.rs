@@ -14,7 +14,7 @@ use crate::gateware::rendered::Rendered;
 const POLLS: u32 = 1000;
 
 impl GatewareRenderer {
-    /// Draws a frame `count` times, where the geometry passes run during the raster pass of the frame before. The result covers the
+    /// Draws a frame `count` times, where the geometry passes run during the raster pass of the previous frame. The result covers the
     /// work of `count` frames: with a mesh, the measurement begins when the geometry passes of the first frame have ended. The
     /// console does not answer meanwhile.
     ///
@@ -149,7 +149,7 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, 0))
     }
 
-    /// Draws a wireframe `count` times. Segments are projected and cut into pieces during the raster pass of the frame before.
+    /// Draws a wireframe `count` times. Segments are projected and cut into pieces during the raster pass of the previous frame.
     fn repeat_lines(
         &mut self,
         subject: &WireframeSubject,

@@ -128,7 +128,7 @@ fn a_board_that_never_stops_is_given_up() {
     }
 }
 
-/// Each error may be that of a line that an earlier program has left, but they do not go on for ever.
+/// Each error may be that of a line that an earlier program has left, but they do not continue forever.
 #[test]
 fn a_board_that_never_stops_refusing_is_given_up() {
     let text = b"error: expected a command\r\n";

@@ -392,7 +392,7 @@ impl Device for I2c {
                     self.round = u64::MAX;
                     self.rounds_done = 0;
                 } else if before.repeats() {
-                    // The counter, as wide as `period`, goes on. A period that it has passed already ends after it has wrapped.
+                    // The counter, as wide as `period`, continues. A period that it has passed already ends after it has wrapped.
                     let counts_from = self.round - u64::from(before.period());
                     let left = counts_from.wrapping_add(period).wrapping_sub(now + 1);
                     let wrap = Rounds::default().with_period(u32::MAX).period();

@@ -20,7 +20,7 @@ const DEFAULT_SCALE: u32 = 4;
 /// Bytes of a memory word.
 const WORD: u32 = 16;
 
-/// Cycles of the fetch of a line beside one for each word: an estimate.
+/// Cycles of the fetch of a line in addition to one for each word: an estimate.
 const FETCH_OVERHEAD: u32 = 30;
 
 /// The scan-out block.

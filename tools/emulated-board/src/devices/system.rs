@@ -12,7 +12,7 @@ const SCRATCH: u32 = 0x1234_5678;
 pub struct Controller {
     scratch: u32,
     bus_errors: u32,
-    /// Whether the CPU has asked for a reset of the SoC.
+    /// Whether the CPU requested a reset of the SoC.
     pub reset: bool,
     /// Whether the CPU is held in reset.
     pub holds_cpu: bool,

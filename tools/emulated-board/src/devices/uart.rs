@@ -1,4 +1,4 @@
-//! The UART as a stream of bytes: it takes as many bytes as are there, without the time that a serial line needs.
+//! The UART as a stream of bytes: it takes all available bytes, without the time that a serial line needs.
 
 use std::collections::VecDeque;
 

@@ -57,7 +57,7 @@ impl GestureEngine {
         let mut gesture = Self {
             parameters,
             control: Control::default(),
-            // As after a reset: the sensor is off, and the wires of its bus are released.
+            // The state after a reset: the sensor is off, and the wires of its bus are released.
             camera: Camera::default()
                 .with_reset(true)
                 .with_power_down(true)

@@ -1,6 +1,6 @@
 //! A pass of an engine: its work is done when it starts, and it ends after the time that the work takes.
 
-/// The growth of each counter of a block, in the order of its registers.
+/// The increment of each counter of a block, in the order of its registers.
 pub type Growth<const N: usize> = [u32; N];
 
 /// A running pass.
@@ -10,24 +10,24 @@ pub struct Pass<const N: usize> {
     pub start: u64,
     /// The cycle in which it ends.
     pub end: u64,
-    /// Growth of the counters of the block.
+    /// Increments of the block's counters.
     pub growth: Growth<N>,
 }
 
 impl<const N: usize> Pass<N> {
-    /// The growth of the counters until the cycle `now`, as if the work were spread evenly.
+    /// The increments of the counters until the cycle `now`, as if the work were spread evenly.
     pub fn grown(&self, now: u64) -> Growth<N> {
         let (done, whole) = (now.saturating_sub(self.start), self.end - self.start);
         if done >= whole {
             return self.growth;
         }
-        // A growth has 32 bits, and a pass less than 2^32 cycles.
+        // An increment has 32 bits, and a pass takes less than 2^32 cycles.
         self.growth
             .map(|growth| (u64::from(growth) * done / whole) as u32)
     }
 }
 
-/// Adds a growth to counters, modulo 2^32.
+/// Adds increments to counters, modulo 2^32.
 pub fn add<const N: usize>(counters: &mut Growth<N>, growth: &Growth<N>) {
     for (counter, growth) in counters.iter_mut().zip(growth) {
         *counter = counter.wrapping_add(*growth);

@@ -30,7 +30,7 @@ const LEVELS: u8 = 6;
 /// Cycles in which a field is drawn, besides those of its rays.
 const LATENCY: u64 = 300;
 
-/// What drawing a field has done.
+/// Statistics of a drawn field.
 pub struct Field {
     /// Cycles that it takes.
     pub cycles: u64,

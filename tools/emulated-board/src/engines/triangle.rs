@@ -190,7 +190,7 @@ impl TriangleEngine {
         self.counted = self.counted.max(now);
     }
 
-    /// Ends the passes whose time is over, and returns the cycle in which the next one ends.
+    /// Ends the passes that are due, and returns the cycle in which the next one ends.
     fn settle(&mut self, now: u64) -> u64 {
         self.count_busy(now);
         let mut next = u64::MAX;

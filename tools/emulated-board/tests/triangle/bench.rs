@@ -95,7 +95,7 @@ impl Bench {
         self.finish(kind)
     }
 
-    /// Lets all passes end. Returns the error of one, whose event must be pending then.
+    /// Runs until all passes have ended. Returns the error of a pass, if any; its event must then be pending.
     pub fn finish(&mut self, kind: Kind) -> Error {
         while self.status().geometry_busy() || self.status().raster_busy() {
             assert!(!self.engine.interrupt());
@@ -145,7 +145,7 @@ impl Bench {
         geometry_flags(frame, options)
     }
 
-    /// Sets the place of a mesh of this length.
+    /// Sets address and length of the mesh.
     pub fn set_mesh(&mut self, bytes: u32) {
         self.set(offset::MESH, MESH + HEADER);
         self.set(offset::MESH_BYTES, bytes.saturating_sub(HEADER));
@@ -249,7 +249,7 @@ impl Bench {
         count
     }
 
-    /// Draws parts, each by a geometry pass, and returns the numbers of unseen and of culled triangles.
+    /// Draws parts, each by a geometry pass, and returns the numbers of triangles off screen and of culled triangles.
     pub fn draw(&mut self, size: Size, slot: bool, parts: &[Part]) -> [u32; 2] {
         let (mut clipped, mut listed, mut left_out) = (vec![], 0, [0; 2]);
         for (number, part) in parts.iter().enumerate() {

@@ -20,7 +20,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::bench::{Bench, Kind, UNTOUCHED, alone};
 
-/// In place of the models that `glint` generates.
+/// Instead of the models that `glint` generates.
 fn shape(name: &str) -> Vec<u8> {
     let model = match name {
         "sponge:1" => Model::cube(8192),

@@ -44,7 +44,7 @@ impl fmt::Display for BoardName {
     }
 }
 
-/// What computes the result of a command, as named on the command line: the bit-exact model, which runs in this process without a
+/// Backend of a command, as named on the command line: the bit-exact model, which runs in this process without a
 /// board, or a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelOrBoard {

@@ -17,7 +17,7 @@ pub struct Port {
     pub name: String,
     /// Maker and product of its USB device, or the kind of port.
     pub device: String,
-    /// Whether it has the USB bridge of a board that Glint runs on.
+    /// Whether the port has the USB bridge of a supported board.
     pub likely: bool,
 }
 

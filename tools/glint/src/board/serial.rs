@@ -23,7 +23,8 @@ impl SerialBoard {
     /// Opens a port; `serial` stands for the one that is probably a board's.
     ///
     /// # Errors
-    /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for one in use, [`OpenError::Guess`] if no port can be guessed.
+    /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for one in use, [`OpenError::Guess`] if no port
+    /// can be guessed.
     pub fn open(name: &str, baud: u32) -> Result<Self, OpenError> {
         if name == GUESS {
             return Self::open(&ports::guess()?, baud);

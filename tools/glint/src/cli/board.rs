@@ -29,9 +29,9 @@ const PROMPTS: [&[u8]; 2] = [b"glint> ", b"litex\x1b[0m> "];
 
 /// Run a board that stays, for programs or in a web page: print its serial port or the page's address, and run until Ctrl-C.
 ///
-/// Without --web every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a script. Several
-/// boards run side by side. On a terminal without --pty and --ready-file, the board's console opens at once; Ctrl-] ends it and
-/// the board.
+/// Without --web every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a
+/// script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens at once;
+/// Ctrl-] ends it and the board.
 #[derive(Args)]
 pub struct BoardArguments {
     /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
@@ -175,7 +175,7 @@ impl BoardArguments {
     }
 }
 
-/// What `glint board` waits for.
+/// Events that `glint board` waits for.
 enum Event {
     /// The first prompt.
     Started,

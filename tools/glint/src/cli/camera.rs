@@ -57,7 +57,7 @@ struct LensArguments {
     /// Enlarge what is in the middle of the picture by this factor, by a narrower field of view.
     #[arg(long, value_name = "FACTOR")]
     zoom: Option<f64>,
-    /// The horizontal field of view, 1 to 179 degrees, in place of the camera's half width. Pixels are square.
+    /// The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square.
     #[arg(long, value_name = "DEGREES")]
     fov: Option<String>,
     /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
@@ -65,7 +65,7 @@ struct LensArguments {
     orthographic: Option<String>,
 }
 
-/// What a picture shows if no camera is given.
+/// Subject of a picture without a given camera.
 pub struct Shown<'a> {
     /// The sphere around the model; `None` for a field, with or without a mesh.
     pub sphere: Option<Sphere>,

@@ -14,7 +14,7 @@ use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
 use std::path::PathBuf;
 
-/// Arguments that state what a scene states, so that they are refused beside one.
+/// Arguments that set what a scene sets; they are refused together with a scene.
 pub const STATED: [&str; 11] = [
     "model",
     "field",
@@ -32,17 +32,17 @@ pub const STATED: [&str; 11] = [
 /// Quality and size of pictures.
 #[derive(clap::Args)]
 pub struct SizeArguments {
-    /// Quality: `fast` (320x180), `balanced` (640x360) or `exact` (1280x720). It sets the picture's size, and the precision of the rays of a
-    /// field [default: the scene's; without a scene, 320x180 with the precision of `balanced`].
+    /// Quality: `fast` (320x180), `balanced` (640x360) or `exact` (1280x720). It sets the picture's size, and the precision of
+    /// the rays of a field [default: the scene's; without a scene, 320x180 with the precision of `balanced`].
     #[arg(long, value_parser = named(Quality::ALL, Quality::name))]
     quality: Option<Quality>,
-    /// Size of the picture: 320x180, 640x360 or 1280x720, in place of that of the quality.
+    /// Size of the picture: 320x180, 640x360 or 1280x720, instead of that of the quality.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
 }
 
 impl SizeArguments {
-    /// What the options change in a scene.
+    /// Changes of a scene by the options.
     pub fn changes(&self) -> anyhow::Result<Changes> {
         Ok(Changes {
             quality: self.quality,
@@ -74,7 +74,7 @@ impl Baud {
     /// The baud rate.
     ///
     /// # Errors
-    /// The environment or the configuration file has none, but something else in its place.
+    /// The value in the environment or the configuration file is not a baud rate.
     pub fn rate(&self) -> anyhow::Result<u32> {
         config::baud(self.baud)
     }
@@ -182,7 +182,7 @@ pub struct TransferArguments {
 }
 
 impl TransferArguments {
-    /// Refuses options of boards where the model draws or computes, which has no use for them; `backend` is the option `--backend`.
+    /// Rejects board options when the model draws or computes on the host; `backend` is the option `--backend`.
     pub fn check(&self, board: &ModelOrBoard, backend: Option<Backend>) -> Result<(), InputError> {
         let given = [
             ("--backend", backend.is_some()),

@@ -61,7 +61,7 @@ pub fn board(option: Option<&BoardName>) -> anyhow::Result<BoardName> {
 /// The baud rate of an option, of the environment or of the configuration file, in this order; without any, 115,200.
 ///
 /// # Errors
-/// The variable is no number, or the configuration file is damaged.
+/// The variable is not a number, or the configuration file is damaged.
 pub fn baud(option: Option<u32>) -> anyhow::Result<u32> {
     if let Some(baud) = option {
         return Ok(baud);

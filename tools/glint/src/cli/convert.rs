@@ -60,7 +60,7 @@ pub struct ConvertArguments {
     json: bool,
 }
 
-/// A format that meshes are written in.
+/// Output format of a mesh.
 #[derive(Clone, Copy, ValueEnum)]
 enum To {
     /// Wavefront OBJ.

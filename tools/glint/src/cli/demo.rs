@@ -454,7 +454,7 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
 mod tests {
     use super::*;
 
-    /// Each part of the tour states all that its pictures depend on: what the parts before it have set does not matter.
+    /// Each part of the tour sets everything that its pictures depend on, so earlier parts have no effect.
     #[test]
     fn pictures_after_a_mesh_are_the_models() {
         let firmware = built_firmware(None).unwrap();

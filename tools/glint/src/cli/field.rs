@@ -21,7 +21,7 @@ pub struct FieldArguments {
     /// world units. The left eye is red, the right one blue or cyan [default tint: red-blue].
     #[arg(long, value_name = stereo::FORM, allow_hyphen_values = true)]
     stereo: Option<String>,
-    /// Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes in place of
+    /// Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes instead of
     /// their own ones.
     #[arg(long, value_parser = named(Material::ALL, Material::name))]
     material: Option<Material>,
@@ -44,7 +44,7 @@ pub struct FieldArguments {
     /// Ambient occlusion: darken a field's surface where other surfaces are close.
     #[arg(long)]
     occlusion: bool,
-    /// Draw the rays of a field that reach their step limit magenta, in place of the horizon's colour.
+    /// Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour.
     #[arg(long)]
     undecided: bool,
     /// Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This
@@ -100,8 +100,8 @@ impl FieldArguments {
         }
     }
 
-    /// The appearance of the field, with lights and background of meshes. Other options of a field that are given without a field are an error,
-    /// and so are several lights.
+    /// The appearance of the field, with lights and background of meshes. Other options of a field that are given without a field
+    /// are an error, and so are several lights.
     pub fn appearance(&self) -> Result<Appearance, InputError> {
         let given = [
             ("--fog", self.fog.is_some()),

@@ -46,7 +46,7 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model to a board under a name, beside the models it has, and show it.
+/// Upload a model to a board under a name, keep the models that the board has, and show it.
 #[derive(Args)]
 pub struct UploadArguments {
     /// Mesh file, or name of a generator.

@@ -14,7 +14,8 @@ pub fn give_up_stdout() -> bool {
     !STDOUT_IS_OUTPUT.swap(true, Ordering::Relaxed)
 }
 
-/// Prints a line to standard output, or to standard error if standard output has an output. A closed pipe, as with `| head`, is no error.
+/// Prints a line to standard output, or to standard error if standard output has an output. A closed pipe, as with `| head`, is
+/// not an error.
 pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     let written = match STDOUT_IS_OUTPUT.load(Ordering::Relaxed) {
         true => writeln!(std::io::stderr(), "{line}"),
@@ -28,25 +29,25 @@ pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     }
 }
 
-/// How much a command prints beside its result.
+/// Amount of output in addition to a command's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loudness {
     /// Errors alone.
     Quiet,
     /// Warnings, notes and progress too.
     Usual,
-    /// Also each step with its time.
+    /// Additionally each step with its time.
     Verbose,
 }
 
 static LOUDNESS: AtomicU8 = AtomicU8::new(Loudness::Usual as u8);
 
-/// Sets how much the command prints beside its result.
+/// Sets the amount of output in addition to the command's result.
 pub fn set_loudness(loudness: Loudness) {
     LOUDNESS.store(loudness as u8, Ordering::Relaxed);
 }
 
-/// How much the command prints beside its result.
+/// Amount of output in addition to the command's result.
 pub fn loudness() -> Loudness {
     const QUIET: u8 = Loudness::Quiet as u8;
     const VERBOSE: u8 = Loudness::Verbose as u8;
@@ -80,7 +81,7 @@ pub fn fail(text: impl std::fmt::Display) {
 /// errors of the command line have.
 fn print_labelled(colour: AnsiColor, label: &str, text: impl std::fmt::Display) {
     let style = colour.on_default().bold();
-    // There is no place to report that standard error is closed.
+    // An error of standard error cannot be reported.
     let _ = writeln!(anstream::stderr(), "{style}{label}:{style:#} {text}");
 }
 

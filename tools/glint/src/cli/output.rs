@@ -33,10 +33,10 @@ pub const TABLE: &[&str] = &["csv"];
 /// The name of standard output.
 pub const STDOUT: &str = "-";
 
-/// Whether files with contents are replaced.
+/// Whether files that are not empty are replaced.
 static REPLACE: AtomicBool = AtomicBool::new(false);
 
-/// Sets whether outputs replace files with contents.
+/// Sets whether outputs replace files that are not empty.
 pub fn set_replace(replace: bool) {
     REPLACE.store(replace, Ordering::Relaxed);
 }
@@ -144,7 +144,7 @@ impl Output {
         file.with_context(|| self.unwritable())
     }
 
-    /// What an error of this output begins with.
+    /// First words of an error of this output.
     pub fn unwritable(&self) -> String {
         unwritable(&self.path)
     }

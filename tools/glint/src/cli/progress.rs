@@ -24,7 +24,7 @@ pub fn show_simulation(meter: Meter) {
     }
 }
 
-/// What a step counts.
+/// Unit of a step's progress.
 #[derive(Clone, Copy)]
 enum Unit {
     /// Nothing: its length is unknown.
@@ -91,7 +91,7 @@ impl Step {
         let style = ProgressStyle::with_template(&template);
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let simulation = move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-            // There is no place to report that the terminal is closed.
+            // An error of the terminal cannot be reported.
             let _ = out.write_str(&simulation(from, state.elapsed()));
         };
         bar.set_style(style.with_key("simulation", simulation));
@@ -100,7 +100,7 @@ impl Step {
             return Self { bar, _lines: None };
         }
         let print = |line: String| {
-            // There is no place to report that standard error is closed.
+            // An error of standard error cannot be reported.
             let _ = writeln!(io::stderr(), "{line}");
         };
         let lines = Some(every(PERIOD, bar.clone(), unit, from, print));
@@ -128,7 +128,7 @@ impl Step {
             let seconds = self.bar.elapsed().as_secs_f64();
             let label = self.bar.message();
             self.bar.suspend(|| {
-                // There is no place to report that standard error is closed.
+                // An error of standard error cannot be reported.
                 let _ = writeln!(io::stderr(), "{label}: {seconds:.3} s");
             });
         }
@@ -212,7 +212,7 @@ fn simulated_cycles() -> u64 {
     simulation.map_or(0, |meter| meter.as_ref().map_or(0, Meter::cycles))
 }
 
-/// What a simulated board has done since it had run `from` cycles: cycles, and frames of its monitor a second of this host.
+/// Progress of a simulated board since the cycle `from`: cycles, and frames of its monitor per second on this host.
 fn simulation(from: u64, elapsed: Duration) -> String {
     let Ok(Some((cycles, clock))) = SIMULATION.lock().map(|meter| {
         meter

@@ -39,7 +39,7 @@ pub struct RenderArguments {
     /// states camera, quality and size, which the options of the camera, --quality and --size replace.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
     scene: Option<String>,
-    /// A further model and its place in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
+    /// A further model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
     /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"])]
     object: Vec<String>,
@@ -396,7 +396,7 @@ pub fn subject<'a>(
     }
 }
 
-/// The error for a command that has nothing to draw, with the options that stand in place of a model.
+/// The error for a command that has nothing to draw, with the options that stand instead of a model.
 pub fn nothing(options: &str) -> anyhow::Error {
     let expected = format!("a mesh file or a generator such as teapot, or {options} in its place");
     bad_value("MODEL", &expected, "none").into()

@@ -23,9 +23,9 @@ const LOOK_MS: u64 = 10;
 
 /// Open a board's console, or send commands to it.
 ///
-/// On a terminal Ctrl-] ends the session, and Ctrl-C ends what runs on the board. Commands come from --send, from --file, or line by line
-/// from standard input if that is no terminal; the first one that fails ends the program. With --until it ends when the board has printed a
-/// text, with exit code 0.
+/// On a terminal Ctrl-] ends the session, and Ctrl-C ends what runs on the board. Commands come from --send, from --file, or line
+/// by line from standard input if that is not a terminal; the first one that fails ends the program. With --until it ends when
+/// the board has printed a text, with exit code 0.
 #[derive(Args)]
 pub struct ConsoleArguments {
     /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of

@@ -285,7 +285,7 @@ impl RenderArguments {
                 on_model(&Frame::new(subject, camera, size))?
             }
             ModelOrBoard::Board(name) => {
-                // The board has the drift-free motion only. The accumulated one is in the program.
+                // The board has only the drift-free motion. This program computes the accumulated one.
                 let script = match self.motion {
                     MotionForm::DriftFree => &script[..],
                     MotionForm::Accumulated => &[],

@@ -14,7 +14,7 @@ const MAX_BATCH: usize = 64;
 const PROMPT_MS: u64 = 2;
 /// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
-/// Time in milliseconds after which the host no longer waits for a quiet line: what sends as long is a program.
+/// Time in milliseconds after which the host no longer waits for a quiet line: only a program sends for so long.
 const LOUD_MS: u64 = 5_000;
 /// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 /// Silence in ms of the board's time after which it has taken an input.
 const SILENCE_MS: u64 = 20;
-/// Time in ms of the board's time after which no silence is awaited, because a command of the input prints without end.
+/// Time in ms of the board's time after which no silence is awaited, because a command of the input prints endlessly.
 const LIMIT_MS: u64 = 300;
 
 /// Bytes of the meshes whose uploads are seeds.
@@ -25,7 +25,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
             board: start(),
             written: Vec::new(),
         };
-        // The data are no mesh, so the firmware refuses them after the transfer.
+        // The data are not a mesh, so the firmware refuses them after the transfer.
         let console = &mut Console::new(&mut line);
         let _ = upload(console, &upload_data(length), None, SESSION, &mut |_, _| {});
         line.written

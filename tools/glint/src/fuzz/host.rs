@@ -44,13 +44,13 @@ const WAIT: &[u8] = b"\x1e\n";
 struct Stream<'s> {
     /// Remaining bytes of the current part.
     rest: &'s [u8],
-    /// All further parts, the next one last.
+    /// All remaining parts, the next one last.
     later: Vec<&'s [u8]>,
     /// Largest number of bytes that a read returns.
     piece: usize,
     /// Time in milliseconds that a read takes.
     pace: u64,
-    /// Whether commands are echoed before the stream goes on, and `echo` is answered.
+    /// Whether commands are echoed before the stream continues, and `echo` is answered.
     echoes: bool,
     echo: Vec<u8>,
     now_ms: u64,
@@ -92,7 +92,7 @@ impl Board for Stream<'_> {
     }
 }
 
-/// Has a conversation with a board that sends the input. The first three bytes select the conversation, the time of a read and the length
+/// Runs a conversation with a board that sends the input. The first three bytes select the conversation, the time of a read and the length
 /// of a piece. Returns whether the conversation came to its end.
 pub fn run(input: &[u8]) -> bool {
     let &[kind, pace, piece, ref rest @ ..] = input else {
@@ -123,7 +123,7 @@ pub fn run(input: &[u8]) -> bool {
     outcome.is_ok()
 }
 
-/// The conversation with a number. What it returns or calls back with is not more than the board has sent, or than was asked for.
+/// The conversation with a number. What it returns or calls back with is not more than the board has sent, or than was requested.
 fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn std::error::Error>> {
     let quiet = &mut |_, _| {};
     if kind == 0 {
@@ -210,7 +210,7 @@ fn log() -> Result<replay::Prepared, replay::Error> {
     )
 }
 
-/// What a board says in each conversation that comes to its end.
+/// Output of a board in each complete conversation.
 pub fn seeds() -> Vec<Vec<u8>> {
     let seed = |kind: u8, parts: &[&[u8]]| {
         // Bytes come one by one, so that an answer comes after what it answers.

@@ -128,7 +128,7 @@ fn change_byte(input: &mut [u8], random: &mut Random, to: impl FnOnce(u8, &mut R
     }
 }
 
-/// Replaces the word at a random place of the input by a random one of `words`. A word longer than 64 bytes is not replaced.
+/// Replaces the word at a random position of the input by a random one of `words`. A word longer than 64 bytes is not replaced.
 fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;

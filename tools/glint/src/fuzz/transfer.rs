@@ -114,7 +114,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     seeds.collect()
 }
 
-/// What sender and receiver say in a whole transfer of `data`.
+/// All frames that sender and receiver exchange in a transfer of `data`.
 pub fn exchange(data: &[u8], session: u8) -> [Vec<u8>; 2] {
     let mut buffer = vec![0; data.len()];
     let mut sender = Sender::new(data, session, Timing::HOST, 0);

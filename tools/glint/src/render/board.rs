@@ -27,7 +27,7 @@ pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
-    /// The scene that is shown in place of the subjects of frames.
+    /// The scene that is shown instead of the subjects of frames.
     scene: Option<Scene>,
 }
 
@@ -50,7 +50,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { backend, ..self }
     }
 
-    /// Shows a scene in place of the subjects of frames, with their cameras and sizes; `None` shows the subjects.
+    /// Shows a scene instead of the subjects of frames, with their cameras and sizes; `None` shows the subjects.
     #[must_use]
     pub fn with_scene(self, scene: Option<Scene>) -> Self {
         Self { scene, ..self }
@@ -131,7 +131,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Meshes that boards have not built in are uploaded.
+    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Meshes that boards have not built
+    /// in are uploaded.
     fn show_scene(
         &mut self,
         scene: &Scene,

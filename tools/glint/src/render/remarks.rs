@@ -1,4 +1,4 @@
-//! Remarks on pictures that do not show what was asked for.
+//! Remarks on pictures that do not show what was requested.
 
 use super::{Frame, Stats};
 use glint_model::RenderError;

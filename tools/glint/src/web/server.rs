@@ -275,7 +275,7 @@ fn write_file(
     }
     write_response(&mut *stream, &response)?;
     stream.write_all(content.as_bytes())?;
-    // What the browser still sends is read, so that the system does not drop the answer.
+    // Reads the rest of the request, so that the system does not drop the answer.
     stream.shutdown(std::net::Shutdown::Write)?;
     let mut rest = [0; 4096];
     for _ in 0..MAX_CONNECTIONS {

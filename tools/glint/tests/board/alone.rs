@@ -51,7 +51,7 @@ pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     (number.unwrap_or_else(|| panic!("{answer}")), answer)
 }
 
-/// What the digits at the right show.
+/// Content of the digits at the right.
 pub fn right(board: &EmulatedBoard) -> [u8; 4] {
     *board.digits().last_chunk().expect("eight digits")
 }

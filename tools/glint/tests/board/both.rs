@@ -83,7 +83,7 @@ fn both_boards_draw_the_same() {
         assert!(found.image == expected.image, "{name}");
         let counts = |rendered: &Rendered| {
             let stats = &rendered.stats;
-            // The engine writes what can differ from the frames before, and how many frames there are while objects are added one
+            // The engine writes what can differ from the previous frames, and how many frames there are while objects are added one
             // by one depends on the speed of the board.
             let exact = if matches!(frame.subject, Subject::Objects(_)) {
                 &["vertices", "groups"][..]
@@ -108,7 +108,7 @@ fn both_boards_draw_the_same() {
     }
 }
 
-/// What a board finds of a hand that rests in front of an image sensor without noise.
+/// Statistics of a hand that rests in front of an image sensor without noise.
 fn found<S: Simulation>(mut board: SimulatedBoard<S>) -> [String; 3] {
     let hand = Place {
         centre: [150.0, 110.0],

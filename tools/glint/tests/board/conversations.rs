@@ -64,7 +64,7 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     let triangles = info::<u32>(&mut again(&mut board), "triangles");
     assert_eq!(triangles, 320);
 
-    // A command that starts a transfer is no command with a reply, and leaves no transfer.
+    // A command that starts a transfer is not a command with a reply, and leaves no transfer.
     let mut console = again(&mut board);
     let refused = console.command("load 100 0").unwrap_err();
     assert!(matches!(refused, ConsoleError::Reply { .. }), "{refused}");

@@ -42,7 +42,7 @@ fn is_black(board: &mut EmulatedBoard) -> bool {
     board.capture().pixels.iter().all(|colour| *colour == 0)
 }
 
-/// The place of an item's bytes.
+/// Position of an item's bytes.
 fn place(flash: &[u8], name: &str) -> usize {
     let image = glint_core::flash::Image::new_checked(flash).unwrap();
     let mut items = image.contents.items();

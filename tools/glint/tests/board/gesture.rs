@@ -24,7 +24,7 @@ const COMMAND: &str = "gesture";
 /// Where the hand was in each camera frame.
 type Path = Arc<Mutex<Vec<Place>>>;
 
-/// What an image sensor sees, as a test sets it: hands, and the brightness of the light.
+/// The view of an image sensor, as set by a test: hands and the brightness of the light.
 #[derive(Clone)]
 struct View(Arc<Mutex<(Vec<Place>, f64)>>);
 
@@ -106,7 +106,7 @@ fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) 
 /// Largest error of the hand's centre in pixels, and of the camera's angles in degrees and its distance while the hand moves the
 /// camera at up to four turns a second: the lag of the filters, after one camera frame.
 const MOST: [f64; 3] = [0.3, 8.0, 0.2];
-/// The same of the centre in the first 16 ms, in which the hand starts at full speed: the region of a hand at rest cuts it in a frame.
+/// The same bound for the first 16 ms, in which the hand starts at full speed: the region of a hand at rest cuts it in a frame.
 const START: f64 = 3.0;
 /// Largest mean number of cycles of the soft core for a camera frame.
 const CYCLES: u32 = 4_000;
@@ -134,7 +134,7 @@ fn the_camera_follows_the_hand() {
         .inner()
         .plug_image_sensor(image_sensor(scene));
     console.command("scene holoforge").unwrap();
-    // The uploaded mesh in place of the scene's.
+    // The uploaded mesh instead of the scene's.
     console.command("scene model").unwrap();
     run(&mut console, 30);
     let now = console.board().inner().cycles();
@@ -230,7 +230,7 @@ const MIDDLE: Place = Place {
 /// three frames.
 const RETURN: u64 = 125;
 
-/// With every fault the camera stays, and afterwards the hand is tracked again; so it is with each row of what the sensor sees.
+/// The camera stays during every fault and every case of the table, and afterwards the hand is tracked again.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let mut board = emulator();
@@ -304,14 +304,14 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     sights_have_their_outcomes(&mut console, &view);
 }
 
-/// The camera stays, apart from what the filter does with the frames before.
+/// The camera stays, apart from what the filter does with the previous frames.
 fn stays(before: &[String], after: &[String], case: &str) {
     for (was, is) in core::iter::zip(numbers(before, "camera"), numbers(after, "camera")) {
         assert!((was - is).abs() < 0.2, "{case}: {was}, {is}");
     }
 }
 
-/// What the image sensor sees in the rows of the table of docs/hand.md, one after the other: the hands, the light, and the time in ms.
+/// The views of the image sensor for the rows of the table of docs/hand.md in order: hands, light, and time in ms.
 fn sights() -> [(&'static str, Vec<Place>, f64, u64); 5] {
     let far = Place {
         centre: [285.0, 150.0],
@@ -330,7 +330,7 @@ fn sights() -> [(&'static str, Vec<Place>, f64, u64); 5] {
     ]
 }
 
-/// Walks the table of what the image sensor sees.
+/// Runs the cases of the table "what the image sensor sees".
 fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard>>, view: &View) {
     let rows = include_str!("../../../../docs/hand.md").lines();
     let mut rows = rows.skip_while(|row| !row.starts_with("| the image sensor sees |"));
@@ -385,7 +385,7 @@ fn a_calibration_finds_the_hand() {
     let lines = status(&mut console);
     assert_eq!(entry::<String>(&lines, "sensor"), "OV5640");
     assert_eq!(entry::<String>(&lines, "hand"), "tracked");
-    // The mark of the hand's place is in the lower right corner.
+    // The mark of the hand's position is in the lower right corner.
     console.command("gesture mark").unwrap();
     run(&mut console, 40);
     let frame = console.board().inner().monitor_frame(4).unwrap();

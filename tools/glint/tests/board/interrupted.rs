@@ -18,7 +18,7 @@ const LARGE: &str = "icosphere:16";
 /// Seconds without progress after which a test fails.
 const PATIENCE: u32 = 120;
 
-/// An emulated board that reports when it has received a number of bytes.
+/// An emulated board that reports when it has received a given number of bytes.
 struct Counted {
     board: SimulatedBoard<EmulatedBoard>,
     received: usize,

@@ -47,7 +47,7 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
-/// A frame of the shown mesh from another camera takes few cycles of the soft core beside the passes of the engine.
+/// A frame of the shown mesh from another camera takes few cycles of the soft core in addition to the engine's passes.
 #[test]
 fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     let mut board = running_board();

@@ -103,14 +103,14 @@ fn meshes_have_names_and_share_the_memory() {
     assert!(bytes(&mut console, start, c.len()) == c);
     let end = start + c.len() as u32;
     assert_eq!(address(&mut console, "staging"), end);
-    // The moved mesh is drawn from its new place.
+    // The moved mesh is drawn from its new position.
     transfer::stage(&mut console, &b).unwrap();
     let lines = console.command("render").unwrap();
     assert!(
         lines.iter().any(|line| line == "triangles_in 80"),
         "{lines:?}"
     );
-    // An object shows the mesh that takes the place of its own.
+    // An object shows the mesh that replaces its own.
     transfer::upload(&mut console, &b, Some("c"), 5, quiet).unwrap();
     console.command("object show").unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);

@@ -115,7 +115,7 @@ fn programs_use_one_board_in_turn() {
     let info: serde_json::Value = serde_json::from_str(&info).unwrap();
     assert_eq!(info["triangles"], "320");
 
-    // All that the board sends is logged, and the session ends with a text, or in time.
+    // The log contains all output of the board, and the session ends after a text or a time-out.
     let log = stay.folder.join("log");
     if log.exists() {
         std::fs::remove_file(&log).unwrap();

@@ -17,7 +17,7 @@ use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
 use glint_model::{Object, Placement};
 
-/// The picture of two eyes that two pictures of one eye make.
+/// The stereo picture composed of the pictures of both eyes.
 fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
     let [left, right] = eyes.map(|frame| render::on_model(&frame).unwrap().image.colour);
     let grey = |pixel| u16::from(luminance(Rgb565(pixel).to_rgb888()));
@@ -124,7 +124,7 @@ fn two_eyes_are_the_models() {
             "0.3,1",
             cpu,
         ),
-        // Afterwards one eye, and a field alone.
+        // Afterwards: one eye, and a field without a mesh.
         (Subject::Mesh(plain(&sphere)), outside, "", gateware),
         (Subject::Field(field), outside, "0.1,2", gateware),
     ];
@@ -162,7 +162,7 @@ fn two_eyes_are_the_models() {
     }
 }
 
-/// The picture on the screen is a whole one of before or a whole one of after while two eyes are drawn, also while the mode changes.
+/// While two eyes are drawn, and while the mode changes, the screen shows the complete old or the complete new picture.
 #[test]
 fn no_picture_is_half_composed() {
     let mut board = emulator();
@@ -196,7 +196,7 @@ fn no_picture_is_half_composed() {
     assert!(seen.iter().all(|&count| count > 60));
 }
 
-/// What has one eye alone, and what the console says of it.
+/// Subjects that cannot be drawn for two eyes, and the console's reply.
 #[test]
 fn a_wireframe_has_one_eye() {
     let mut board = emulator();

@@ -35,7 +35,7 @@ fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
     on_model(&frame).unwrap().image.colour
 }
 
-/// The shown picture of a board, and the one of the frame before.
+/// The shown picture of a board, and the one of the previous frame.
 fn shown(console: &mut Console<SimulatedBoard<EmulatedBoard>>) -> [Vec<u16>; 2] {
     let front = address(console, "frame");
     let back = BUFFERS.into_iter().find(|&buffer| buffer != front).unwrap();
@@ -178,7 +178,7 @@ fn a_session_with_commands() {
     assert!(motion.apply(Key::Right.step(false)));
     assert!(shown(console)[0] == picture(&program, &motion));
 
-    // Another scene ends the session, and the wireframe starts anew after it.
+    // Another scene ends the session, and the wireframe starts again after it.
     console.command("scene cube").unwrap();
     assert!(console.command("press up").is_err());
     console.command("program").unwrap();

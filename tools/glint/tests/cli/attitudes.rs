@@ -119,7 +119,7 @@ fn a_rest_of_zero_seconds_is_none() {
     for zero in ["0", "0.0"] {
         assert!(replay(&format!("--still {zero}")) == expected);
     }
-    // A rest is checked.
+    // A sensor that should rest is checked for motion.
     let error = refused(&folder, "imu replay log.csv --out r.csv --still 0.1");
     assert!(error.contains("keep it still"), "{error}");
 }

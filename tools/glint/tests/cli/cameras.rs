@@ -16,7 +16,7 @@ fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
 #[test]
 fn the_whole_model_fills_four_fifths_of_the_height() {
     let folder = folder("framing");
-    // A sphere fills its own bounding sphere; at another place and size the picture is the same.
+    // A sphere fills its own bounding sphere; at another position and size the picture is the same.
     for model in [
         "icosphere:20",
         "--object 'icosphere:20 scale 0.3 move 1,-1,0.5'",

@@ -142,7 +142,7 @@ fn flash(folder: &Path) -> (bool, String) {
     (output.status.success(), String::from_utf8(text).unwrap())
 }
 
-/// Without openFPGALoader the error says how to install it. What it is asked to write is seen by a program in its place, because the
+/// Without openFPGALoader the error says how to install it. A substitute program records its arguments, because the
 /// loader itself needs a board.
 #[test]
 fn an_image_without_a_bitstream_is_written_behind_its_slot() {

@@ -174,7 +174,7 @@ fn failures_other_than_bad_input() {
     }
 }
 
-/// A damaged `.glm` is refused by its checksum, where the damage leaves a valid mesh, and so is the format without a checksum.
+/// The checksum catches damage that still parses as a mesh; a file without a checksum is refused.
 #[test]
 fn a_damaged_glm_is_refused() {
     let folder = folder("damaged_glm");

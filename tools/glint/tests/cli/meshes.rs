@@ -86,7 +86,7 @@ fn light_on_a_mesh() {
     );
 }
 
-/// The background of a mesh, and its material in place of its colours.
+/// The background of a mesh, and its material instead of its colours.
 #[test]
 fn background_and_material_of_a_mesh() {
     let folder = folder("background-of-a-mesh");
@@ -105,7 +105,7 @@ fn background_and_material_of_a_mesh() {
             assert_eq!(after, expected, "{text}");
         }
     }
-    // Each triangle is grey before, and has the material's mixture of red, green and blue after.
+    // Each triangle is grey at first, and then has the material's mixture of red, green and blue.
     let gold = render("--material gold");
     let lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
     assert!(lit.clone().count() > 5_000);

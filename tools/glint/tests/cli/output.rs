@@ -162,7 +162,7 @@ fn a_link_stays_and_permissions_too() {
     assert_eq!(names(&folder), ["file.glm", "link.glm"]);
 }
 
-/// A file with contents is replaced by `--force` alone, for every command, before any work; an empty file is replaced.
+/// A file that is not empty is replaced only with `--force`, for every command, before any work; an empty file is replaced.
 #[test]
 fn a_file_with_contents_is_kept() {
     let folder = folder("kept");

@@ -1,4 +1,4 @@
-//! Scenes with options beside them, and scenes that cannot be shown.
+//! Scenes with options, and scenes that cannot be shown.
 
 use crate::common::{drawn, files_refused, folder, glint, refused, succeed};
 
@@ -41,7 +41,7 @@ fn the_lens_of_a_scene() {
     assert!(narrow == render("narrow.toml --camera 4,30,70 --fov 30"));
 }
 
-/// What a scene states is refused as an option beside it, rather than ignored.
+/// An option that a scene states already is refused, not ignored.
 #[test]
 fn options_that_a_scene_states() {
     let folder = folder("scene-options");

@@ -40,7 +40,7 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
         let start =
             format!("error: {expected}: expected `emulated`, `virtual` or a serial port, found: ");
         assert!(error.starts_with(&start), "{error}");
-        // The ports of this host, of which there may be none.
+        // The ports of this host, if any.
         assert!(error.contains("; this host has "), "{error}");
     }
     let slow = error(&folder, upload, &[("GLINT_BAUD", "slow")]);

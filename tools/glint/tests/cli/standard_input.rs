@@ -1,4 +1,4 @@
-//! `-` in place of an input file: standard input.
+//! `-` instead of an input file: standard input.
 
 use crate::common::{VIEW, folder, succeed};
 use std::fs;

@@ -1,4 +1,4 @@
-//! Files with more in them than their format has: loaded, each with a line of warning.
+//! Files with additional content that their format does not define: loaded, each with a warning.
 
 use crate::common::{SQUARE, folder, picture, said, succeed};
 use std::fs;

@@ -61,7 +61,7 @@ fn the_board_runs_in_the_browser() {
         "getComputedStyle(document.getElementById('control')).display === 'none'",
     );
 
-    // Without its firmware the page says why it stands still.
+    // Without its firmware the page says why it does not run.
     let folder = tempfile::tempdir().unwrap();
     for file in std::fs::read_dir(FOLDER).unwrap() {
         let file = file.unwrap();

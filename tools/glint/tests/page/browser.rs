@@ -60,7 +60,7 @@ impl Browser {
                 )
             })
             .expect("chromium has ended");
-        // The browser must not wait for a reader of its messages.
+        // The browser must not block on unread messages.
         std::thread::spawn(move || lines.for_each(drop));
         let host = url.split('/').nth(2).unwrap();
         let stream = TcpStream::connect(host).unwrap();
@@ -156,7 +156,7 @@ impl Browser {
         }
     }
 
-    /// Moves the mouse, or its button, at a place of the page.
+    /// Moves the mouse, or its button, at a position of the page.
     pub fn mouse(&mut self, page: &Page, kind: &str, [x, y]: [f64; 2]) {
         let buttons = u8::from(kind != "mouseReleased");
         let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });

@@ -4,7 +4,7 @@ use crate::alone::Files;
 use crate::browser::{Browser, Page};
 use crate::served::Served;
 
-/// Number of commands of which the time to the picture is measured.
+/// Number of commands whose time to the picture is measured.
 const KEYS: usize = 20;
 
 /// A step that turns the sensor, by 20° to either side in 16 steps, so that the sponge stays in view.

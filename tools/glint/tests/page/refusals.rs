@@ -1,4 +1,4 @@
-//! Requests and messages that are refused, and the board that goes on.
+//! Requests and messages that are refused, and the board that continues.
 
 use crate::served::{Served, wait_for};
 use std::io::{Read, Write};
@@ -63,7 +63,7 @@ fn rubbish_does_no_harm() {
     let mut viewer = served.viewer();
     wait_for(&mut viewer, r#""holder":"you""#);
 
-    // No frame of the protocol, after the handshake and before it.
+    // Data that is not a frame of the protocol, after the handshake and before it.
     let rubbish: Vec<u8> = (0..RUBBISH).map(|i| ((i * i) >> 7) as u8).collect();
     let mut other = served.viewer();
     // The server closes the connection before all of it is written.

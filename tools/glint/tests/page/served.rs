@@ -1,4 +1,4 @@
-//! `glint board` in a process of its own, with an emulated board.
+//! `glint board` in a separate process, with an emulated board.
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;

@@ -3,7 +3,7 @@
 //!
 //! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` builds it too.
 //!
-//! The board draws a frame while the monitor takes in the frame before, so that each scene costs the time of one video
+//! The board draws a frame while the monitor takes in the previous frame, so that each scene costs the time of one video
 //! frame. Video frames are the largest part of the test's time. In the chart, `d` stands for draw:
 //!
 //! ```text

@@ -283,7 +283,7 @@ mod tests {
                     )
                 );
             }
-            // All faces inside out.
+            // All faces are inside out.
             let mut polygons = whole.clone();
             for face in &whole.faces {
                 polygons.corners[face.first as usize..][1..face.count as usize].reverse();

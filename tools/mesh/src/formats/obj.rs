@@ -123,7 +123,7 @@ struct Reader {
     corners: Vec<Corner>,
     /// Unknown keywords that a remark names.
     skipped: Vec<Vec<u8>>,
-    /// Material files that were asked for. Each is read once.
+    /// Material files that were requested. Each is read once.
     libraries: HashSet<Vec<u8>>,
 }
 
@@ -193,7 +193,7 @@ impl Reader {
             _ => {
                 return Err(FormatError::new(
                     place,
-                    "three numbers of a vertex's colour",
+                    "three colour components",
                     format!("{count}"),
                 ));
             }
@@ -439,7 +439,7 @@ mod tests {
             ),
             (
                 "v 0 0 0 1 2\n",
-                "line 1: expected three numbers of a vertex's colour, found 2",
+                "line 1: expected three colour components, found 2",
             ),
             (
                 "\x7fELF\0\n",

@@ -10,8 +10,9 @@ use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 const HEADER: usize = 84;
 const RECORD: usize = 50;
 
-/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, since a text there is a count that no
-/// file has; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark. Normals are ignored: the winding has the same information and is more reliable.
+/// Parses an STL. A file is binary if it is long enough for the triangle count in its header, since a text there is a count that
+/// no file has; any other file that starts with `solid` is ASCII. Bytes after the last triangle are skipped with a remark.
+/// Normals are ignored: the winding has the same information and is more reliable.
 ///
 /// # Errors
 /// The first violation of the format, with its line or offset.

@@ -1,4 +1,4 @@
-//! Lines, words and numbers of text files, with their places.
+//! Lines, words and numbers of text files, with their positions.
 
 use crate::error::{FormatError, MAX_COORDINATE, MAX_LINE, Place, quote};
 
@@ -75,7 +75,7 @@ impl<'a> Line<'a> {
             .filter(|word| !word.is_empty())
     }
 
-    /// The line's place.
+    /// The line's position.
     pub fn place(self) -> Place {
         Place::Line(self.number)
     }

@@ -132,7 +132,7 @@ fn rows<const N: usize>(
     rows
 }
 
-/// Groups rows of control points into patches of four rows. Each patch starts with the last row of the one before.
+/// Groups rows of control points into patches of four rows. Each patch starts with the last row of the previous one.
 fn patches<T, const N: usize>(
     control: &[T],
     row: impl Fn(&T) -> [Vector; N],

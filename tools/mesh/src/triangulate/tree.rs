@@ -18,7 +18,7 @@ const LEAF: usize = 16;
 pub struct Tree {
     /// Indices of the points. Those of a node lie side by side.
     order: Vec<u32>,
-    /// The place of each point in `order`.
+    /// The position of each point in `order`.
     place: Vec<u32>,
     removed: Vec<bool>,
     nodes: Vec<Node>,

@@ -14,7 +14,7 @@ const FAULT: [f64; 2] = [2.0, 3.0];
 /// The second in which a case ends.
 const END: f64 = 5.0;
 
-/// What the frames of a case show between the beginning and the end of its fault.
+/// Content of the frames between the beginning and the end of a case's fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// No pixel of the hand's colour.
@@ -25,7 +25,7 @@ pub enum Fault {
     OnePixel,
     /// The hand is cut by the frame's border.
     Border,
-    /// The hand is away and comes back at another place.
+    /// The hand is away and comes back at another position.
     Elsewhere,
     /// A second hand appears far away.
     SecondFar,

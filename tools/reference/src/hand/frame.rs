@@ -71,7 +71,7 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Makes a hand of `area` pixels with its centre of mass at a place.
+    /// Makes a hand of `area` pixels with its centre of mass at a position.
     pub fn new(shape: Shape, centre: [f64; 2], area: f64) -> Self {
         let (unit, offset) = shape.area_and_centre();
         let radius = (area / unit).sqrt();
@@ -98,7 +98,7 @@ pub struct Noise {
     pub salt: f64,
     /// Part of the hand's pixels that do not have its colour.
     pub pepper: f64,
-    /// Standard deviation of the place of the outline at each pixel, in pixels.
+    /// Standard deviation of the position of the outline at each pixel, in pixels.
     pub edge: f64,
 }
 
@@ -220,7 +220,7 @@ const FRAMES: u32 = 8;
 
 /// Differences in pixels between the centre that the statistics give and that of the same hands without noise in f64, over
 /// `places` random places of a hand of `area` pixels, with several frames each. `setting` makes the engine's setting from the bounds
-/// in the frame before, as the control does; they are those of the hand without noise for the first frame.
+/// in the previous frame, as the control does; they are those of the hand without noise for the first frame.
 pub fn centre_errors(
     shape: Shape,
     area: f64,

@@ -62,7 +62,7 @@ pub struct Sample {
     pub camera: [f64; 2],
 }
 
-/// Azimuth and polar angle in turns that belong to a place in pixels.
+/// Azimuth and polar angle in turns that belong to a position in pixels.
 pub fn angles([x, y]: [f64; 2]) -> [f64; 2] {
     [
         (x + 0.5) / f64::from(SIZE[0]) - 0.5,

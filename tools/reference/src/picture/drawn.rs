@@ -70,7 +70,7 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
     Ok(seen)
 }
 
-/// What a ray of a field ends at, and its depth code.
+/// End of a ray of a field, and its depth code.
 fn surface(setup: &FieldSetup, rays: &mut Rays, eye: usize, x: u32, y: u32) -> (Seen, u32) {
     let ray = rays.ray(eye, x, y);
     let end = setup.march(&ray);
@@ -120,7 +120,7 @@ impl Buffer {
     }
 }
 
-/// Draws the triangles of a frame with their numbers in the returned list, from 1, in place of their colours.
+/// Draws the triangles of a frame with their numbers in the returned list, from 1, instead of their colours.
 fn draw_triangles(frame: &Frame, buffer: &mut Buffer) -> Result<Vec<Seen>> {
     ensure!(frame.stereo.is_none(), "expected meshes for one eye");
     let flat = |subject| MeshSubject {

@@ -23,7 +23,7 @@ use crate::triangle::surface::{Class, ProjectedTriangle};
 
 /// A picture of 1280×720 in f64, row by row.
 pub struct Exact {
-    /// What each pixel shows.
+    /// Content of each pixel.
     pub seen: Vec<Eyes>,
     /// Red, green and blue, from 0 to 255.
     pub colours: Vec<Vector>,
@@ -179,7 +179,7 @@ struct Placed<'a> {
     matrix: &'a Matrix,
     /// Number of the object.
     object: usize,
-    /// Colour in place of those of the mesh.
+    /// Colour instead of those of the mesh.
     colour: Option<Rgb565>,
     camera: &'a Camera,
     light: &'a Lit,
@@ -349,7 +349,7 @@ fn draw_field(
             Some((side, stereo)) => camera.stereo_ray(side, stereo, centre, size()),
             None => camera.ray(centre, size()),
         };
-        // As far as the model's rays go.
+        // The far limit of the model's rays.
         let farthest = depth(setup, &setup.ray(eye, x, y), setup.tuning.far);
         *pixel = field_pixel(&field, appearance, &appeared, &ray, (camera.near, farthest));
     }

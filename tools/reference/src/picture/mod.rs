@@ -21,8 +21,8 @@ use crate::errors::Errors;
 /// Errors of a picture as a monitor shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Share of the pixels at which an eye sees something else than in the reference: another triangle or face, another object or sphere, or a
-    /// surface instead of the background.
+    /// Share of the pixels at which an eye sees something else than in the reference: another triangle or face, another object or
+    /// sphere, or a surface instead of the background.
     pub wrong: f64,
     /// RMS of the errors of red, green and blue, in steps of 1/255.
     pub colour: f64,

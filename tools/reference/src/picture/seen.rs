@@ -7,7 +7,7 @@ use crate::raymarch::Face;
 /// The size in which a monitor shows every picture.
 pub const SHOWN: Size = Size::W1280;
 
-/// What an eye sees at a pixel.
+/// Surface that an eye sees at a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seen {
     /// No surface.
@@ -31,5 +31,5 @@ pub enum Seen {
     Line,
 }
 
-/// What both eyes see at a pixel; twice the same with one eye.
+/// Surfaces that both eyes see at a pixel; with one eye both are the same.
 pub type Eyes = [Seen; 2];

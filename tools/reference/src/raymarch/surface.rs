@@ -1,4 +1,4 @@
-//! Balls and planes, of which solids consist, and the hits of rays on solids.
+//! Balls and planes that form solids, and the hits of rays on solids.
 
 use crate::camera::Vector;
 
@@ -77,7 +77,7 @@ pub struct Hit {
     pub normal: Vector,
     /// Kind of surface at the hit.
     pub face: Face,
-    /// What was hit, in a field of several parts: the index of the ball in `Field::Spheres`, or the number (0 or 1) of the
+    /// Part of the field that was hit: the index of the ball in `Field::Spheres`, or the number (0 or 1) of the
     /// outermost union's member. It is 0 for other fields, and if the ray starts inside the solid.
     pub member: usize,
 }

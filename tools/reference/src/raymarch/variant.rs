@@ -38,7 +38,7 @@ pub struct Method {
     pub rays: Norm,
     /// Constant part of the threshold, in world units. A ray hits where its distance from the sponge is below the threshold.
     pub threshold: f64,
-    /// Growth of the threshold for each unit of distance that the ray has travelled.
+    /// Increase of the threshold per unit of distance along the ray.
     pub footprint: f64,
     /// Limit of the number of steps of a ray.
     pub cap: u32,

@@ -390,7 +390,7 @@ impl Span {
         ))
     }
 
-    /// Returns the place of a value on the axis, from 0 to 1.
+    /// Returns the position of a value on the axis, from 0 to 1.
     fn part(self, value: f64) -> f64 {
         let place = |value: f64| {
             if self.is_narrow() {

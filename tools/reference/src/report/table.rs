@@ -57,7 +57,7 @@ pub fn read_table<T: Serialize + DeserializeOwned>(path: &Path) -> Result<Vec<T>
 /// As [`read_table`], but returns no rows if the file is missing. A run with `--quick` does not write every file.
 ///
 /// # Errors
-/// As [`read_table`], for a file that is there.
+/// As [`read_table`], for a file that must exist.
 pub fn read_optional_table<T: Serialize + DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     if path.exists() {
         read_table(path)

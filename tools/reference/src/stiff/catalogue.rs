@@ -25,7 +25,7 @@ pub struct Subject {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Case {
-    /// Name, which no other case has.
+    /// Unique name.
     pub name: String,
     /// Name of its kind.
     pub kind: String,
@@ -56,7 +56,7 @@ impl Case {
 /// Reads all files of a folder, in the order of their names.
 ///
 /// # Errors
-/// A file is no file of the catalogue, or a case has no explanation or the name of another one.
+/// A file is not a file of the catalogue, or a case has no explanation or the name of another one.
 pub fn read(folder: &Path) -> Result<Vec<Subject>> {
     let entries =
         std::fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;

@@ -147,7 +147,7 @@ fn centre(column: u32, row: u32) -> Vector {
 /// The visible surface of a pixel, where snapping the vertices cannot change it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Visible {
-    /// No surface, however the vertices are snapped.
+    /// No surface, independent of the snapping of the vertices.
     Background,
     /// A triangle that is visible however the vertices are snapped.
     Surface {

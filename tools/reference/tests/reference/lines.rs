@@ -110,7 +110,7 @@ fn vertex(random: &mut Pcg64Mcg, [x, y]: [i64; 2]) -> ScreenVertex {
     }
 }
 
-/// A random segment: up to 3, 50 or 300 pixels long from a place in or near the rectangle, or anywhere in the guard band. Its ends
+/// A random segment: up to 3, 50 or 300 pixels long from a position in or near the rectangle, or anywhere in the guard band. Its ends
 /// are anywhere, or on multiples of 1/16, 1/4, 1/2 or 1 pixel, where they meet centres and borders of diamonds and ties.
 fn segment(random: &mut Pcg64Mcg, rectangle: [i32; 4]) -> [ScreenVertex; 2] {
     let grid = [1, 1, 16, 64, 128, 256][random.random_range(0..6usize)];
@@ -169,7 +169,7 @@ fn a_million_random_segments_have_exactly_their_pixels() {
     assert!(tally.clipped > 100_000, "{tally:?}");
 }
 
-/// Every way of at most one pixel, in steps of 1/8 pixel, from every place of a pixel: ends on centres, corners and sides of
+/// Every way of at most one pixel, in steps of 1/8 pixel, from every position of a pixel: ends on centres, corners and sides of
 /// diamonds, and ways along these sides.
 #[test]
 fn short_segments_have_exactly_their_pixels() {

@@ -18,7 +18,7 @@ fn scenes() -> impl Iterator<Item = Scene> {
     scenes.filter(|scene| scene.scenes().is_empty())
 }
 
-/// The model's picture of a scene against the reference of the same scene with `fov` degrees in place of its own field of view.
+/// The model's picture of a scene against the reference of the same scene with `fov` degrees instead of its own field of view.
 fn against(scene: &Scene, fov: Option<&str>) -> Measured {
     let changes = Changes {
         quality: Some(Quality::Exact),

@@ -85,7 +85,7 @@ impl Run {
             .collect()
     }
 
-    /// When a table was written.
+    /// Time at which a table was written.
     fn written(&self, table: &str) -> SystemTime {
         let table = fs::metadata(self.folder.join("tables").join(table));
         let time = table.and_then(|table| table.modified());

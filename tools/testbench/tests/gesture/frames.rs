@@ -134,7 +134,7 @@ fn random_frames_polarities_and_faults() {
             if random.random_range(0..4) == 0 {
                 bench.request_snapshot(random.random_range(0..4), random.random());
             }
-            // The settings that are asked for now are taken by the next frame.
+            // The settings that are requested now are taken by the next frame.
             size = [random.random_range(1..100), random.random_range(1..14)];
             let next = random_settings(&mut random, size);
             let pins = bench.camera.send(&mut random, &sent, end);

@@ -223,7 +223,7 @@ fn picture(pixel: impl Fn(u16, u16) -> [u8; 3]) -> String {
     send(asked(), &[Picture::new(SIZE, |x, y| colour(pixel(x, y)))])
 }
 
-/// Sends a frame with a fault after a whole one, and then frames without, until one of them is whole.
+/// Sends a frame with a fault after a complete one, and then frames without a fault until one of them is complete.
 fn spoilt(spoil: Spoil) -> String {
     let mut bench = bench(asked(), Polarity::default());
     let hand = hands(&[[20, 24]], 1);

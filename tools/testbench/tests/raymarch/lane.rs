@@ -13,7 +13,7 @@ use glint_vectors::Random;
 /// Number of rays or cones in a frame.
 const RAYS: usize = 2_000;
 
-/// A ray or cone as it is sent, its expected end, and the number of evaluations of the field that it needs.
+/// A ray or cone as sent, its expected end, and the number of evaluations of the field that it needs.
 struct Sent {
     item: Bits,
     end: End,
@@ -24,7 +24,7 @@ struct Sent {
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
-    // A place has the band's number modulo 2 only, so rays of different bands can have the same place; one of them is kept.
+    // A place has the band's number modulo 2 only, so rays of different bands can have the same position; one of them is kept.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;

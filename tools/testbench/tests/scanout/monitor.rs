@@ -20,7 +20,7 @@ pub struct Monitor {
     position: Option<u64>,
     vsync_before: bool,
     line: Vec<u32>,
-    /// Whether not to check the current line, because a reset disturbed it.
+    /// Whether the current line is not checked, because a reset disturbed it.
     pub line_unchecked: bool,
     /// Source line (line of the frame in memory) that was shown last in this video frame.
     pub line_shown: Option<u64>,

@@ -272,7 +272,7 @@ fn unused_regions_are_not_checked() {
     }
 }
 
-/// A single pass starts at most `LATENCY` clocks after it was asked for, and ends with the engine's result.
+/// A single pass starts at most `LATENCY` clocks after it was requested, and ends with the engine's result.
 #[test]
 fn passes_end_as_the_engine_says() {
     let mut bench = Bench::new(4);
@@ -337,7 +337,7 @@ fn passes_wait_for_their_parameters() {
     }
 }
 
-/// Asks for a pass again while its parameters are checked, or while it starts, runs or ends: the second ask is refused, and
+/// Asks for a pass again while its parameters are checked, or while it starts, runs or ends: the second request is refused, and
 /// the pass continues and ends once.
 #[test]
 fn asks_in_between_are_refused() {
@@ -361,7 +361,7 @@ fn asks_in_between_are_refused() {
                     bench.clock(ask);
                     bench.wait(after);
                     let was_active = bench.is_active(which);
-                    // The flags of a refused ask are ignored.
+                    // The flags of a refused request are ignored.
                     let flags = bench.passes[which].flags.clone();
                     let mut others = flags.clone();
                     others.invert();

@@ -385,7 +385,7 @@ fn frames_end_with_random_memory() {
 }
 
 /// Checks the pixels drawn per clock on a sphere that fills 96 % of the picture's height, without memory stalls, where
-/// the frame before was the same. There are two lower bounds: `alone`, over the clocks of both passes of a frame, and
+/// the previous frame was the same. There are two lower bounds: `alone`, over the clocks of both passes of a frame, and
 /// `overlapped`, over those of the longer pass, as for frames whose passes overlap.
 #[test]
 fn a_sphere_is_drawn_fast() {

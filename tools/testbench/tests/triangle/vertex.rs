@@ -216,7 +216,7 @@ fn edges() {
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }
-        // With the largest translations, the place on the screen and X', from which it is computed (docs/formats/triangle.md), saturate.
+        // With the largest translations, the position on the screen and X', from which it is computed (docs/formats/triangle.md), saturate.
         for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
             frame.translation[axis] = far;
             bench.check(&frame, &[at]);

@@ -51,7 +51,7 @@ fn firmware_for_more_memory_than_the_board_has_is_refused() {
 }
 
 /// For each trap: its cause, machine code that triggers it, and the trap value. (An access to an address without a device
-/// is no trap: LiteX's bus answers after a time-out.)
+/// is not a trap: LiteX's bus answers after a time-out.)
 const TRAPS: [(&str, &[u32], u32); 2] = [
     ("illegal instruction (mcause 2)", &[0x0000_0000], 0),
     // li a0, 1; lw a0, 0(a0)

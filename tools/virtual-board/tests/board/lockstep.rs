@@ -182,7 +182,7 @@ fn operand(random: &mut Random) -> (u32, u32) {
     }
 }
 
-/// A word that is no instruction of rv32im with machine mode.
+/// A word that is not an instruction of rv32im with machine mode.
 fn illegal(random: &mut Random) -> u32 {
     const LEGAL: [u32; 11] = [
         0x03, 0x0f, 0x13, 0x17, 0x23, 0x33, 0x37, 0x63, 0x67, 0x6f, 0x73,
@@ -237,7 +237,7 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
             )
         }
         77..86 => {
-            // Forward by up to eight instructions, at times to an address that is no multiple of 4.
+            // A jump forward by up to eight instructions, sometimes to an address that is not a multiple of 4.
             let offset = 4 * (1 + number(random, 8)) + 2 * u32::from(number(random, 16) == 0);
             let funct7 = offset >> 5 & 0x3f;
             r(
@@ -273,7 +273,7 @@ fn instruction(code: &mut Vec<u32>, start: usize, random: &mut Random) {
         97 => 0x0000_0073,
         _ => illegal(random),
     };
-    // The only instructions of the group of `ecall` that are asked for above.
+    // The only instructions of the group of `ecall` that are requested above.
     let is_system = one & 0x707f == 0x73 && ![0x73, 0x0010_0073].contains(&one);
     code.push(if is_system { 0x73 } else { one });
 }
@@ -290,7 +290,7 @@ fn program(code: &mut Vec<u32>, random: &mut Random) {
     code.push(i(128, RESULT, 0, RESULT, 0x13));
 }
 
-/// What a run leaves in main memory: results, traps, data.
+/// Main memory after a run: results, traps, data.
 struct Left {
     results: Vec<u32>,
     traps: Vec<u32>,

@@ -16,7 +16,7 @@ use crate::firmware::{command, emulated, image};
 /// Columns, rows, and pixels of the first size of a picture.
 const WIDTH: usize = 320;
 const PIXELS: usize = WIDTH * 180;
-/// A character of the text: width and height; and the place of the first one in both directions.
+/// A character of the text: width and height; and the position of the first one in both directions.
 const CELL: [usize; 2] = [6, 10];
 const MARGIN: usize = 4;
 /// Rows between two lines of text.
@@ -64,7 +64,7 @@ impl DrawTarget for Glyph {
     }
 }
 
-/// Reads a line of text in a frame, up to the first cell that is no character.
+/// Reads a line of text in a frame, up to the first cell that is not a character.
 fn text(frame: &[u16], line: usize) -> String {
     let style = MonoTextStyle::new(&FONT_6X10, BinaryColor::On);
     let glyphs: Vec<(char, Glyph)> = (' '..='~')

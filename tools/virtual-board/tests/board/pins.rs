@@ -54,7 +54,7 @@ fn the_program_reads_buttons_and_switches_and_sets_the_leds() {
 fn the_back_door_reaches_what_the_caches_hold() {
     let mut board = board();
     // The many writes meet the program at every point of its loop. In 16 of 32 rounds of the loop, the program displaces the
-    // word from the cache and loads it again. If such a load brought data from before a write, the LEDs would go on to show
+    // word from the cache and loads it again. If such a load brought data from before a write, the LEDs would continue to show
     // them, because the word then stays in the cache for 16 rounds.
     for i in 0..600_u16 {
         let value = (i * 7) & 15;
@@ -106,7 +106,7 @@ fn the_digits_show_their_registers_from_left_to_right() {
             ("RIGHT_SHOWN", 0x7f07_7d6d),
         ],
     );
-    // A little more than the time in which each digit is lit once.
+    // Slightly more than the time in which each digit is lit once.
     board.run(70_000);
     assert_eq!(
         board.digits(),

@@ -1,5 +1,5 @@
-//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong. The virtual board takes it in a test of `glint`,
-//! which runs alone from its flash.
+//! Tests of the command `selftest`: it finds plugged sensors, and says what it finds wrong. The virtual board takes it in a test
+//! of `glint`, which runs alone from its flash.
 
 use crate::firmware::{address, command, emulated, image, patch};
 use crate::sensor::{emulated_with_sensor, sensor};

@@ -40,7 +40,7 @@ fn no_torn_picture_is_shown_while_scenes_change() {
     let whole = SCENES.map(|scene| {
         command(&mut board, &format!("scene {scene}"));
         command(&mut board, "render");
-        // The next video frame may still be the picture before.
+        // The next video frame may still be the previous picture.
         board.capture();
         board.capture()
     });
@@ -52,7 +52,7 @@ fn no_torn_picture_is_shown_while_scenes_change() {
         command(&mut board, &format!("scene {}", SCENES[(round + 2) % 3]));
         board.capture();
         board.capture();
-        // The commands come at once: each waits until the picture before is drawn, not until it is shown.
+        // The commands are sent together: each waits until the previous picture is drawn, not until it is shown.
         let steps = 3 + round % 5;
         let scenes = (0..steps).chain([0]).map(|step| SCENES[(round + step) % 3]);
         for scene in scenes {

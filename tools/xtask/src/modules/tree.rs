@@ -66,10 +66,10 @@ pub struct Import {
 }
 
 impl Crate {
-    /// Loads the crate whose root is the file `root`.
+    /// Loads the crate with the root file `root`.
     ///
     /// # Errors
-    /// A file that is missing or cannot be parsed.
+    /// A file is missing or cannot be parsed.
     pub fn load(root: &Path, read: ReadSource) -> Result<Self> {
         let mut tree = Self {
             modules: Vec::new(),

@@ -44,7 +44,7 @@ impl ReferenceRate {
     /// Checks that a rate of a block comes from the same version of nextpnr, without which the two cannot be compared.
     ///
     /// # Errors
-    /// It is another version.
+    /// The version differs.
     pub fn check_version(&self, rate: &Rate) -> Result<()> {
         ensure!(
             rate.nextpnr == self.nextpnr,
@@ -60,7 +60,7 @@ impl ReferenceRate {
     /// Checks that a measured rate of the soft core is this one.
     ///
     /// # Errors
-    /// It is another rate.
+    /// The rate differs.
     pub fn check(&self, measured: &Rate) -> Result<()> {
         let found = Self {
             mhz: measured.seeds.first().copied().unwrap_or_default(),

@@ -101,7 +101,7 @@ impl Node {
     }
 }
 
-/// The tree for a terminal, with the instances down to `depth`. An instance counts what is in it.
+/// The tree for a terminal, with the instances down to `depth`. The figures of an instance include its children.
 pub fn text(name: &str, instances: &[Instance], depth: usize) -> String {
     let mut out = "     LUT      FF   DSP  RAMB36\n".to_owned();
     Node::of(instances).print(name, depth, 0, &mut out);

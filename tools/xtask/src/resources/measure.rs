@@ -45,7 +45,8 @@ pub fn two_at_a_time<T: Send>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Measures a block by `gateware/tests/run.py` with options, the last of which takes the block's name, and returns the line of JSON that this prints.
+/// Measures a block by `gateware/tests/run.py` with options, the last of which takes the block's name, and returns the line of
+/// JSON that this prints.
 ///
 /// # Errors
 /// The program fails.

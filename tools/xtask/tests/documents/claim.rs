@@ -1,7 +1,7 @@
 //! Claims of accuracy, speed or cost in a text: numbers with a unit that only a measurement has.
 //!
-//! Numbers of a specification have other units: a frequency Hz, a time-out or a period s, ms or µs, a position fractions of a pixel, a limit
-//! of a circuit clocks, a bound of a rounding units of its format.
+//! Numbers of a specification have other units: a frequency Hz, a time-out or a period s, ms or µs, a position fractions of a
+//! pixel, a limit of a circuit clocks, a bound of a rounding units of its format.
 
 use std::sync::LazyLock;
 

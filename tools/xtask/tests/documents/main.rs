@@ -64,7 +64,7 @@ fn is_report(path: &Path) -> bool {
     path.starts_with("docs/report") || generated.iter().any(|page| path == Path::new(page))
 }
 
-/// Claims of the page at this path that have no link to the report in their block, with their places.
+/// Claims of the page at this path that have no link to the report in their block, with their positions.
 fn unlinked(path: &Path, page: &Page) -> Vec<String> {
     let leads_to_report =
         |link: &String| target(path, link).is_some_and(|(target, _)| is_report(&target));

@@ -81,7 +81,7 @@ fn pans_end_at_16() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The steps in the opposite order, each undone, lead back to the start within an error that the pose does not see.
+    /// Undoing the steps in reverse order leads back to the start, except for an error below the pose's precision.
     #[test]
     fn the_way_back_leads_to_the_start(steps in prop::collection::vec(any_step(), 0..500)) {
         let mut motion = Motion::default();

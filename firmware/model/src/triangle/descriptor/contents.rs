@@ -8,7 +8,7 @@ use super::{Descriptor, GROUP, HALF_A_CODE, PIECE};
 use crate::line::{Line, Piece};
 use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
 
-/// What a descriptor in memory stands for.
+/// Primitive that a descriptor in memory represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
     /// A triangle, with its colour under flat shading. Left and right bounds are those of groups.

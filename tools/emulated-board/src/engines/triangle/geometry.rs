@@ -30,7 +30,7 @@ pub struct Results {
 /// The geometry unit.
 pub struct GeometryUnit {
     output: Output,
-    /// Whether the output is that of a frame that was not cancelled.
+    /// Whether the output belongs to a frame that was not cancelled.
     has_output: bool,
     pub results: Results,
 }

@@ -80,7 +80,7 @@ pub struct Output {
     lists: Vec<u32>,
     counts: ListCounts,
     exceptions: Exceptions,
-    /// Counts of descriptors and list entries, and number of exceptions, that are in memory.
+    /// Numbers of descriptors, list entries and exceptions in memory.
     written: (ListCounts, usize),
 }
 
@@ -106,7 +106,7 @@ impl Output {
         }
     }
 
-    /// Prepares for a pass, which continues the output of the pass before, or begins with empty lists.
+    /// Prepares for a pass, which continues the output of the previous pass, or begins with empty lists.
     pub fn open(&mut self, room: Room, continues: bool) {
         if !continues {
             let Self {
@@ -149,7 +149,7 @@ impl Output {
         self.counts.is_full() || self.exceptions.is_full
     }
 
-    /// Writes to memory what is new. Returns the number of words of 16 bytes.
+    /// Writes new output to memory. Returns the number of words of 16 bytes.
     pub fn write(&mut self, ram: &mut MainMemory) -> u32 {
         let [descriptors, lists, exceptions] = self.room.places;
         let (before, listed) = mem::replace(

@@ -241,7 +241,7 @@ struct Drawing<'a> {
     extents: &'a mut [Extent],
     counts: Counts,
     time: RasterTime,
-    /// Whether a list was too long, or named a number that is no descriptor, or a descriptor was damaged.
+    /// Whether a list was too long, or named a number that is not a descriptor, or a descriptor was damaged.
     is_damaged: bool,
 }
 

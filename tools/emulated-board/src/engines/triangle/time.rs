@@ -22,7 +22,7 @@ const BAND: u64 = 16;
 /// Cycles of a triangle's entry into a band.
 const ENTRY: u64 = 8;
 
-/// What a pass has done.
+/// Statistics of a pass.
 pub struct Work {
     /// Error with which it ends.
     pub error: Error,
@@ -32,7 +32,7 @@ pub struct Work {
     pub counters: Counters,
 }
 
-/// What the time of a geometry pass depends on.
+/// Quantities that determine the time of a geometry pass.
 #[derive(Default)]
 pub struct GeometryTime {
     /// Triangles of the mesh.
@@ -76,7 +76,7 @@ pub struct RasterTime {
     cycles: u64,
     /// Cycles of drawing the current band.
     band: u64,
-    /// Cycles of the flush of the band before.
+    /// Cycles of the flush of the previous band.
     flush: u64,
 }
 

@@ -144,7 +144,7 @@ impl Values<'_> {
             .map(|bytes| number(bytes, self.kind, self.normalised))
     }
 
-    /// The first three numbers of a value that is there.
+    /// The first three numbers of a value that is present.
     pub fn vector(&self, index: usize) -> Vector {
         let mut vector = [0.0; 3];
         for (c, number) in vector.iter_mut().zip(self.numbers(index)) {
@@ -153,7 +153,7 @@ impl Values<'_> {
         vector
     }
 
-    /// The first number of a value that is there, as an index.
+    /// The first number of a value that is present, as an index.
     pub fn index(&self, index: usize) -> usize {
         self.numbers(index).next().unwrap_or(0.0) as usize
     }

@@ -104,7 +104,7 @@ fn structure(json: &[u8]) -> usize {
     count
 }
 
-/// What every version of the format has.
+/// Fields of every version of the format.
 #[derive(Deserialize)]
 struct Head {
     asset: Asset,
@@ -179,7 +179,7 @@ fn add_scene(
         .default_scene()
         .or_else(|| document.scenes().next());
     let scene = scene.ok_or_else(|| FormatError::whole("a scene", "none"))?;
-    // Without this check a few nodes could repeat a mesh without end.
+    // Without this check a few nodes could repeat a mesh endlessly.
     let mut visited = vec![false; document.nodes().count()];
     let mut waiting: Vec<(Node, Affine)> = scene.nodes().map(|node| (node, IDENTITY)).collect();
     while let Some((node, parent)) = waiting.pop() {

@@ -65,7 +65,7 @@ pub struct Row {
 /// A stiff case: a line of `gesture-stiff.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Stiff {
-    /// What the frames show for a second.
+    /// Content of the frames for one second.
     pub case: String,
     /// Presence of the hand half a second later.
     pub presence: String,

@@ -71,7 +71,7 @@ fn rows(entry: &Entry) -> impl Iterator<Item = Row<'_>> {
     })
 }
 
-/// Of the kernels on the soft core, the configurations that no other one of the same kernel beats in both error and cycles.
+/// The Pareto front of each kernel on the soft core: configurations that no other one beats in both error and cycles.
 fn points(entries: &[Entry]) -> Vec<Point> {
     let on_core = entries.iter().filter(|entry| entry.in_overview);
     on_core
@@ -162,7 +162,7 @@ fn cost(cost: Option<f64>) -> String {
     }
 }
 
-/// Of the configurations that cost less, the one with the smallest error.
+/// The most exact of the configurations that cost less.
 fn cheaper<'a>(entry: &'a Entry, shipped: &Choice) -> Option<&'a Choice> {
     let own = shipped.cost?;
     let less = entry
@@ -172,7 +172,7 @@ fn cheaper<'a>(entry: &'a Entry, shipped: &Choice) -> Option<&'a Choice> {
     less.min_by(|a, b| a.error.total_cmp(&b.error))
 }
 
-/// Of the configurations with a smaller error, the cheapest one. Those without a measured cost come last.
+/// The cheapest of the configurations with a smaller error. Those without a measured cost come last.
 fn more_exact<'a>(entry: &'a Entry, shipped: &Choice) -> Option<&'a Choice> {
     let better = entry
         .choices

@@ -171,7 +171,7 @@ pub fn points(rows: &[Row]) -> Vec<Point> {
             shipped: row.shipped,
         }
     };
-    // A point without an error, or without a cost, has no place.
+    // A point without an error, or without a cost, cannot be drawn.
     let measured = rows.iter().map(point).filter(|point| point.error > 0.0);
     measured.filter(|point| point.cost.is_some()).collect()
 }

@@ -46,7 +46,7 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     write(&page, &folder.join("long.md"))
 }
 
-/// Joins the commits of rows, without repeats.
+/// The distinct commits of the rows, joined.
 fn commits<'a>(of_rows: impl Iterator<Item = &'a str>) -> String {
     let mut commits: Vec<&str> = of_rows.collect();
     commits.dedup();

@@ -35,8 +35,8 @@ pub struct Measured<'a> {
 }
 
 impl Measured<'_> {
-    /// Whether this frame has no more cycles and no larger errors than another one, and less of one of them. Cycles that differ by less than
-    /// `SAME` are equal.
+    /// Whether this frame has no more cycles and no larger errors than another one, and less of one of them. Cycles that differ
+    /// by less than `SAME` are equal.
     pub fn beats(&self, other: &Self) -> bool {
         let Some((own, others)) = self.cycles.zip(other.cycles) else {
             return false;
@@ -77,7 +77,7 @@ pub fn frames<'a>(rows: &'a [Row], cycles: &[Cycles]) -> Vec<Vec<Measured<'a>>> 
     scenes.map(<[_]>::to_vec).collect()
 }
 
-/// Whether no frame of the scene beats this one.
+/// Whether this frame is on the Pareto front of its scene.
 pub fn is_on_front(frame: &Measured, scene: &[Measured]) -> bool {
     !scene.iter().any(|other| other.beats(frame))
 }
@@ -134,7 +134,7 @@ fn points(scenes: &[Vec<Measured>], error: fn(&Row) -> f64) -> Vec<Point> {
     for scene in scenes {
         for frame in scene {
             let shipped = frame.row.quality.is_some();
-            // A logarithmic axis has no place for an error of 0.
+            // A logarithmic axis cannot show an error of 0.
             if error(frame.row) > 0.0 && (shipped || is_on_front(frame, scene)) {
                 points.push(Point {
                     family: frame.row.scene.clone(),
@@ -158,7 +158,7 @@ fn rate(cycles: Option<u64>) -> String {
     rate.map_or("not measured".to_owned(), |rate| format!("{rate:.1}"))
 }
 
-/// One line a scene: the three qualities beside each other.
+/// One line per scene, with the three qualities side by side.
 fn qualities(scenes: &[Vec<Measured>]) -> String {
     let mut table = Table::new([
         "scene",

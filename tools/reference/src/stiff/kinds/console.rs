@@ -15,8 +15,8 @@ pub fn kinds() -> Vec<Kind> {
     vec![Kind::new("console", console), Kind::new("upload", uploaded)]
 }
 
-/// The reply to a command, or the reason of the firmware's refusal. Of the reply count the lines whose first word is one of `counted`, or all
-/// lines if there is none.
+/// The reply to a command, or the reason of the firmware's refusal. Of the reply count the lines whose first word is one of
+/// `counted`, or all lines if there is none.
 pub fn outcome(reply: Result<Vec<String>, ConsoleError>, counted: &[String]) -> Result<Outcome> {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
@@ -82,7 +82,7 @@ pub enum Sensor {
     Turning,
     /// Turns at 3,000 °/s about each axis, beyond its range.
     Saturated,
-    /// Measures the same counts again and again.
+    /// Measures the same counts repeatedly.
     Frozen,
     /// Makes no measurements.
     Stalled,

@@ -56,7 +56,7 @@ fn pixels(ends: [[i64; 2]; 2], [first, end]: [i32; 2]) -> Vec<[i64; 2]> {
         .collect()
 }
 
-/// Draws segments along an axis, in both directions, at all places across two pixels. `turned` makes a place of one along and one across
+/// Draws segments along an axis, in both directions, at all places across two pixels. `turned` makes a position of one along and one across
 /// the axis.
 fn along_axis(turned: impl Fn([i64; 2]) -> [i64; 2]) -> Outcome {
     for across in 1..=512 {

@@ -86,7 +86,7 @@ fn demo(Turns { scenes, steps }: Turns) -> Result<Outcome> {
     Ok(Outcome::exact(shown.join(" ")))
 }
 
-/// The presses that count at samples, each of a time in ms modulo 2^32 and the levels of the buttons.
+/// The accepted presses in samples of the buttons' levels, each with its time in ms modulo 2^32.
 fn buttons(samples: Vec<(u32, u8)>) -> Result<Outcome> {
     let mut debouncer = Debouncer::default();
     let presses = samples

@@ -34,7 +34,7 @@ pub fn kinds() -> Vec<Kind> {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Typed {
-    /// What is typed. `repeated` follows it `times` times, then `end`.
+    /// Typed text. `repeated` follows it `times` times, then `end`.
     #[serde(default)]
     text: String,
     #[serde(default)]

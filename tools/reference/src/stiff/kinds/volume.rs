@@ -129,7 +129,7 @@ fn vertex_beside_eye(position: [i16; 3]) -> Result<Outcome> {
     ))
 }
 
-/// Draws a cube of side 0.2 at this place, with a far plane at 3, and without one if the place is not beyond it.
+/// Draws a cube of side 0.2 at this position, with a far plane at 3, and without one if the place is not beyond it.
 fn object_at(place: [f64; 3]) -> Result<Outcome> {
     let bytes = Model::cube(1638).encoded();
     let drawn = |clip: Clip| -> Result<_> {

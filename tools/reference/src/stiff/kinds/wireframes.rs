@@ -85,7 +85,7 @@ fn draw(bytes: &[u8], size: Size) -> Result<WireframeStats> {
     )?)
 }
 
-/// Draws this number of horizontal segments across the window, 1/1024 apart.
+/// Draws the given number of horizontal segments across the window, 1/1024 apart.
 fn segments(count: u32) -> Result<Outcome> {
     let y = |i: u32| f64::from(i % 2304) / 1024.0 - 1.125;
     let lines: String = (0..count)
@@ -103,7 +103,7 @@ fn segments(count: u32) -> Result<Outcome> {
     }
 }
 
-/// The place of the point (1, 1, 1) after a motion.
+/// The position of the point (1, 1, 1) after a motion.
 fn place(motion: &Motion) -> String {
     let point: Point = [Q5_11::ONE; 3];
     let [x, y, z] = motion.pose().point(point);

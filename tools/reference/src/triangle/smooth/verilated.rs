@@ -6,7 +6,7 @@ use glint_model::triangle::descriptor::{Descriptor, GROUP, band_rows};
 use glint_model::triangle::setup::Setup;
 use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, exchange};
 
-/// The rasterizer's SystemVerilog module with smooth shading. Nothing makes it wait: triangles come and groups go at once.
+/// The rasterizer's SystemVerilog module with smooth shading, without stalls: triangles and groups are transferred at once.
 pub struct Rasterizer {
     module: Module,
     triangles: Source,

@@ -11,7 +11,7 @@ use crate::control::passes::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
-    /// Asked for: the clock of the ask, and the error with which the ask must be refused, if any.
+    /// Asked for: the clock of the request, and the error with which the request must be refused, if any.
     Asked(u64, u64),
     /// Started: the pass runs for this many more clocks.
     Runs(u64),
@@ -43,11 +43,11 @@ pub struct Bench {
     /// Length in clocks of each pass in the engine; `ends` has the result of each pass.
     pub runs: [u64; 2],
     pub ends: [u64; 2],
-    /// Clocks for which the parameters of each pass load after an accepted ask; `loading` has the clocks that are left. The
+    /// Clocks for which the parameters of each pass load after an accepted request; `loading` has the clocks that are left. The
     /// addresses of the regions are wrong meanwhile.
     pub loads: [u64; 2],
     pub loading: [u64; 2],
-    /// Numbers of accepted asks, starts and ends of each pass.
+    /// Numbers of accepted requests, starts and ends of each pass.
     pub counts: [[u64; 3]; 2],
     pub clocks: u64,
 }
@@ -247,8 +247,8 @@ impl Bench {
                     assert!(!started, "{name} starts without its parameters");
                 }
                 State::Asked(since, refusal) => {
-                    // Both passes may be asked for in one clock, so the limit is twice the latency of a pass. It counts from
-                    // when the engine became ready, if that was after the ask.
+                    // Both passes may be requested in one clock, so the limit is twice the latency of a pass. It counts from
+                    // when the engine became ready, if that was after the request.
                     if let Recovery::Since(ready) = self.recovery {
                         let waited = now - since.max(ready);
                         assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");

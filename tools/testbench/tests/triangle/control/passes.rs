@@ -2,7 +2,7 @@
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;
-/// Largest number of clocks from the ask for a single pass to its start.
+/// Largest number of clocks from the request for a single pass to its start.
 pub const LATENCY: u64 = 15;
 
 pub const NONE: u64 = 0;
@@ -195,7 +195,7 @@ pub struct Limits {
     pub lines: bool,
 }
 
-/// Returns the error code with which an ask for a pass must be refused, or `NONE`.
+/// Returns the error code with which a request for a pass must be refused, or `NONE`.
 pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limits: Limits) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);

@@ -1,4 +1,4 @@
-//! Frames of several objects: a geometry pass for each, which continues the lists of the pass before.
+//! Frames of several objects: a geometry pass for each, which continues the lists of the previous pass.
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;

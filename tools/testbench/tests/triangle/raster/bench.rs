@@ -19,7 +19,7 @@ pub struct Counts {
     pub clocks: u64,
     /// Number of clocks in which the rasterizer visited a group (`cycles_walking`).
     pub walked: u64,
-    /// Number of those clocks among `walked` in which no group went on to be drawn (`cycles_empty`).
+    /// Number of clocks among `walked` without a group to draw (`cycles_empty`).
     pub empty: u64,
     /// Number of groups at the output.
     pub groups: u64,

@@ -51,7 +51,7 @@ pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec
     triangles
 }
 
-/// Makes a vertex at a place in units of 1/256 pixel.
+/// Makes a vertex at a position in units of 1/256 pixel.
 pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
@@ -97,7 +97,7 @@ impl Random {
         corner([0; 2].map(|_| self.within(-reach, reach)), self.depth())
     }
 
-    /// Makes a random vertex up to `reach` pixels from a place, in steps of `step`/256 pixel.
+    /// Makes a random vertex up to `reach` pixels from a position, in steps of `step`/256 pixel.
     pub fn near(&mut self, [x, y]: [i32; 2], reach: i32, step: i32) -> ScreenVertex {
         let reach = 256 * reach / step;
         let mut around = |c: i32| 256 * c + step * self.within(-reach, reach);

@@ -15,7 +15,7 @@ use crate::report::provenance::Provenance;
 /// Error and cycles of a kernel: a line of `geometry-precision.csv`.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// What the kernel computes: `matrix`, `normal` or `projection`.
+    /// Kind of kernel: `matrix`, `normal` or `projection`.
     pub family: String,
     /// Name of the kernel in the firmware's `bench`.
     pub kernel: String,

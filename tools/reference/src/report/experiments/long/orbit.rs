@@ -34,7 +34,7 @@ pub struct Row {
     pub angle: f64,
     /// Largest difference of a component from f64.
     pub reference: f64,
-    /// Pictures of the turns since the row before that differ from those of the first turn.
+    /// Pictures of the turns since the previous row that differ from those of the first turn.
     pub differing: u64,
     /// Turns since the row before after which the camera is not, bit for bit, where it was at first.
     pub displaced: u32,
@@ -87,7 +87,7 @@ fn azimuth(frame: u32, frames: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(START[0])).wrapping_add(Turns(turned as u32))
 }
 
-/// Puts the camera to the place of a frame.
+/// Moves the camera to its position in a frame.
 fn place(board: &mut Emulated, azimuth: Turns) -> Result<()> {
     let (theta, phi) = (azimuth.to_degrees(), START[1]);
     command(board, &format!("camera {DISTANCE} {theta} {phi}"))?;

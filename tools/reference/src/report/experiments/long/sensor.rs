@@ -17,7 +17,7 @@ use crate::report::provenance::Provenance;
 
 /// Time in s at which the motion begins; before, the sensor rests and is calibrated.
 const BEGIN: f64 = 20.0;
-/// Rates about the sensor's axes in °/s of the sensor that turns: 30 °/s about an axis that is no axis of the sensor.
+/// Rates about the sensor's axes in °/s of the sensor that turns: 30 °/s about an axis that is not an axis of the sensor.
 const RATE: [f64; 3] = [10.0, 20.0, -20.0];
 /// The sensor's bias in °/s, and its noise in °/s and g per √Hz, which is that of a real one.
 const IMPERFECTIONS: Imperfections = Imperfections {
@@ -239,7 +239,7 @@ impl Bench {
         Ok(self.count()?.saturating_sub(status.samples))
     }
 
-    /// What the firmware says about the newest sample, and the number by which the chip's measurements exceed the samples. Some
+    /// The firmware's status of the newest sample, and the number by which the chip's measurements exceed the samples. Some
     /// measurements have not been taken yet, so the smallest of several numbers counts. That of the returned status is one of them:
     /// its last sample is then a measurement that the chip has made.
     fn newest(&mut self) -> Result<(Status, u64)> {

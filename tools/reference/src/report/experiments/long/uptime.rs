@@ -194,7 +194,7 @@ impl Bench {
         Ok(())
     }
 
-    /// A hand in front of the image sensor, while the main loop is busy with an upload for 2^32 cycles and a little.
+    /// A hand in front of the image sensor, while the main loop is busy with an upload for slightly more than 2^32 cycles.
     fn hand(&mut self) -> Result<()> {
         let mut sensor = image_sensor(moving_hand([320, 240]));
         let still = sensor.source.frame(0.0);
@@ -397,7 +397,7 @@ fn upload_mesh(board: &mut Emulated) -> Result<String> {
         Ok(lines)
     };
     let lines = send(board, &mesh)?;
-    // Another mesh in its place: what the memory already holds is not sent again.
+    // Uploads another mesh first, because data that the board already has are not sent again.
     send(board, &cube())?;
     command(board, "scene cube")?;
     Ok(picked(lines, &["vertices", "triangles"]))

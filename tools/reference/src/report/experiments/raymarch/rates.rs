@@ -18,8 +18,8 @@ use crate::report::progress;
 use crate::report::provenance::Provenance;
 use crate::report::soc::{self, BackToBack};
 
-/// Least cycles of a measurement of frames back to back. The first frame takes up to 7,600 cycles more than each other one, which raises the
-/// mean by at most 0.3 %.
+/// Least cycles of a measurement of frames back to back. The first frame takes up to 7,600 cycles more than each other one, which
+/// raises the mean by at most 0.3 %.
 const LEAST_CYCLES: u64 = 3_000_000;
 
 /// A verilated build of the SoC, in a folder of `target/gateware`.

@@ -175,7 +175,7 @@ pub fn read(folder: &Path) -> Result<Vec<Entry>> {
 
 fn sines(folder: &Path) -> Result<Entry> {
     let rows: Vec<sine::Row> = read_csv(&folder.join("sine.csv"))?;
-    // Of a kernel with several rows, the last has the most inputs.
+    // The last row of a kernel has the most inputs.
     let is_last = |at: usize| {
         rows[at + 1..]
             .iter()
