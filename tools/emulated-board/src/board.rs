@@ -1,6 +1,6 @@
 //! The board: CPU, bus and devices, and what a person connects to it.
 
-use glint_board::Frame;
+use glint_board_api::Frame;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::memories::MAIN_RAM;
 use virtual_flash::Flash;

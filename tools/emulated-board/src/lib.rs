@@ -34,7 +34,7 @@ pub use device::Device;
 pub use engines::{GestureEngine, Raymarcher, TriangleEngine};
 pub use error::Error;
 pub use events::Events;
-pub use glint_board::Frame;
+pub use glint_board_api::Frame;
 pub use memory::MainMemory;
 pub use virtual_image_sensor;
 pub use virtual_mpu6050;

@@ -1,6 +1,6 @@
 //! The emulated board as one of the simulated boards.
 
-use glint_board::{BoardError, Frame, Simulation, Uart, own_pins, own_uart};
+use glint_board_api::{BoardError, Frame, Simulation, Uart, own_pins, own_uart};
 use litex_pac::scanout::Scanout;
 
 use crate::{EmulatedBoard, Error};

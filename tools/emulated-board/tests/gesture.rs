@@ -12,7 +12,7 @@ use litex_pac::gesture::{
     SnapshotState, Status, WindowA, WindowB, offset,
 };
 use litex_pac::register::Value;
-use virtual_wires::Device as _;
+use virtual_i2c_device::Device as _;
 
 const SIZE: [usize; 2] = [64, 48];
 const WINDOWS: [Window; 2] = [

@@ -33,5 +33,5 @@ pub mod view;
 pub mod web;
 pub mod wireframe;
 
-pub use glint_board::{console, transfer};
+pub use glint_board_api::{console, transfer};
 pub use glint_mesh::{convert, error, formats, generate, model, normals, polygons, triangulate};

@@ -19,7 +19,7 @@
 //! # Time
 //! One cycle is one period of the SoC's system clock, by default 1/81.25 MHz; the pixel clock has exactly 74.25 MHz.
 //! Nothing depends on wall time: equal calls give equal boards, cycle by cycle. At a pseudo-terminal, a board runs at most as fast as in
-//! reality ([`glint_board::pace::Pace`]).
+//! reality ([`glint_board_api::pace::Pace`]).
 //!
 //! # Limits
 //! The UART moves one byte per cycle, where a serial line needs 7053 cycles of 1/81.25 MHz, so output arrives earlier than on a real board.

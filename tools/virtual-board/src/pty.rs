@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 
-use glint_board::Uart;
-use glint_board::pace::{Pace, SystemClock};
+use glint_board_api::Uart;
+use glint_board_api::pace::{Pace, SystemClock};
 use rustix::fs::{Mode, OFlags};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 

@@ -1,6 +1,6 @@
 //! The virtual board as one of the simulated boards.
 
-use glint_board::{BoardError, Frame, Simulation, Uart, own_pins, own_uart};
+use glint_board_api::{BoardError, Frame, Simulation, Uart, own_pins, own_uart};
 
 use crate::VirtualBoard;
 

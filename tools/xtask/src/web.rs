@@ -14,7 +14,7 @@ use crate::{firmware, paths, run};
 const PROFILE: &str = "wasm";
 
 /// Folders with the files of the page, and of its worker.
-const SOURCES: [&str; 2] = ["tools/live/web", "tools/web-board/web"];
+const SOURCES: [&str; 2] = ["tools/live-page/web", "tools/emulated-board-wasm/web"];
 
 /// The board's file in the folder, which marks a folder as made by this command.
 const BOARD: &str = "board.wasm";
@@ -27,14 +27,23 @@ pub fn build(out: Option<&Path>) -> Result<()> {
     bootstrap::rust_targets()?;
     firmware::build(Board::Virtual, &[])?;
     run::step(
-        "build web-board",
+        "build emulated-board-wasm",
         Command::new("cargo")
-            .args(["build", "--package", "web-board", "--profile", PROFILE])
+            .args([
+                "build",
+                "--package",
+                "emulated-board-wasm",
+                "--profile",
+                PROFILE,
+            ])
             .args(["--target", WEB_TARGET])
             .current_dir(paths::root()),
     )?;
     let target = paths::target();
-    let built = target.join(WEB_TARGET).join(PROFILE).join("web_board.wasm");
+    let built = target
+        .join(WEB_TARGET)
+        .join(PROFILE)
+        .join("emulated_board_wasm.wasm");
     let mut files = vec![
         (built, BOARD.to_owned()),
         (target.join("firmware/glint.bin"), "firmware.bin".to_owned()),

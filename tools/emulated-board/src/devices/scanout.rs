@@ -1,6 +1,6 @@
 //! Scan-out: vertical blanking at the rate of the video mode, and the frame that is shown.
 
-use glint_board::Frame;
+use glint_board_api::Frame;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 use litex_pac::register::Value;
 use litex_pac::scanout::{Caps, Control, Error, Scanout as Block, Status, offset};

@@ -9,7 +9,9 @@ mod simulated;
 
 pub use emulated_board::EmulatedBoard;
 pub use error::OpenError;
-pub use glint_board::{Board, BoardError, Frame as MonitorFrame, Memory, Meter, Simulation, Uart};
+pub use glint_board_api::{
+    Board, BoardError, Frame as MonitorFrame, Memory, Meter, Simulation, Uart,
+};
 pub use name::{BoardName, ModelOrBoard};
 pub use ports::{Port, ports};
 pub use route::Route;

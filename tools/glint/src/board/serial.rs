@@ -2,7 +2,7 @@
 
 use super::error::OpenError;
 use super::ports;
-use glint_board::{Board, BoardError};
+use glint_board_api::{Board, BoardError};
 use serialport::SerialPort;
 use std::io::{self, Read, Write};
 use std::path::Path;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use virtual_board::{Start, VirtualBoard};
 
 /// A simulated board with a serial line and direct access to its memory; by default the verilated one.
-pub type SimulatedBoard<S = VirtualBoard> = glint_board::SimulatedBoard<S>;
+pub type SimulatedBoard<S = VirtualBoard> = glint_board_api::SimulatedBoard<S>;
 
 /// Builds a virtual board that starts with `firmware` in its memory, without the BIOS.
 ///

@@ -11,8 +11,8 @@ use glint::board::{self, BoardName, SerialBoard, SimulatedBoard, Simulation, Uar
 use glint::error::{FormatError, quote};
 use glint::formats::read_file;
 use glint::web::{LiveSerial, Server};
-use glint_board::pace::SystemClock;
-use glint_live::{Live, LiveSimulation};
+use glint_board_api::pace::SystemClock;
+use glint_live_page::{Live, LiveSimulation};
 use rustix::termios::isatty;
 use std::net::SocketAddr;
 use std::os::unix::fs::symlink;

@@ -1,8 +1,8 @@
 //! The connection to one open page.
 
-use glint_live::message::MAX_MESSAGE;
-use glint_live::viewer::Reason;
-use glint_live::{Channels, Message as ToPage, Viewer};
+use glint_live_page::message::MAX_MESSAGE;
+use glint_live_page::viewer::Reason;
+use glint_live_page::{Channels, Message as ToPage, Viewer};
 use std::io::ErrorKind;
 use std::net::TcpStream;
 use std::time::{Duration, Instant};

@@ -1,10 +1,10 @@
 //! The live page of a board on a serial port.
 
 use crate::board::{Board, BoardError, MonitorFrame, SerialBoard};
-use glint_live::Live;
-use glint_live::inputs::Levels;
-use glint_live::message::Pins;
-use glint_live::motion::Motion;
+use glint_live_page::Live;
+use glint_live_page::inputs::Levels;
+use glint_live_page::message::Pins;
+use glint_live_page::motion::Motion;
 use std::sync::Arc;
 use std::time::Duration;
 

@@ -2,9 +2,9 @@
 
 use super::connection::{self, PATIENCE};
 use crate::board::BoardError;
-use glint_live::files::{FILES, File, SCRIPT};
-use glint_live::hub::MAX_VIEWERS;
-use glint_live::{Channels, Live, session};
+use glint_live_page::files::{FILES, File, SCRIPT};
+use glint_live_page::hub::MAX_VIEWERS;
+use glint_live_page::{Channels, Live, session};
 use std::io::{self, Read, Write};
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener, TcpStream};
 use std::sync::Arc;

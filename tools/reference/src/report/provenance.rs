@@ -41,10 +41,10 @@ fn commit() -> String {
         "firmware",
         "gateware",
         "tools/emulated-board",
-        "tools/image-sensor",
-        "tools/mpu6050",
+        "tools/virtual-image-sensor",
+        "tools/virtual-mpu6050",
         "tools/reference",
-        "tools/wires",
+        "tools/virtual-i2c-device",
     ];
     let git = |arguments: &[&str]| output("git", &[arguments, &["--"], &MEASURED].concat());
     let changed = !git(&["status", "--porcelain"]).is_empty();

@@ -1,6 +1,6 @@
 //! The sensor: its chip, what it sees, and the levels of its port.
 
-use virtual_wires::Wires;
+use virtual_i2c_device::Wires;
 
 use crate::chip::{Chip, ChipFault, Format, Model, Polarity};
 use crate::frame::Source;

@@ -3,8 +3,10 @@
 use crate::inputs::{Hold, Levels};
 use crate::message::Pins;
 use crate::motion::Motion;
-use glint_board::pace::{Clock, Pace};
-use glint_board::{Board, BoardError, Frame, Memory, SimulatedBoard, Simulation, read_in_steps};
+use glint_board_api::pace::{Clock, Pace};
+use glint_board_api::{
+    Board, BoardError, Frame, Memory, SimulatedBoard, Simulation, read_in_steps,
+};
 use std::sync::Arc;
 use std::time::Duration;
 

@@ -2,7 +2,7 @@
 
 use std::ops::BitXor;
 
-use virtual_wires::Device;
+use virtual_i2c_device::Device;
 
 /// Duration after a reset in which the chip does not answer, in ns.
 const RESET_TIME: u64 = 1_000_000;

@@ -2,7 +2,7 @@
 
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
-use virtual_wires::Device;
+use virtual_i2c_device::Device;
 
 /// I2C address with AD0 low.
 pub const ADDRESS: u8 = 0x68;

@@ -1,7 +1,7 @@
 //! Passes pictures, texts and levels of the board to all viewers. One viewer has control.
 
 use crate::message::{Holder, Message, Pins, ToPage, picture};
-use glint_board::Frame;
+use glint_board_api::Frame;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -1,10 +1,10 @@
 //! Tests of the virtual image sensor's port against the data sheets' timing, with a receiver of its own.
 
+use virtual_i2c_device::{Device, Wires};
 use virtual_image_sensor::{
     ChipFault, Fault, Frame, ImageSensor, Images, Levels, Model, Place, Polarity, Scene, Source,
     Timing,
 };
-use virtual_wires::{Device, Wires};
 
 const SIZE: [usize; 2] = [40, 24];
 

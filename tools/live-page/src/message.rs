@@ -1,6 +1,6 @@
 //! Messages between the page and the board's side: JSON texts, and binary messages for pictures and uploads.
 
-use glint_board::Frame;
+use glint_board_api::Frame;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;

@@ -10,10 +10,10 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use emulated_board::EmulatedBoard;
-use glint_board::console::{Console, ConsoleError};
-use glint_board::pace::Clock;
-use glint_board::{BoardError, SimulatedBoard};
-use glint_live::{Channels, Live, LiveSimulation, Message, Session, Viewer};
+use glint_board_api::console::{Console, ConsoleError};
+use glint_board_api::pace::Clock;
+use glint_board_api::{BoardError, SimulatedBoard};
+use glint_live_page::{Channels, Live, LiveSimulation, Message, Session, Viewer};
 
 /// Longest time that the board runs before the worker looks for messages from the page; the work of an engine may take longer.
 const TURN: Duration = Duration::from_millis(8);

@@ -22,4 +22,4 @@ pub use bus::{Bus, Error};
 pub use chip::{ADDRESS, Chip, Counts, Fault, Imperfections, RESET_TIME, Source, State};
 
 /// The chip on the wires SCL and SDA.
-pub type Wires = virtual_wires::Wires<Chip>;
+pub type Wires = virtual_i2c_device::Wires<Chip>;
