@@ -1,11 +1,12 @@
 //! The built-in model: a cube of edge length 1 with one colour per side.
 
+use glint_core::colour::Rgb565;
+use glint_core::mesh::{ChunkHeader, MAGIC, MeshHeader, Triangle, Vertex};
+
 /// Number of vertices of the cube.
 const VERTICES: usize = 8;
 /// Number of triangles of the cube.
 const TRIANGLES: usize = 12;
-/// Length of a record in bytes (docs/formats/mesh.md, "Mesh in memory"); the header is as long as two records.
-const RECORD: usize = 16;
 /// 1.0 in Q2.14.
 const ONE: i16 = 1 << 14;
 /// Distance of a corner from the centre, √3/2: 14 fraction bits, rounded up.
@@ -35,34 +36,37 @@ impl core::ops::Deref for Aligned {
     }
 }
 
-const LENGTH: usize = (2 + 1 + VERTICES + TRIANGLES) * RECORD;
+const LENGTH: usize =
+    MeshHeader::BYTES + ChunkHeader::BYTES + VERTICES * Vertex::BYTES + TRIANGLES * Triangle::BYTES;
 
 const fn bytes() -> [u8; LENGTH] {
-    let mut writer = Writer {
+    let header = MeshHeader {
+        magic: MAGIC,
+        length: LENGTH as u32,
+        chunks: 1,
+        vertices: VERTICES as u32,
+        triangles: TRIANGLES as u32,
+        radius: RADIUS,
+        checksum: 0,
+        attributes: 0,
+    };
+    let chunk = ChunkHeader {
+        vertices: VERTICES as u32,
+        triangles: TRIANGLES as u32,
+    };
+    let writer = Writer {
         bytes: [0; LENGTH],
         at: 0,
     };
-    writer = writer
-        .word(u32::from_le_bytes(*b"GLM2"))
-        .word(LENGTH as u32)
-        .word(1);
-    writer = writer
-        .word(VERTICES as u32)
-        .word(TRIANGLES as u32)
-        .word(RADIUS)
-        .word(0)
-        .word(0);
-    writer = writer
-        .word(VERTICES as u32)
-        .word(TRIANGLES as u32)
-        .word(0)
-        .word(0);
+    let mut writer = writer.put(&header.to_bytes()).put(&chunk.to_bytes());
     let mut corner = 0;
     while corner < VERTICES {
-        writer = writer
-            .triple(corner_at(corner, ONE / 2))
-            .triple(corner_at(corner, DIAGONAL));
-        writer = writer.half(0xffff).half(0);
+        let vertex = Vertex {
+            position: corner_at(corner, ONE / 2),
+            normal: corner_at(corner, DIAGONAL),
+            colour: Rgb565(0xffff),
+        };
+        writer = writer.put(&vertex.to_bytes());
         corner += 1;
     }
     let mut side = 0;
@@ -88,25 +92,21 @@ const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     position
 }
 
-/// Writer that appends little-endian numbers to the bytes of the mesh.
+/// Writer that appends records to the bytes of the mesh.
 struct Writer {
     bytes: [u8; LENGTH],
     at: usize,
 }
 
 impl Writer {
-    const fn half(mut self, value: u16) -> Self {
-        [self.bytes[self.at], self.bytes[self.at + 1]] = value.to_le_bytes();
-        self.at += 2;
+    const fn put(mut self, record: &[u8]) -> Self {
+        let mut byte = 0;
+        while byte < record.len() {
+            self.bytes[self.at] = record[byte];
+            self.at += 1;
+            byte += 1;
+        }
         self
-    }
-
-    const fn word(self, value: u32) -> Self {
-        self.half(value as u16).half((value >> 16) as u16)
-    }
-
-    const fn triple(self, [x, y, z]: [i16; 3]) -> Self {
-        self.half(x as u16).half(y as u16).half(z as u16)
     }
 
     /// Appends the two triangles of a side of the cube, counter-clockwise seen from outside. The side is perpendicular to
@@ -125,11 +125,16 @@ impl Writer {
         let quad = [base, base + b, base + b + c, base + c];
         let mut triangle = 0;
         while triangle < 2 {
-            self = self
-                .half(quad[0] as u16)
-                .half(quad[1 + triangle] as u16)
-                .half(quad[2 + triangle] as u16);
-            self = self.half(colour).triple(normal).half(0);
+            let record = Triangle {
+                indices: [
+                    quad[0] as u16,
+                    quad[1 + triangle] as u16,
+                    quad[2 + triangle] as u16,
+                ],
+                colour: Rgb565(colour),
+                normal,
+            };
+            self = self.put(&record.to_bytes());
             triangle += 1;
         }
         self

@@ -28,7 +28,7 @@ module band_entry_proof (
     logic            was_valid = 1'b0, was_odd;
     logic [BITS-1:0] was_number;
 
-    triangle_pkg::descriptor_t descriptor;
+    records_pkg::descriptor_t descriptor;
     raster_pkg::placed_t       placed;
     raster_pkg::placed_late_t  late;
 

@@ -27,7 +27,7 @@ module line_raster_proof (
     } group_t;
 
     logic              in_ready, out_valid, idle, two, right;
-    line_pkg::piece_t  piece;
+    records_pkg::piece_t  piece;
     group_t            group, expected;
     logic [BITS-1:0]   came = '0, went = '0, first;
     logic [3:0]        unseen = '0, refused = '0;

@@ -15,7 +15,7 @@ module line_setup_proof (
     always_ff @(posedge clk) rst <= 1'b0;
 
     logic             in_ready, out_valid, near, sent = 1'b0, ended = 1'b0;
-    line_pkg::piece_t piece;
+    records_pkg::piece_t piece;
     logic [5:0]       waited = '0;
 
     line_setup dut (

@@ -25,7 +25,7 @@ module setup_proof #(
     logic [4:0]      stood = '0;
     logic [3:0]      refused = '0;
 
-    triangle_pkg::descriptor_t descriptor;
+    records_pkg::descriptor_t descriptor;
 
     // Culled triangles carry the number `'1`, which the proof never expects at the output.
     assign number = in_culled ? '1 : kept;

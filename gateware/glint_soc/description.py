@@ -10,15 +10,9 @@ A block (a `LiteXModule` with registers) may have two attributes beside its regi
 
 import json
 
-from . import constants
-
-
 def describe(soc):
-    """Returns the description of a finalized SoC as plain data: its blocks, and the numbers that all parts of Glint share."""
-    return {
-        "blocks": {name: _block(getattr(soc, name, None), region.obj) for name, region in soc.csr.regions.items()},
-        "machine": constants.describe(),
-    }
+    """Returns the description of the blocks of a finalized SoC as plain data."""
+    return {"blocks": {name: _block(getattr(soc, name, None), region.obj) for name, region in soc.csr.regions.items()}}
 
 
 def write(soc, path):

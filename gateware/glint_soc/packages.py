@@ -1,12 +1,12 @@
-"""SystemVerilog packages generated from the shared constants and the blocks' descriptions."""
+"""Files generated from the shared constants and records, and from the blocks' descriptions."""
 
-from . import constants, fields
+from . import constants, fields, records, register_map
 from .register_map import OPTIONAL_BLOCKS, PINNED
 from .rtl import RTL
 from .virtual import VirtualSoC
 
 WRITER = ".venv/bin/python gateware/tests/run.py --packages"
-"""Shell command that writes the packages."""
+"""Shell command that writes the files."""
 
 
 def full_soc():
@@ -19,9 +19,11 @@ def stale(soc):
     blocks = [getattr(soc, name) for name in PINNED if hasattr(soc, name)]
     packages = [block.package for block in blocks if hasattr(block, "package")]
     texts = {
-        **{RTL / folder / f"{name}.sv": text for (folder, name), text in constants.packages().items()},
         **{RTL / package.block / f"{package.name}.sv": package.text() for package in packages},
+        **constants.files(),
         **fields.files(),
+        **records.files(),
+        **register_map.files(),
     }
     return {path: text for path, text in texts.items() if not path.exists() or path.read_text() != text}
 

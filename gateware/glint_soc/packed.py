@@ -103,34 +103,55 @@ class Package:
 
     def text(self):
         """Returns the text of the package's file."""
-        parts = [
-            *(["\n".join(f"    localparam int unsigned {name} = {number};" for name, number in self._numbers.items())]
-              if self._numbers else []),
-            *(enumeration.constants() for enumeration in self._enumerations),
-            *(struct.typedef() for struct in self._structs),
-        ]
-        return "\n".join([
-            f"// Generated from gateware/glint_soc/{self.block}.py by `gateware/tests/run.py --packages`. Do not edit.",
-            "// Numbers and types of the block's ports. docs/registers.md describes the registers.",
-            "",
-            "`default_nettype none",
-            "",
-            f"package {self.name};",
-            "    // A module uses only some of these constants.",
-            "    /* verilator lint_off UNUSEDPARAM */",
-            "\n\n".join(parts),
-            "    /* verilator lint_on UNUSEDPARAM */",
-            "endpackage",
-            "",
-            "`default_nettype wire",
-            "",
-        ])
+        return package(
+            self.name, f"{self.block}.py",
+            "Numbers and types of the block's ports. docs/registers.md describes the registers.", [
+                *(["\n".join(number(name, value) for name, value in self._numbers.items())] if self._numbers else []),
+                *(enumeration.constants() for enumeration in self._enumerations),
+                *(struct.typedef() for struct in self._structs),
+            ])
+
+
+def package(name, source, text, parts):
+    """Returns the text of a SystemVerilog package that `source`, a file of this folder, describes: `parts` with an empty line
+    between them. `text` is its comment."""
+    return "\n".join([
+        generated("//", source),
+        *(f"//{line}" for line in lines_of(text)),
+        "",
+        "`default_nettype none",
+        "",
+        f"package {name};",
+        "    // A module uses only some of these constants.",
+        "    /* verilator lint_off UNUSEDPARAM */",
+        "\n\n".join(parts),
+        "    /* verilator lint_on UNUSEDPARAM */",
+        "endpackage",
+        "",
+        "`default_nettype wire",
+        "",
+    ])
+
+
+def number(name, value, text=""):
+    """Returns a constant of a package, with a comment."""
+    return "\n".join([*(_comment(text) if text else []), f"    localparam int unsigned {name} = {value};"])
+
+
+def generated(mark, source):
+    """Returns the comment that a file is generated from `source`; `mark` begins a comment."""
+    return f"{mark} Generated from gateware/glint_soc/{source} by `gateware/tests/run.py --packages`. Do not edit."
 
 
 def _comment(text):
+    return [f"    //{line}" for line in lines_of(text)]
+
+
+def lines_of(text):
+    """Returns a text divided into lines of about 120 characters, each after a blank."""
     words, lines = text.split(), [""]
     for word in words:
         if len(lines[-1]) + len(word) > 120:
             lines.append("")
         lines[-1] += f" {word}"
-    return [f"    //{line}" for line in lines]
+    return lines

@@ -10,6 +10,9 @@ from dataclasses import dataclass
 
 from litex.soc.interconnect.csr import CSRStatus
 
+from .packed import generated
+from .rtl import CORE
+
 
 @dataclass(frozen=True)
 class Location:
@@ -46,8 +49,17 @@ BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 # Registers that follow from the kind of memory. Only the BIOS, which is built with the gateware, uses them.
 MEMORY_SPECIFIC = ("sdram",)
 
-# The optional blocks, each with the number of its bit in the register `identity_blocks`.
-OPTIONAL_BLOCKS = {"scanout": 0, "triangle": 1, "raymarch": 2, "line": 3, "gesture": 4, "flash": 5}
+# The optional blocks in the order of their bits in the register `identity_blocks`, each with its text.
+BLOCKS = {
+    "scanout": "The scan-out.",
+    "triangle": "The triangle engine.",
+    "raymarch": "The raymarcher.",
+    "line": "The line engine, a part of the triangle engine.",
+    "gesture": "The gesture engine.",
+    "flash": "The SPI flash in a window of memory.",
+}
+
+OPTIONAL_BLOCKS = {name: bit for bit, name in enumerate(BLOCKS)}
 
 CSR_MAP = {name: location.window for name, location in PINNED.items()}
 
@@ -85,3 +97,31 @@ def check_subset(soc, full):
         if name not in MEMORY_SPECIFIC and region != expected.get(name):
             raise ValueError(
                 f"registers of {name!r} differ from the full build: expected {expected.get(name)}, got {region}")
+
+
+def files():
+    """Returns the text of the generated module `block` of glint-core, by path."""
+    variants = "\n".join(f"    /// {text}\n    {name.title()} = {bit}," for bit, (name, text) in enumerate(BLOCKS.items()))
+    names = "\n".join(f'    {name.title()}: "{name}",' for name in BLOCKS)
+    return {CORE / "block.rs": f"""//! The optional blocks of a gateware.
+{generated("//", "register_map.py")}
+
+use crate::choice::choices;
+
+/// An optional block. The discriminant is the number of its bit among the block enable bits (`identity.blocks`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Block {{
+{variants}
+}}
+
+choices!(Block {{
+{names}
+}});
+
+impl Block {{
+    /// The block's bit among the block enable bits.
+    pub const fn bit(self) -> u32 {{
+        1 << self as u32
+    }}
+}}
+"""}

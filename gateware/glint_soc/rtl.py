@@ -8,7 +8,9 @@ import re
 from functools import cache
 from pathlib import Path
 
-RTL = Path(__file__).resolve().parent.parent / "rtl"
+ROOT = Path(__file__).resolve().parent.parent.parent
+RTL = ROOT / "gateware" / "rtl"
+CORE = ROOT / "firmware" / "core" / "src"
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
 _DEFINITION = re.compile(r"^\s*(module|package)\s+(\w+)", re.M)

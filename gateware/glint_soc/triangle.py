@@ -9,11 +9,11 @@ from litex.soc.interconnect.csr_eventmanager import EventManager, EventSourcePul
 from migen import Cat, ClockSignal, If, Instance, Record, ResetSignal, Signal, log2_int
 
 from . import constants
-from .constants import DESCRIPTOR_BYTES
 from .clock_control import ClockControl
 from .counters import Counters
 from .packed import Enumeration, Package, Struct
 from .parameters import Parameter, PassParameters
+from .records import DESCRIPTOR_BYTES
 from .rtl import add_sources
 
 IDENT = int.from_bytes(b"TRIA", "big")

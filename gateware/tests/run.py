@@ -5,7 +5,8 @@
                                            builds the models for the tests in tools/testbench instead, all or only those of
                                            the named modules
     python gateware/tests/run.py --packages
-                                           writes the SystemVerilog packages that follow from the blocks' descriptions instead
+                                           writes the SystemVerilog packages, Rust modules and pages that follow from the
+                                           descriptions of blocks, records and shared numbers instead
     python gateware/tests/run.py --size NAME
                                            prints what a module, or `soc`, costs on the FPGA instead, as JSON:
                                            `cargo xtask resources` makes tables of it
@@ -137,7 +138,7 @@ def build_models(names):
 
 
 def write_packages():
-    """Writes the packages of registers that differ from the descriptions. Returns False, which stands for no failure."""
+    """Writes the generated files that differ from the descriptions. Returns False, which stands for no failure."""
     for path in packages.write(packages.full_soc()):
         print(path, flush=True)
     return False
@@ -150,7 +151,7 @@ if __name__ == "__main__":
     what.add_argument("--route", metavar="NAME", help="print clock rates by place and route instead")
     what.add_argument("--models", nargs="*", metavar="NAME", choices=[module.top for module in MODULES],
                       help="build what the tests in tools/testbench need instead, or only these modules of it")
-    what.add_argument("--packages", action="store_true", help="write the packages of the blocks' registers instead")
+    what.add_argument("--packages", action="store_true", help="write the files generated from the descriptions instead")
     parser.add_argument("--seeds", metavar="N", type=int, nargs="+", help="seeds of the placer for --route")
     arguments = parser.parse_args()
     logging.disable(logging.INFO) # LiteX describes all it does

@@ -1,4 +1,5 @@
 //! The optional blocks of a gateware.
+// Generated from gateware/glint_soc/register_map.py by `gateware/tests/run.py --packages`. Do not edit.
 
 use crate::choice::choices;
 
@@ -6,17 +7,17 @@ use crate::choice::choices;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Block {
     /// The scan-out.
-    Scanout,
+    Scanout = 0,
     /// The triangle engine.
-    Triangle,
+    Triangle = 1,
     /// The raymarcher.
-    Raymarch,
+    Raymarch = 2,
     /// The line engine, a part of the triangle engine.
-    Line,
+    Line = 3,
     /// The gesture engine.
-    Gesture,
+    Gesture = 4,
     /// The SPI flash in a window of memory.
-    Flash,
+    Flash = 5,
 }
 
 choices!(Block {

@@ -7,11 +7,13 @@
 mod encode;
 mod error;
 
+use core::ops::Range;
 use core::str;
 
 use crate::console::LINE_MAX;
 use crate::machine;
 use crate::mesh::is_name;
+use crate::records::{FirmwareHeader, FlashEntry, FlashHeader, WORD};
 use crate::wire::crc32;
 
 #[cfg(feature = "alloc")]
@@ -31,21 +33,12 @@ pub const MAGIC: [u8; 4] = *b"GFC1";
 /// Smallest length of a firmware in bytes that LiteX's BIOS boots.
 pub const MIN_FIRMWARE: u32 = 32;
 /// Largest length of a firmware in bytes, which follows its header.
-pub const MAX_FIRMWARE: u32 = (CONTENTS - FIRMWARE - FIRMWARE_HEADER) as u32;
+pub const MAX_FIRMWARE: u32 = (CONTENTS - FIRMWARE - FirmwareHeader::BYTES) as u32;
 
 /// The word by which the FPGA finds the start of a bitstream.
 const SYNC: [u8; 4] = [0xaa, 0x99, 0x55, 0x66];
 /// Number of bytes in which a bitstream has its [`SYNC`].
 const SYNC_WITHIN: usize = 4096;
-/// Bytes of the firmware's header.
-const FIRMWARE_HEADER: usize = 8;
-/// Bytes of the contents' header, and multiple at which an item begins.
-const HEADER: usize = 16;
-/// Bytes of an entry of the list of items.
-const ENTRY: usize = 48;
-/// Place of the checksum in the header.
-const CHECKSUM: usize = 12;
-
 /// Kind of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
@@ -148,32 +141,48 @@ impl<'a> Contents<'a> {
     /// The first deviation from the format.
     pub fn new_checked(bytes: &'a [u8]) -> Result<Self, FlashError> {
         let found = clamped(bytes.len());
-        let Some((header, _)) = bytes.split_first_chunk::<HEADER>() else {
-            let expected = Expected::AtLeast("bytes of contents", HEADER as u32);
+        let Some((header, _)) = bytes.split_first_chunk() else {
+            let expected = Expected::AtLeast("bytes of contents", FlashHeader::BYTES as u32);
             return Err(error(CONTENTS, expected, found));
         };
-        let [magic, length, count, checksum] = words(header);
-        let is_magic = magic == u32::from_le_bytes(MAGIC);
-        expect(CONTENTS, Expected::Magic(MAGIC), magic, is_magic)?;
+        let header = FlashHeader::from_bytes(header);
+        let FlashHeader { length, .. } = header;
+        let place = |field: Range<usize>| CONTENTS + field.start;
+        expect(
+            place(FlashHeader::MAGIC),
+            Expected::Magic(MAGIC),
+            u32::from_le_bytes(header.magic),
+            header.magic == MAGIC,
+        )?;
         let limit = Expected::AtMost("bytes of contents, as there are", found);
-        expect(CONTENTS + 4, limit, length, length <= found)?;
+        expect(place(FlashHeader::LENGTH), limit, length, length <= found)?;
         let limit = Expected::AtMost("items", MAX_ITEMS);
-        expect(CONTENTS + 8, limit, count, count <= MAX_ITEMS)?;
+        expect(
+            place(FlashHeader::ITEMS),
+            limit,
+            header.items,
+            header.items <= MAX_ITEMS,
+        )?;
         // At most 64.
-        let count = count as usize;
-        let list = HEADER + count * ENTRY;
+        let count = header.items as usize;
+        let list = list_end(count);
         let least = Expected::AtLeast("bytes of contents, for the list of items", list as u32);
-        expect(CONTENTS + 4, least, length, length as usize >= list)?;
+        expect(
+            place(FlashHeader::LENGTH),
+            least,
+            length,
+            length as usize >= list,
+        )?;
         let contents = Self {
             bytes: bytes.get(..length as usize).unwrap_or_default(),
             count,
         };
-        let sum = contents.list_checksum();
+        let sum = list_checksum(contents.bytes, list);
         expect(
-            CONTENTS + CHECKSUM,
-            Expected::Crc32(checksum),
+            place(FlashHeader::CHECKSUM),
+            Expected::Crc32(header.checksum),
             sum,
-            sum == checksum,
+            sum == header.checksum,
         )?;
         contents.check_list()?;
         Ok(contents)
@@ -186,19 +195,24 @@ impl<'a> Contents<'a> {
 
     /// The items, in order.
     pub fn items(&self) -> impl Iterator<Item = Item<'a>> + use<'a> {
-        let mut offset = HEADER + self.count * ENTRY;
+        let mut offset = list_end(self.count);
         let bytes = self.bytes;
         // The list has been checked, so no item is left out.
         self.entries().map_while(move |entry| {
-            let [kind, length, crc32, _] = words(entry);
+            let FlashEntry {
+                kind,
+                length,
+                checksum,
+                ..
+            } = FlashEntry::from_bytes(entry);
             let item = Item {
                 kind: kind_of(kind)?,
                 name: name_of(entry)?,
                 offset,
                 bytes: bytes.get(offset..)?.get(..length as usize)?,
-                crc32,
+                crc32: checksum,
             };
-            offset = (offset + item.bytes.len()).next_multiple_of(HEADER);
+            offset = (offset + item.bytes.len()).next_multiple_of(WORD);
             Some(item)
         })
     }
@@ -209,31 +223,41 @@ impl<'a> Contents<'a> {
             .find(|item| item.kind == kind && item.name == name)
     }
 
-    fn entries(&self) -> impl Iterator<Item = &'a [u8; ENTRY]> + use<'a> {
-        let list = self.bytes.get(HEADER..).unwrap_or_default();
+    fn entries(&self) -> impl Iterator<Item = &'a [u8; FlashEntry::BYTES]> + use<'a> {
+        let list = self.bytes.get(FlashHeader::BYTES..).unwrap_or_default();
         list.as_chunks().0.iter().take(self.count)
     }
 
-    /// The checksum of header and list, without the checksum itself.
-    fn list_checksum(&self) -> u32 {
-        list_checksum(self.bytes, HEADER + self.count * ENTRY)
-    }
-
     fn check_list(&self) -> Result<(), FlashError> {
-        let mut offset = HEADER + self.count * ENTRY;
+        let mut offset = list_end(self.count);
         for (number, entry) in self.entries().enumerate() {
-            let place = CONTENTS + HEADER + number * ENTRY;
-            let [kind, length, _, reserved] = words(entry);
-            expect(place, Expected::Kind, kind, kind_of(kind).is_some())?;
+            let place = |field: Range<usize>| CONTENTS + list_end(number) + field.start;
+            let FlashEntry {
+                kind, length, name, ..
+            } = FlashEntry::from_bytes(entry);
+            expect(
+                place(FlashEntry::KIND),
+                Expected::Kind,
+                kind,
+                kind_of(kind).is_some(),
+            )?;
             let rest = self.bytes.len().saturating_sub(offset);
             let limit = Expected::AtMost("bytes of an item, up to the end", clamped(rest));
-            expect(place + 4, limit, length, length as usize <= rest)?;
+            let is_inside = length as usize <= rest;
+            expect(place(FlashEntry::LENGTH), limit, length, is_inside)?;
+            let reserved = entry.get(FlashEntry::RESERVED).unwrap_or_default();
+            let reserved = (reserved.first_chunk()).map_or(0, |word| u32::from_le_bytes(*word));
             let zero = Expected::Exactly("(reserved)", 0);
-            expect(place + 12, zero, reserved, reserved == 0)?;
-            let first = entry.get(HEADER).copied().unwrap_or(0);
+            expect(place(FlashEntry::RESERVED), zero, reserved, reserved == 0)?;
+            let [first, ..] = name;
             let is_named = name_of(entry).is_some();
-            expect(place + HEADER, Expected::Name, first.into(), is_named)?;
-            offset = (offset + length as usize).next_multiple_of(HEADER);
+            expect(
+                place(FlashEntry::NAME),
+                Expected::Name,
+                first.into(),
+                is_named,
+            )?;
+            offset = (offset + length as usize).next_multiple_of(WORD);
         }
         Ok(())
     }
@@ -259,8 +283,13 @@ impl<'a> Image<'a> {
         let found = clamped(bytes.len());
         let limit = Expected::AtMost("bytes", MAX_BYTES as u32);
         expect(0, limit, found, bytes.len() <= MAX_BYTES)?;
-        let least = Expected::AtLeast("bytes", (CONTENTS + HEADER) as u32);
-        expect(0, least, found, bytes.len() >= CONTENTS + HEADER)?;
+        let least = Expected::AtLeast("bytes", (CONTENTS + FlashHeader::BYTES) as u32);
+        expect(
+            0,
+            least,
+            found,
+            bytes.len() >= CONTENTS + FlashHeader::BYTES,
+        )?;
         let (slot, rest) = bytes.split_at_checked(FIRMWARE).unwrap_or_default();
         let firmware = firmware(rest)?;
         let contents = Contents::new_checked(bytes.get(CONTENTS..).unwrap_or_default())?;
@@ -297,17 +326,18 @@ fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
 /// # Errors
 /// The length is out of range, or the checksum is wrong.
 pub fn firmware(bytes: &[u8]) -> Result<&[u8], FlashError> {
-    let (header, rest) = bytes.split_at_checked(FIRMWARE_HEADER).unwrap_or_default();
-    let [length, checksum] = words(header);
+    let (header, rest) = bytes.split_first_chunk().unwrap_or((&[0; _], &[]));
+    let FirmwareHeader { length, checksum } = FirmwareHeader::from_bytes(header);
     let least = Expected::AtLeast("bytes of firmware", MIN_FIRMWARE);
-    expect(FIRMWARE, least, length, length >= MIN_FIRMWARE)?;
+    let place = FIRMWARE + FirmwareHeader::LENGTH.start;
+    expect(place, least, length, length >= MIN_FIRMWARE)?;
     let most = clamped(rest.len()).min(MAX_FIRMWARE);
     let limit = Expected::AtMost("bytes of firmware", most);
-    expect(FIRMWARE, limit, length, length <= most)?;
+    expect(place, limit, length, length <= most)?;
     let firmware = rest.get(..length as usize).unwrap_or_default();
     let found = crc32(firmware);
     expect(
-        FIRMWARE + 4,
+        FIRMWARE + FirmwareHeader::CHECKSUM.start,
         Expected::Crc32(checksum),
         found,
         found == checksum,
@@ -315,11 +345,20 @@ pub fn firmware(bytes: &[u8]) -> Result<&[u8], FlashError> {
     Ok(firmware)
 }
 
-/// The checksum of the first `end` bytes of the contents, without the checksum itself.
+/// Offset of the end of a list of `items` items from the start of the contents.
+const fn list_end(items: usize) -> usize {
+    FlashHeader::BYTES + items * FlashEntry::BYTES
+}
+
+/// The checksum of header and list, which end at `end`, without the checksum itself.
 fn list_checksum(contents: &[u8], end: usize) -> u32 {
     let mut digest = crate::wire::CRC_32.digest();
-    digest.update(contents.get(..CHECKSUM).unwrap_or_default());
-    digest.update(contents.get(HEADER..end).unwrap_or_default());
+    for part in [
+        0..FlashHeader::CHECKSUM.start,
+        FlashHeader::CHECKSUM.end..end,
+    ] {
+        digest.update(contents.get(part).unwrap_or_default());
+    }
     digest.finalize()
 }
 
@@ -328,21 +367,12 @@ fn kind_of(code: u32) -> Option<Kind> {
 }
 
 /// The name of an entry, behind which all bytes are 0.
-fn name_of(entry: &[u8; ENTRY]) -> Option<&str> {
-    let field = entry.get(HEADER..)?;
+fn name_of(entry: &[u8; FlashEntry::BYTES]) -> Option<&str> {
+    let field = entry.get(FlashEntry::NAME)?;
     let end = field.iter().position(|byte| *byte == 0)?;
     let (name, rest) = field.split_at_checked(end)?;
     let name = str::from_utf8(name).ok()?;
     (is_name(name) && rest.iter().all(|byte| *byte == 0)).then_some(name)
-}
-
-/// The first `N` little-endian 32-bit words of `bytes`; words beyond the end are 0.
-fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
-    let mut words = [0; N];
-    for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
-        *word = u32::from_le_bytes(*bytes);
-    }
-    words
 }
 
 /// A length, at most the largest number of 32 bits.

@@ -12,6 +12,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod appearance;
+pub mod bits;
 pub mod block;
 pub mod calibration;
 pub mod camera;
@@ -40,6 +41,8 @@ pub mod orientation;
 pub mod picture;
 pub mod polar;
 pub mod quality;
+#[rustfmt::skip]
+pub mod records;
 pub mod regions;
 pub mod root;
 pub mod scene;

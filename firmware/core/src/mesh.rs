@@ -8,11 +8,14 @@ mod encode;
 mod turned;
 
 use core::fmt;
+use core::ops::Range;
 
 pub use crate::colour::Rgb565;
+use crate::records::WORD;
+pub use crate::records::{Attribute, ChunkHeader, MeshHeader, Triangle, Vertex};
 pub use checksum::{checksum, set_checksum, stated_checksum};
 #[cfg(feature = "alloc")]
-pub use encode::{EncodeError, IndexedTriangle, encode};
+pub use encode::{EncodeError, IndexedTriangle, encode, encode_with};
 
 /// The first four bytes of a mesh.
 pub const MAGIC: [u8; 4] = *b"GLM2";
@@ -25,11 +28,6 @@ pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
-/// Bytes of a record: a chunk's header, a vertex or a triangle. The mesh's header is as long as two records.
-pub(crate) const RECORD: usize = 16;
-/// Bytes of the mesh's header.
-pub(crate) const HEADER: usize = 2 * RECORD;
-
 /// Whether a text may be the name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
 pub fn is_name(text: &str) -> bool {
     (1..=MAX_NAME).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic())
@@ -39,8 +37,11 @@ pub fn is_name(text: &str) -> bool {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mesh<'a> {
     bytes: &'a [u8],
-    /// The bytes after the header.
-    records: &'a [[u8; RECORD]],
+    /// The records of all chunks.
+    records: &'a [[u8; WORD]],
+    /// The arrays of the optional attributes.
+    arrays: &'a [[u8; WORD]],
+    attributes: u32,
     vertices: u32,
     triangles: u32,
     radius: u32,
@@ -60,10 +61,10 @@ impl<'a> Mesh<'a> {
             expected,
             found: u32::try_from(found).unwrap_or(u32::MAX),
         };
-        let Some((header, records)) = bytes.split_at_checked(HEADER) else {
+        let Some((header, records)) = bytes.split_first_chunk() else {
             return Err(wrong_length(Expected::AtLeast(
                 "bytes of header",
-                HEADER as u32,
+                MeshHeader::BYTES as u32,
             )));
         };
         let length = match u32::try_from(found) {
@@ -71,75 +72,82 @@ impl<'a> Mesh<'a> {
             _ => return Err(wrong_length(Expected::AtMost("bytes", MAX_BYTES))),
         };
         let (records, []) = records.as_chunks() else {
-            return Err(wrong_length(Expected::MultipleOf("bytes", RECORD as u32)));
+            return Err(wrong_length(Expected::MultipleOf("bytes", WORD as u32)));
         };
-        let [
-            magic,
-            stated_length,
-            chunks,
-            vertices,
-            triangles,
-            radius,
-            _,
-            reserved,
-        ] = words::<8>(header);
+        let header = MeshHeader::from_bytes(header);
         expect(
-            0,
+            start(MeshHeader::MAGIC),
             Expected::Magic,
-            magic,
-            magic == u32::from_le_bytes(MAGIC),
+            u32::from_le_bytes(header.magic),
+            header.magic == MAGIC,
         )?;
         expect(
-            4,
+            start(MeshHeader::LENGTH),
             Expected::Exactly("bytes in all", length),
-            stated_length,
-            stated_length == length,
+            header.length,
+            header.length == length,
         )?;
-        expect(8, Expected::AtLeast("chunks", 1), chunks, chunks >= 1)?;
         expect(
-            20,
-            Expected::AtMost("radius in 2^-14", MAX_RADIUS),
-            radius,
-            radius <= MAX_RADIUS,
+            start(MeshHeader::CHUNKS),
+            Expected::AtLeast("chunks", 1),
+            header.chunks,
+            header.chunks >= 1,
         )?;
-        expect_zeros(28, [reserved])?;
+        expect(
+            start(MeshHeader::RADIUS),
+            Expected::AtMost("radius in 2^-14", MAX_RADIUS),
+            header.radius,
+            header.radius <= MAX_RADIUS,
+        )?;
+        let known = Attribute::ALL.iter().fold(0, |bits, one| bits | one.bit());
+        let unknown = header.attributes & !known;
+        expect(
+            start(MeshHeader::ATTRIBUTES),
+            Expected::Exactly("(reserved)", 0),
+            unknown,
+            unknown == 0,
+        )?;
 
-        let mut walk = Walk {
-            rest: records,
-            offset: HEADER as u32,
-        };
+        let mut walk = Walk::new(records);
         let (mut seen_vertices, mut seen_triangles) = (0, 0);
-        for _ in 0..chunks {
+        for _ in 0..header.chunks {
             let (offset, chunk) = walk.chunk()?;
-            chunk.check(offset, radius)?;
+            chunk.check(offset, header.radius)?;
             seen_vertices += chunk.vertices.len() as u32;
             seen_triangles += chunk.triangles.len() as u32;
         }
-        let rest = walk.rest.len() as u32 * RECORD as u32;
+        let arrays = walk.rest;
+        let [expected, rest] = [array_words(header.attributes, seen_vertices), arrays.len()]
+            .map(|words| (words * WORD) as u32);
         expect(
             walk.offset,
-            Expected::Exactly("bytes after the last chunk", 0),
+            Expected::Exactly("bytes after the last chunk", expected),
             rest,
-            rest == 0,
+            rest == expected,
         )?;
         expect(
-            12,
+            start(MeshHeader::VERTICES),
             Expected::Exactly("vertices, as the chunks have", seen_vertices),
-            vertices,
-            vertices == seen_vertices,
+            header.vertices,
+            header.vertices == seen_vertices,
         )?;
         expect(
-            16,
+            start(MeshHeader::TRIANGLES),
             Expected::Exactly("triangles, as the chunks have", seen_triangles),
-            triangles,
-            triangles == seen_triangles,
+            header.triangles,
+            header.triangles == seen_triangles,
         )?;
+        let (records, _) = records
+            .split_at_checked(records.len() - arrays.len())
+            .unwrap_or_default();
         Ok(Self {
             bytes,
             records,
-            vertices,
-            triangles,
-            radius,
+            arrays,
+            attributes: header.attributes,
+            vertices: header.vertices,
+            triangles: header.triangles,
+            radius: header.radius,
         })
     }
 
@@ -169,25 +177,32 @@ impl<'a> Mesh<'a> {
         self.radius
     }
 
-    /// The records of all chunks, including the chunks' headers.
-    pub const fn records(&self) -> &'a [[u8; RECORD]] {
+    /// The records of all chunks, including the chunks' headers, and without the optional attributes behind them: what the triangle
+    /// engine walks.
+    pub const fn records(&self) -> &'a [[u8; WORD]] {
         self.records
+    }
+
+    /// The elements of an optional attribute, one for each vertex of all chunks in their order; `None` if the mesh lacks it.
+    pub fn attribute(&self, attribute: Attribute) -> Option<&'a [u8]> {
+        let before = self.attributes & (attribute.bit() - 1);
+        let at = array_words(before, self.vertices);
+        let elements = self.arrays.get(at..)?.as_flattened();
+        (self.attributes & attribute.bit() != 0)
+            .then(|| elements.get(..self.vertices as usize * attribute.bytes()))?
     }
 
     /// The chunks in order.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk<'a>> + Clone + use<'a> {
-        Chunks(Walk {
-            rest: self.records,
-            offset: HEADER as u32,
-        })
+        Chunks(Walk::new(self.records))
     }
 }
 
 /// A part of a mesh: vertices, and triangles that use these vertices by their indices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Chunk<'a> {
-    vertices: &'a [[u8; RECORD]],
-    triangles: &'a [[u8; RECORD]],
+    vertices: &'a [[u8; WORD]],
+    triangles: &'a [[u8; WORD]],
 }
 
 impl<'a> Chunk<'a> {
@@ -224,12 +239,12 @@ impl<'a> Chunk<'a> {
     /// Checks the records of the chunk. Its header is at byte `offset` of the mesh, whose radius is `radius`.
     fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
         let count = self.vertices.len() as u32;
-        let mut offset = offset + RECORD as u32;
+        let mut offset = offset + WORD as u32;
         for record in self.vertices {
-            let [px, py, pz, .., reserved] = halves(record);
+            let [x, y, z] = Vertex::from_bytes(record).position;
             // Each square is at most 2^30.
-            let squared: u32 = [px, py, pz]
-                .map(|x| u32::from((x as i16).unsigned_abs()).pow(2))
+            let squared: u32 = [x, y, z]
+                .map(|x| u32::from(x.unsigned_abs()).pow(2))
                 .iter()
                 .sum();
             if squared > radius.pow(2) {
@@ -240,96 +255,58 @@ impl<'a> Chunk<'a> {
                     found: radius_needed,
                 });
             }
-            expect_zeros(offset + 14, [reserved.into()])?;
-            offset += RECORD as u32;
+            expect_reserved(offset, record, Vertex::RESERVED)?;
+            offset += WORD as u32;
         }
         for record in self.triangles {
-            let [a, b, c, .., flags] = halves(record);
-            for (place, index) in [(0, a), (2, b), (4, c)] {
+            let places = Triangle::INDICES.step_by(2);
+            for (place, index) in places.zip(Triangle::from_bytes(record).indices) {
                 let index = u32::from(index);
                 expect(
-                    offset + place,
+                    offset + place as u32,
                     Expected::Below("vertices of the chunk, as an index", count),
                     index,
                     index < count,
                 )?;
             }
-            expect_zeros(offset + 14, [flags.into()])?;
-            offset += RECORD as u32;
+            expect_reserved(offset, record, Triangle::RESERVED)?;
+            offset += WORD as u32;
         }
         Ok(())
-    }
-}
-
-/// A vertex.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Vertex {
-    /// Position, s2.14.
-    pub position: [i16; 3],
-    /// Normal, s2.14.
-    pub normal: [i16; 3],
-    /// Colour in RGB565.
-    pub colour: Rgb565,
-}
-
-impl Vertex {
-    /// The vertex with this record in memory.
-    pub fn from_bytes(bytes: &[u8; RECORD]) -> Self {
-        let [px, py, pz, nx, ny, nz, colour, _] = halves(bytes);
-        Self {
-            position: [px, py, pz].map(|x| x as i16),
-            normal: [nx, ny, nz].map(|x| x as i16),
-            colour: Rgb565(colour),
-        }
-    }
-}
-
-/// A triangle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Triangle {
-    /// Indices of the vertices in the chunk, counter-clockwise seen from outside.
-    pub indices: [u16; 3],
-    /// Colour in RGB565.
-    pub colour: Rgb565,
-    /// Normal of the triangle, s2.14.
-    pub normal: [i16; 3],
-    /// Reserved, 0.
-    pub flags: u16,
-}
-
-impl Triangle {
-    /// The triangle with this record in memory.
-    pub fn from_bytes(bytes: &[u8; RECORD]) -> Self {
-        let [a, b, c, colour, nx, ny, nz, flags] = halves(bytes);
-        Self {
-            indices: [a, b, c],
-            colour: Rgb565(colour),
-            normal: [nx, ny, nz].map(|x| x as i16),
-            flags,
-        }
     }
 }
 
 /// Divides the records after the mesh's header into chunks.
 #[derive(Clone)]
 struct Walk<'a> {
-    rest: &'a [[u8; RECORD]],
+    rest: &'a [[u8; WORD]],
     /// Offset of `rest` in bytes from the start of the mesh.
     offset: u32,
 }
 
 impl<'a> Walk<'a> {
+    /// The walk from the first record behind the mesh's header on.
+    const fn new(records: &'a [[u8; WORD]]) -> Self {
+        Self {
+            rest: records,
+            offset: MeshHeader::BYTES as u32,
+        }
+    }
+
     /// Takes the next chunk. Returns the offset of its header in the mesh, and the chunk.
     fn chunk(&mut self) -> Result<(u32, Chunk<'a>), MeshError> {
         let offset = self.offset;
         let Some((header, rest)) = self.rest.split_first() else {
             return Err(MeshError {
                 offset,
-                expected: Expected::AtLeast("bytes for a chunk's header", RECORD as u32),
+                expected: Expected::AtLeast("bytes for a chunk's header", WORD as u32),
                 found: 0,
             });
         };
-        let [vertices, triangles, reserved @ ..] = words::<4>(header);
+        let ChunkHeader {
+            vertices,
+            triangles,
+        } = ChunkHeader::from_bytes(header);
         expect(
             offset,
             Expected::AtLeast("vertices in a chunk", 1),
@@ -342,7 +319,7 @@ impl<'a> Walk<'a> {
             vertices,
             vertices <= MAX_CHUNK_VERTICES,
         )?;
-        expect_zeros(offset + 8, reserved)?;
+        expect_reserved(offset, header, ChunkHeader::RESERVED)?;
         let left = rest.len() as u32;
         let too_short = |at, what, needed, found| MeshError {
             offset: at,
@@ -357,12 +334,12 @@ impl<'a> Walk<'a> {
         ))?;
         let left = rest.len() as u32;
         let (triangles, rest) = rest.split_at_checked(triangles as usize).ok_or(too_short(
-            offset + 4,
+            offset + start(ChunkHeader::TRIANGLES),
             "records for the chunk's triangles",
             triangles,
             left,
         ))?;
-        self.offset += (RECORD * (1 + vertices.len() + triangles.len())) as u32;
+        self.offset += (WORD * (1 + vertices.len() + triangles.len())) as u32;
         self.rest = rest;
         Ok((
             offset,
@@ -387,22 +364,17 @@ impl<'a> Iterator for Chunks<'a> {
     }
 }
 
-/// Returns the first `N` little-endian 32-bit words of `bytes`; words beyond the end are 0.
-fn words<const N: usize>(bytes: &[u8]) -> [u32; N] {
-    let mut words = [0; N];
-    for (word, bytes) in words.iter_mut().zip(bytes.as_chunks().0) {
-        *word = u32::from_le_bytes(*bytes);
-    }
-    words
+/// Words of the arrays of the attributes whose bits are set, for this number of vertices. Each array begins at a word.
+fn array_words(bits: u32, vertices: u32) -> usize {
+    let present = Attribute::ALL.iter().filter(|one| bits & one.bit() != 0);
+    present
+        .map(|one| (vertices as usize * one.bytes()).div_ceil(WORD))
+        .sum()
 }
 
-/// Returns the eight little-endian 16-bit half words of a record.
-fn halves(record: &[u8; RECORD]) -> [u16; RECORD / 2] {
-    let mut halves = [0; RECORD / 2];
-    for (half, bytes) in halves.iter_mut().zip(record.as_chunks().0) {
-        *half = u16::from_le_bytes(*bytes);
-    }
-    halves
+/// Offset of a field in its record.
+const fn start(field: Range<usize>) -> u32 {
+    field.start as u32
 }
 
 fn expect(offset: u32, expected: Expected, found: u32, holds: bool) -> Result<(), MeshError> {
@@ -417,15 +389,22 @@ fn expect(offset: u32, expected: Expected, found: u32, holds: bool) -> Result<()
     }
 }
 
-fn expect_zeros<const N: usize>(offset: u32, reserved: [u32; N]) -> Result<(), MeshError> {
-    match reserved.into_iter().find(|&word| word != 0) {
-        Some(found) => Err(MeshError {
-            offset,
-            expected: Expected::Exactly("(reserved)", 0),
-            found,
-        }),
-        None => Ok(()),
-    }
+/// Checks the reserved field of a record at byte `offset` of the mesh.
+fn expect_reserved(offset: u32, record: &[u8; WORD], field: Range<usize>) -> Result<(), MeshError> {
+    let offset = offset + field.start as u32;
+    let words = record.get(field).unwrap_or_default().chunks(4);
+    let little_endian = |bytes: &[u8]| {
+        let digits = bytes.iter().rev();
+        digits.fold(0, |word, &byte| word << 8 | u32::from(byte))
+    };
+    let found = words.map(little_endian).find(|&word| word != 0);
+    let found = found.unwrap_or(0);
+    expect(
+        offset,
+        Expected::Exactly("(reserved)", 0),
+        found,
+        found == 0,
+    )
 }
 
 /// Reason why bytes are not a mesh.

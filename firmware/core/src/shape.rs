@@ -5,7 +5,8 @@ use core::array;
 use crate::choice::choices;
 use crate::colour::Rgb565;
 use crate::fixed::{Q2_14, Q2_30, Turns};
-use crate::mesh::{HEADER, MAGIC, RECORD};
+use crate::mesh::{ChunkHeader, MAGIC, MeshHeader, Triangle, Vertex};
+use crate::records::WORD;
 use crate::trig::sin_cos_q30;
 use crate::vector::{cross, unit};
 
@@ -30,7 +31,7 @@ choices!(Shape {
 });
 
 /// Number of bytes that is enough for every shape.
-pub const MAX_BYTES: usize = HEADER + RECORD * (1 + 20 * AROUND as usize + 1024);
+pub const MAX_BYTES: usize = MeshHeader::BYTES + WORD * (1 + 20 * AROUND as usize + 1024);
 
 /// Number of vertices around the axis.
 const AROUND: u32 = 32;
@@ -70,6 +71,9 @@ const POLYGONS: [([[i16; 3]; 3], [u8; 3]); 6] = [
         [0x40, 0xE0, 0xE0],
     ),
 ];
+
+/// Words before the first vertex: the headers of the mesh and of its chunk.
+const HEADERS: usize = MeshHeader::BYTES / WORD + 1;
 
 /// A circle about the axis, and the normals at it.
 struct Ring {
@@ -149,7 +153,7 @@ impl Shape {
 
 /// Appends the records of a mesh with one chunk.
 struct Writer<'m> {
-    records: &'m mut [[u8; RECORD]],
+    records: &'m mut [[u8; WORD]],
     vertices: u16,
     triangles: u16,
 }
@@ -202,10 +206,13 @@ impl Writer<'_> {
     }
 
     fn vertex(&mut self, position: [i32; 3], normal: [i32; 3], colour: Rgb565) -> Option<()> {
-        let [x, y, z] = position.map(|x| x as u16);
-        let [nx, ny, nz] = normal.map(|x| x as u16);
-        *self.records.get_mut(3 + usize::from(self.vertices))? =
-            halves([x, y, z, nx, ny, nz, colour.0, 0]);
+        let [position, normal] = [position, normal].map(|vector| vector.map(|x| x as i16));
+        let vertex = Vertex {
+            position,
+            normal,
+            colour,
+        };
+        *self.records.get_mut(HEADERS + usize::from(self.vertices))? = vertex.to_bytes();
         self.vertices += 1;
         Some(())
     }
@@ -217,24 +224,24 @@ impl Writer<'_> {
         let Some(normal) = unit::<14>(cross(along, across)) else {
             return Some(());
         };
-        let colour = self.record(indices[0]).map_or(0, |record| half(record, 6));
-        let [i, j, k] = indices;
-        let [nx, ny, nz] = normal.map(|x| x as u16);
-        let place = 3 + usize::from(self.vertices) + usize::from(self.triangles);
-        *self.records.get_mut(place)? = halves([i, j, k, colour, nx, ny, nz, 0]);
+        let triangle = Triangle {
+            indices,
+            colour: self.written(indices[0]).colour,
+            normal: normal.map(|x| x as i16),
+        };
+        let place = HEADERS + usize::from(self.vertices) + usize::from(self.triangles);
+        *self.records.get_mut(place)? = triangle.to_bytes();
         self.triangles += 1;
         Some(())
     }
 
-    fn record(&self, vertex: u16) -> Option<&[u8; RECORD]> {
-        self.records.get(3 + usize::from(vertex))
+    fn written(&self, vertex: u16) -> Vertex {
+        let record = self.records.get(HEADERS + usize::from(vertex));
+        record.map_or_else(Vertex::default, Vertex::from_bytes)
     }
 
     fn position(&self, vertex: u16) -> [i32; 3] {
-        let record = self.record(vertex);
-        record.map_or([0; 3], |record| {
-            [0, 1, 2].map(|i| i32::from(half(record, i) as i16))
-        })
+        self.written(vertex).position.map(i32::from)
     }
 
     /// Writes the headers. Returns the length of the mesh in bytes.
@@ -247,12 +254,25 @@ impl Writer<'_> {
         let squared = squared.max().unwrap_or(0);
         let root = squared.isqrt();
         let radius = root + u32::from(root * root < squared);
-        let counts = [self.vertices, self.triangles].map(u32::from);
-        let length = HEADER + RECORD * (1 + (counts[0] + counts[1]) as usize);
-        let [first, second, chunk] = self.records.first_chunk_mut()?;
-        *first = words([u32::from_le_bytes(MAGIC), length as u32, 1, counts[0]]);
-        *second = words([counts[1], radius, 0, 0]);
-        *chunk = words([counts[0], counts[1], 0, 0]);
+        let [vertices, triangles] = [self.vertices, self.triangles].map(u32::from);
+        let length = WORD * (HEADERS + (vertices + triangles) as usize);
+        let header = MeshHeader {
+            magic: MAGIC,
+            length: length as u32,
+            chunks: 1,
+            vertices,
+            triangles,
+            radius,
+            checksum: 0,
+            attributes: 0,
+        };
+        let chunk = ChunkHeader {
+            vertices,
+            triangles,
+        };
+        let (first, rest) = self.records.as_flattened_mut().split_first_chunk_mut()?;
+        *first = header.to_bytes();
+        *rest.first_chunk_mut()? = chunk.to_bytes();
         Some(length)
     }
 }
@@ -277,27 +297,4 @@ fn colour(hue: Turns) -> Rgb565 {
         (160 + scaled(cos, 95)) as u8
     };
     Rgb565::from_rgb888([channel(0), channel(1), channel(2)])
-}
-
-fn half(record: &[u8; RECORD], number: usize) -> u16 {
-    let halves = record.as_chunks().0;
-    halves
-        .get(number)
-        .map_or(0, |half| u16::from_le_bytes(*half))
-}
-
-fn halves(numbers: [u16; 8]) -> [u8; RECORD] {
-    let mut record = [0; RECORD];
-    for (bytes, number) in record.as_chunks_mut().0.iter_mut().zip(numbers) {
-        *bytes = number.to_le_bytes();
-    }
-    record
-}
-
-fn words(numbers: [u32; 4]) -> [u8; RECORD] {
-    let mut record = [0; RECORD];
-    for (bytes, number) in record.as_chunks_mut().0.iter_mut().zip(numbers) {
-        *bytes = number.to_le_bytes();
-    }
-    record
 }

@@ -9,6 +9,7 @@
 mod piece;
 
 use glint_core::colour::Rgb565;
+use glint_core::records::segment_end;
 
 use crate::frame_buffer::FrameBuffer;
 use crate::triangle::ScreenVertex;
@@ -48,22 +49,29 @@ pub struct Segment {
 
 impl Segment {
     /// Number of 32-bit words in memory.
-    pub const WORDS: usize = 8;
+    pub const WORDS: usize = 2 * Self::END;
+    /// Number of 32-bit words of an end in memory.
+    const END: usize = segment_end::BITS / 32;
 
     /// The segment in memory (docs/formats/line.md, "Segments in memory").
     #[must_use]
     pub const fn words(&self) -> [u32; Self::WORDS] {
-        let [a, b] = self.ends;
         let (w, bias) = match self.depth {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
-            LineDepth::Tested { bias } => ([a.w, b.w], bias),
+            LineDepth::Tested { bias } => ([self.ends[0].w, self.ends[1].w], bias),
         };
-        let colour = self.colour.0 as u32;
-        #[rustfmt::skip]
-        let words = [
-            a.x as u32, a.y as u32, w[0], colour,
-            b.x as u32, b.y as u32, w[1], bias as u32,
-        ];
+        let side = [self.colour.0, bias];
+        let mut words = [0; Self::WORDS];
+        let mut end = 0;
+        while end < 2 {
+            let start = Self::END * end;
+            // Each field begins a word, and bits beyond it have no effect.
+            words[start + segment_end::X.word()] = self.ends[end].x as u32;
+            words[start + segment_end::Y.word()] = self.ends[end].y as u32;
+            words[start + segment_end::W.word()] = w[end];
+            words[start + segment_end::SIDE.word()] = side[end] as u32;
+            end += 1;
+        }
         words
     }
 
@@ -71,24 +79,22 @@ impl Segment {
     /// has the depth test there, and the same pixels.
     #[must_use]
     pub fn from_words(words: [u32; Self::WORDS]) -> Self {
-        let [ax, ay, aw, colour, bx, by, bw, bias] = words;
-        let end = |x: u32, y: u32, w: u32| {
-            // s12.8 and u18.6.
-            let [x, y] = [x, y].map(|place| (place << 12) as i32 >> 12);
-            ScreenVertex {
-                x,
-                y,
-                w: w & 0xFF_FFFF,
-            }
-        };
+        let [first, second] = [0, segment_end::BITS].map(|start| {
+            let end = ScreenVertex {
+                x: segment_end::X.from(start).signed(&words) as i32,
+                y: segment_end::Y.from(start).signed(&words) as i32,
+                w: segment_end::W.from(start).get(&words) as u32,
+            };
+            (end, segment_end::SIDE.from(start).get(&words) as u16)
+        });
         Self {
-            ends: [end(ax, ay, aw), end(bx, by, bw)],
-            colour: Rgb565(colour as u16),
-            depth: LineDepth::Tested { bias: bias as u16 },
+            ends: [first.0, second.0],
+            colour: Rgb565(first.1),
+            depth: LineDepth::Tested { bias: second.1 },
         }
     }
 
-    /// Header of `segments` segments in memory; it is as long as a segment.
+    /// What precedes `segments` segments in memory, as long as a segment: the header of a chunk with one vertex, and that vertex.
     #[must_use]
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]

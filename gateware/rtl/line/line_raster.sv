@@ -24,7 +24,7 @@ module line_raster (
     output logic                   idle,
     input  wire                    in_valid,
     output logic                   in_ready,
-    input  wire line_pkg::piece_t  in_piece,
+    input  wire records_pkg::piece_t  in_piece,
     output logic                   group_valid,
     input  wire                    group_ready,
     output logic [10:0]            group_row,

@@ -40,7 +40,7 @@ module line_setup (
     input  wire line_pkg::segment_t in_segment,
     output logic                   out_valid,
     input  wire                    out_ready,
-    output line_pkg::piece_t       out_piece
+    output records_pkg::piece_t       out_piece
 );
     // At most one of these bits is 1: a step of the program, the walk along the line, or the end.
     logic [28:0] at;

@@ -122,21 +122,23 @@ module raymarcher #(
     raymarch_pkg::ray_t       ray;
 
     // `cones` is high until all cones of the prepass have ended; then the rays follow. A cone stands for a block of 2^`block`
-    // by 2^`block` pixels, and `fine` means 160 blocks in a line instead of 80. `cleared` is the depth from which the rays of
-    // block `number` start.
+    // by 2^`block` pixels, and `fine` means CONES_ACROSS blocks in a line instead of half as many. `cleared` is the depth from
+    // which the rays of block `number` start.
     logic        cones, fine, generate_rays;
     logic [2:0]  block;
     logic [13:0] cones_left, number;
     logic [22:0] cleared;
 
     // Numbers of the last column, of the last line of a band, and of the last band, from 0. Columns and lines are those of
-    // pixels for rays, and those of blocks for cones; a band of cones has 45 lines of blocks.
+    // pixels for rays, and those of blocks for cones; a band of cones has half of CONES_DOWN lines of blocks.
+    localparam int unsigned CONES_ACROSS = picture_pkg::CONES_ACROSS;
+    localparam int unsigned CONE_LINES   = picture_pkg::CONES_DOWN / 2;
     logic [10:0] column_ends;
     logic [5:0]  line_ends, band_ends;
 
     always_ff @(posedge clk) begin
-        column_ends <= cones ? fine ? 11'd159 : 11'd79 : {stride, 3'd0} - 11'd1;
-        line_ends   <= cones ? 6'd44 : lines - 6'd1;
+        column_ends <= cones ? fine ? 11'(CONES_ACROSS - 1) : 11'(CONES_ACROSS / 2 - 1) : {stride, 3'd0} - 11'd1;
+        line_ends   <= cones ? 6'(CONE_LINES - 1) : lines - 6'd1;
         band_ends   <= cones ? {5'd0, fine} : last_band;
     end
 

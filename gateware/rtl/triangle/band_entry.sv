@@ -39,7 +39,7 @@ module band_entry #(
     output logic                           in_ready,
     input  wire  [9:0]                     in_y0,
     input  wire                            in_odd,
-    input  wire triangle_pkg::descriptor_t in_descriptor,
+    input  wire records_pkg::descriptor_t in_descriptor,
     input  wire  [PLANES_BITS-1:0]         in_planes,
     output logic                           out_valid,
     input  wire                            out_ready,
@@ -55,7 +55,7 @@ module band_entry #(
 
     // Stages of a triangle: first its passes (`busy`), then three clocks in which the last products arrive (`ending`), then the
     // held stage, in which it waits for the output register.
-    triangle_pkg::descriptor_t triangle;
+    records_pkg::descriptor_t triangle;
     logic [9:0]  y0;
     logic        busy, dropped, odd, held_valid, held_odd, advance, moved, out_free;
     logic [2:0]  pass;
@@ -182,7 +182,7 @@ module band_entry #(
             placed.beside_fails[k] <= at_lane_7 && beside[33] || !at_lane_7 && placed.beside_fails[k];
         end
 
-        triangle_pkg::steps_t steps;
+        records_pkg::steps_t steps;
 
         assign steps = triangle.steps[k];
         assign step_x[k] = steps.x;

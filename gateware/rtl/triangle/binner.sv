@@ -12,7 +12,7 @@
 // these changes rare.
 //
 // With LINES, `in_line` selects `in_piece` as the input: a piece of a line, which is in one band and replaces a
-// triangle's descriptor (line_pkg::stored_t). `in_line` must hold from `restart` until `done`.
+// triangle's descriptor (records_pkg::stored_piece_t). `in_line` must hold from `restart` until `done`.
 //
 // Throughput 6 clocks a descriptor, or 9 with SMOOTH, and 2 more for each band after the first. A descriptor is written from the
 // input, so it moves a clock after its last word. `in_ready` is a register.
@@ -41,7 +41,7 @@ module binner #(
     output logic                    done,
     output logic                    idle,
     output logic                    full,
-    // Size code of the picture: a band has 45, 24 or 12 rows for codes 0, 1 and 2.
+    // Size code of the picture.
     input  wire  [1:0]              size,
     input  wire  [ADDRESS_BITS-1:0] descriptor_base,
     input  wire  [COUNT_BITS-1:0]   descriptor_limit,
@@ -53,10 +53,10 @@ module binner #(
     output logic [COUNT_BITS-1:0]   exceptions,
     input  wire                     in_valid,
     output logic                    in_ready,
-    input  wire  triangle_pkg::descriptor_t       in_descriptor,
+    input  wire  records_pkg::descriptor_t       in_descriptor,
     input  wire  [PLANES_BITS-1:0]  in_planes,
     input  wire                     in_line,
-    input  wire  line_pkg::piece_t  in_piece,
+    input  wire  records_pkg::piece_t  in_piece,
     input  wire                     exception_valid,
     output logic                    exception_ready,
     input  wire  [31:0]             exception_number,
@@ -118,8 +118,10 @@ module binner #(
         // The words that a piece does not need repeat its lower bits, so that a word has as few sources as possible.
         always_comb begin
             word_data = in_line ? piece[127:0] : words[128 * word +: 128];
-            if (in_line && word[1]) word_data[127:64] = {piece[181:166], line_pkg::MARK, 8'd0, piece[165:128]};
+            if (in_line && word[1]) word_data[127:64] = {in_piece.colour, records_pkg::PIECE_MARK, 8'd0, piece[165:128]};
         end
+
+        wire _unused = &{1'b0, piece};
     end else begin : triangles_alone
         assign word_data = words[128 * word +: 128];
         assign first_row = in_descriptor.top;
@@ -146,20 +148,32 @@ module binner #(
     end
 
     // The band of a row, two clocks later: first that of the first row of the descriptor at the input, when `top_comes[2]` is high,
-    // and from the first LOOK clock on that of its last row. Bands of 24 and 12 rows have 3 times 8 and 4 rows; v/3 is
-    // v·171/512, which is exact for 8 bits, and 171 is 2·5·17 + 1.
+    // and from the first LOOK clock on that of its last row. The few bands of the smallest picture are told by comparisons. A band
+    // of the others has 3·2^n rows (glint_soc/constants.py), so that one division by 3 serves them all: v/3 is v·171/512, which is
+    // exact for 8 bits, and 171 is 2·5·17 + 1.
+    localparam int unsigned SMALL_ROWS   = band_pkg::lines(2'd0);
+    localparam int unsigned SMALL_BANDS  = picture_pkg::HEIGHT / SMALL_ROWS;
+    localparam int unsigned SMALL_BITS   = $clog2(SMALL_BANDS);
+    localparam int unsigned MEDIUM_SHIFT = $clog2(band_pkg::lines(2'd1) / 3);
+    localparam int unsigned LARGE_SHIFT  = $clog2(band_pkg::lines(2'd2) / 3);
+
     logic [9:0]           row;
     logic [7:0]           parts, parts_1;
     logic [10:0]          by_5;
     logic [14:0]          by_85;
     logic [15:0]          by_171;
     logic [2:0]           top_comes;
-    logic [1:0]           band_of_45;
+    logic [SMALL_BITS-1:0] small_bands, small_band;
     logic [BAND_BITS-1:0] row_band;
 
-    assign parts  = size == 2'd1 ? 8'(row[9:3]) : row[9:2];
+    assign parts  = size == 2'd1 ? 8'(row >> MEDIUM_SHIFT) : 8'(row >> LARGE_SHIFT);
     assign by_5   = 11'(parts) + {1'b0, parts, 2'b0};
     assign by_171 = 16'(parts_1) + {by_85, 1'b0};
+
+    always_comb begin
+        small_bands = '0;
+        for (int unsigned i = 1; i < SMALL_BANDS; i++) small_bands = small_bands + SMALL_BITS'(row >= 10'(i * SMALL_ROWS));
+    end
 
     always_ff @(posedge clk) begin
         if (state == IDLE) row <= first_row;
@@ -167,8 +181,8 @@ module binner #(
         top_comes  <= {top_comes[1], top_comes[0] && !descriptors_full, state == IDLE && in_valid && !in_ready};
         parts_1    <= parts;
         by_85      <= 15'(by_5) + {by_5, 4'b0};
-        band_of_45 <= 2'(row >= 10'd45) + 2'(row >= 10'd90) + 2'(row >= 10'd135);
-        row_band   <= size == 2'd0 ? BAND_BITS'(band_of_45) : by_171[9 +: BAND_BITS];
+        small_band <= small_bands;
+        row_band   <= size == 2'd0 ? BAND_BITS'(small_band) : by_171[9 +: BAND_BITS];
     end
 
     // Values that are read for `band` are valid a clock after `band`. `room` is the number of entries of a full list, a power of

@@ -50,7 +50,7 @@ module descriptor_cache #(
     output logic                      out_valid,
     input  wire                       out_ready,
     output logic                      out_end,
-    output triangle_pkg::descriptor_t out_descriptor,
+    output records_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
     localparam int unsigned WORDS     = 3 << SMOOTH;

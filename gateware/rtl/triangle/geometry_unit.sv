@@ -58,7 +58,7 @@ module geometry_unit #(
     output triangle_registers_pkg::results_t results,
     output triangle_registers_pkg::events_t events
 );
-    // Number of bits of a triangle's colour and normal together, 16 and 3 times 16.
+    // Number of bits of a triangle's colour and normal together.
     localparam int unsigned SIDE_BITS = 64;
     // Number of bits of the light of a vertex: a triangle_pkg::light_t, or without SMOOTH one bit in its place, 0.
     localparam int unsigned LIGHT_BITS  = SMOOTH ? 41 : 1;
@@ -103,7 +103,8 @@ module geometry_unit #(
     end
 
     logic                    word_valid, word_ready, triangle_valid, triangle_ready, chunk;
-    logic [127:0]            triangle;
+    records_pkg::triangle_t  triangle;
+    records_pkg::vertex_t    vertex;
     logic [ADDRESS_BITS-1:0] vertex_base, mesh_first;
     // Address of the first word after the mesh.
     logic [ADDRESS_BITS:0]   mesh_past;
@@ -122,15 +123,18 @@ module geometry_unit #(
 
     // The words of a mesh are triangles or, in a pass of lines, halves of segments.
     logic             in_lines, half_ready, piece_valid, piece_ready;
-    line_pkg::piece_t piece;
+    records_pkg::piece_t piece;
 
     assign in_lines       = LINES && flags.lines;
     assign triangle_valid = word_valid && !in_lines;
     assign word_ready     = in_lines ? half_ready : triangle_ready;
 
     if (LINES) begin : lines
-        line_pkg::segment_t segment;
-        logic               has_first, segment_ready;
+        line_pkg::segment_t        segment;
+        records_pkg::segment_end_t segment_end;
+        logic                      has_first, segment_ready;
+
+        assign segment_end = triangle;
 
         assign half_ready = !has_first || segment_ready;
 
@@ -138,18 +142,20 @@ module geometry_unit #(
         always_ff @(posedge clk) begin
             if (in_lines && word_valid && half_ready) has_first <= !has_first;
             if (!has_first) {segment.colour, segment.a_w, segment.a_y, segment.a_x}
-                <= {triangle[111:96], triangle[87:64], triangle[51:32], triangle[19:0]};
+                <= {segment_end.side, segment_end.w, segment_end.y, segment_end.x};
 
             if (rst || restart || clear) has_first <= 1'b0;
         end
 
-        assign {segment.b_w, segment.b_y, segment.b_x} = {triangle[87:64], triangle[51:32], triangle[19:0]};
+        assign {segment.b_w, segment.b_y, segment.b_x} = {segment_end.w, segment_end.y, segment_end.x};
 
         line_setup line_setup (
-            .clk, .rst(rst || restart), .size(flags.size), .bias(triangle[111:96]),
+            .clk, .rst(rst || restart), .size(flags.size), .bias(segment_end.side),
             .in_valid(has_first && word_valid), .in_ready(segment_ready), .in_segment(segment),
             .out_valid(piece_valid), .out_ready(piece_ready), .out_piece(piece)
         );
+
+        wire _unused = &{1'b0, segment_end};
     end else begin : triangles_alone
         assign {half_ready, piece_valid, piece} = '0;
 
@@ -169,13 +175,14 @@ module geometry_unit #(
     vertex_cache #(.SIDE_BITS(SIDE_BITS), .VERTEX_BITS(VERTEX_BITS)) vertex_cache (
         .clk, .rst(rst || restart), .clear(chunk), .idle(),
         .in_valid(triangle_valid), .in_ready(triangle_ready),
-        .in_indices(triangle[47:0]), .in_side(triangle[48 +: SIDE_BITS]),
+        .in_indices(triangle.indices), .in_side({triangle.normal, triangle.colour}),
         .fetch_valid, .fetch_ready, .fetch_index,
         .projected_valid, .projected_ready, .projected_vertex(shaded),
         .out_valid(placed_valid), .out_ready(placed_ready), .out_vertices(cached), .out_side(placed_side)
     );
     /* verilator lint_on PINCONNECTEMPTY */
 
+    assign vertex       = data[128 +: 128];
     assign ask_valid[1] = fetch_valid;
     assign fetch_ready  = ask_ready[1];
     assign ask_addr[ADDRESS_BITS +: ADDRESS_BITS] = vertex_base + ADDRESS_BITS'(fetch_index);
@@ -186,7 +193,7 @@ module geometry_unit #(
         .tx(view.tx), .ty(view.ty), .tz(view.tz), .near_z(view.near_z),
         .centre_x(width[10:1]), .centre_y({1'b0, height[9:1]}),
         .depth_mantissa(view.depth_mantissa), .depth_exponent(view.depth_exponent),
-        .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(data[128 +: 48]),
+        .in_valid(data_valid[1]), .in_ready(data_ready[1]), .in_position(vertex.position),
         .out_valid(projected_valid), .out_ready(projected_ready), .out_vertex(projected)
     );
 
@@ -200,7 +207,7 @@ module geometry_unit #(
         vertex_light vertex_light (
             .clk, .rst(rst || restart), .cull_back(flags.cull), .row_light(view.row_light),
             .light_colour(parameters.light_colour), .ambient(parameters.ambient), .take(data_valid[1] && data_ready[1]),
-            .in_normal(data[128 + 48 +: 48]), .in_colour(flags.recolour ? parameters.colour : data[128 + 96 +: 16]),
+            .in_normal(vertex.normal), .in_colour(flags.recolour ? parameters.colour : vertex.colour),
             .give(projected_valid && projected_ready), .out_light(projected_light)
         );
 
@@ -229,7 +236,7 @@ module geometry_unit #(
     );
 
     logic        descriptor_valid, descriptor_ready, culled;
-    triangle_pkg::descriptor_t descriptor;
+    records_pkg::descriptor_t descriptor;
     logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
     setup #(.SMOOTH(SMOOTH)) setup (
@@ -326,7 +333,7 @@ module geometry_unit #(
         events.vertices        = fetch_valid && fetch_ready;
     end
 
-    wire _unused = &{1'b0, triangle[127:112], data[255:176], parameters};
+    wire _unused = &{1'b0, triangle, vertex, parameters};
 endmodule
 
 `default_nettype wire

@@ -49,7 +49,7 @@ module list_reader #(
     output logic                      out_valid,
     input  wire                       out_ready,
     output logic                      out_end,
-    output triangle_pkg::descriptor_t out_descriptor,
+    output records_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
     localparam int unsigned JOBS = 8;

@@ -38,6 +38,10 @@ module mesh_walk #(
     input  wire                     out_ready,
     output logic [127:0]            out_triangle
 );
+    records_pkg::chunk_t read_header;
+
+    assign read_header = data;
+
     // Bits of counts, and of sums of an address and two counts. Values from memory may be arbitrary: a larger count is `wild`, and
     // the sums of others do not wrap around.
     localparam int unsigned COUNT_BITS = ADDRESS_BITS + 1;
@@ -77,9 +81,9 @@ module mesh_walk #(
             end
             ASK: if (asked) state <= HEADER;
             HEADER: begin
-                vertices  <= data[0 +: COUNT_BITS];
-                triangles <= data[32 +: COUNT_BITS];
-                too_many  <= data[31:COUNT_BITS] != '0 || data[63:32+COUNT_BITS] != '0;
+                vertices  <= read_header.vertices[COUNT_BITS-1:0];
+                triangles <= read_header.triangles[COUNT_BITS-1:0];
+                too_many  <= (read_header.vertices | read_header.triangles) >> COUNT_BITS != '0;
                 if (data_valid) state <= LOCATE;
             end
             LOCATE: begin
@@ -119,6 +123,8 @@ module mesh_walk #(
             error <= 1'b0;
         end
     end
+
+    wire _unused = &{1'b0, read_header};
 endmodule
 
 `default_nettype wire

@@ -16,7 +16,7 @@
 // until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
 //
-// With LINES, a descriptor may be a piece of a line (line_pkg::stored_t). Triangles and pieces are drawn in the order of the lists:
+// With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of the lists:
 // a piece after triangles waits until their last group is taken, about 30 clocks, and so does a triangle after pieces.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
@@ -175,7 +175,7 @@ module raster_unit #(
 
     if (TRIANGLES) begin : triangles
         logic        item_valid, item_ready, band_ends, triangle_valid, triangle_ready, raster_idle;
-        triangle_pkg::descriptor_t descriptor;
+        records_pkg::descriptor_t descriptor;
         logic [(SMOOTH ? 289 : 1)-1:0] planes;
 
         // The first row and the parity of the band whose triangles are read, which is the band being drawn or the next one.
@@ -228,11 +228,11 @@ module raster_unit #(
             .group_column(drawn_column), .group_mask(drawn_mask), .group_codes(drawn_codes), .group_colours(drawn_colours)
         );
         if (LINES) begin : lines
-            line_pkg::stored_t stored;
+            records_pkg::stored_piece_t stored;
             logic              piece_valid, piece_ready;
 
             assign stored  = descriptor;
-            assign is_line = stored.mark == line_pkg::MARK;
+            assign is_line = stored.mark == records_pkg::PIECE_MARK;
 
             // The descriptor stays until the clock after its piece is taken, so that no path leads from the walk along a line to
             // list_reader.

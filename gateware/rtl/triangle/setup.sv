@@ -59,7 +59,7 @@ module setup #(
     input  wire  [2:0][LIGHT_BITS-1:0] in_light,
     output logic             out_valid,
     input  wire              out_ready,
-    output triangle_pkg::descriptor_t out_descriptor,
+    output records_pkg::descriptor_t out_descriptor,
     output logic [PLANES_BITS-1:0]    out_planes
 );
     // Values that pass through all stages unchanged; x21 and y12 are the steps of edge 1.
@@ -319,7 +319,7 @@ module setup #(
         wire _unused = &{1'b0, smooth, first_lit};
     end
 
-    triangle_pkg::descriptor_t descriptor;
+    records_pkg::descriptor_t descriptor;
 
     always_comb begin
         descriptor              = '0;

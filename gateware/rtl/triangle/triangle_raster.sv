@@ -41,7 +41,7 @@ module triangle_raster #(
     output logic                           triangle_ready,
     input  wire  [9:0]                     triangle_y0,
     input  wire                            triangle_odd,
-    input  wire triangle_pkg::descriptor_t triangle_descriptor,
+    input  wire records_pkg::descriptor_t triangle_descriptor,
     input  wire  [PLANES_BITS-1:0]         triangle_planes,
     // Groups.
     output logic                           group_valid,

@@ -241,7 +241,7 @@ module walker #(
         end
 
         for (genvar k = 0; k < 3; k++) begin : channels
-            triangle_pkg::plane_t plane;
+            records_pkg::plane_t plane;
 
             assign plane = planes[96 * k +: 96];
 

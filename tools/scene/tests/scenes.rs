@@ -411,15 +411,6 @@ fn parts_of_the_firmware_follow_from_the_commands() {
     }
 }
 
-/// The bits of `Block` are those of the SoC's description, which numbers the blocks in the text of the register.
-#[test]
-fn the_blocks_have_the_bits_of_the_gateware() {
-    let page = fs::read_to_string(root().join("docs/registers.md")).unwrap();
-    let bits = Block::ALL.map(|block| format!("{} `{block}`", block.bit().trailing_zeros()));
-    let text = format!("a bit each: {}.", bits.join(", "));
-    assert!(page.contains(&text), "docs/registers.md lacks: {text}");
-}
-
 #[test]
 fn several_scenes_need_what_each_needs() {
     let scenes = ["menger", "wireframe", "spheres"].map(|name| built_in(name).unwrap());

@@ -1,6 +1,7 @@
 //! Meshes of triangles that share no vertices, as bytes of the mesh format (docs/formats/mesh.md, "Mesh in memory").
 
 use glint_core::camera::View;
+use glint_core::mesh::{self, ChunkHeader, MeshHeader, Rgb565, Vertex};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -26,30 +27,31 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
         // A chunk must have at least one vertex, so a chunk without triangles gets an unused vertex.
         let count = (3 * chunk.len()).max(1);
         vertices += count;
-        for word in [count as u32, chunk.len() as u32, 0, 0] {
-            body.extend(word.to_le_bytes());
-        }
+        let header = ChunkHeader {
+            vertices: count as u32,
+            triangles: chunk.len() as u32,
+        };
+        body.extend(header.to_bytes());
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
         // Vertices get random normals of any length and random colours; both matter only for smooth shading.
         let mut random = Pcg64Mcg::new(count as u128);
-        for corner in corners.chain(std::iter::repeat([0; 3])).take(count) {
-            corner.iter().for_each(|c| body.extend(c.to_le_bytes()));
+        for position in corners.chain(std::iter::repeat([0; 3])).take(count) {
             let reach = [1 << 7, 1 << 13, i16::MAX][random.random_range(0..3)];
-            for _ in 0..3 {
-                body.extend(random.random_range(-reach..=reach).to_le_bytes());
-            }
-            body.extend(random.random::<u16>().to_le_bytes());
-            body.extend([0; 2]);
+            let vertex = Vertex {
+                position,
+                normal: [(); 3].map(|()| random.random_range(-reach..=reach)),
+                colour: Rgb565(random.random()),
+            };
+            body.extend(vertex.to_bytes());
         }
         for (number, (corners, colour)) in (0_u16..).zip(*chunk) {
-            for index in 0..3 {
-                body.extend((3 * number + index).to_le_bytes());
-            }
-            body.extend(colour.to_le_bytes());
-            // The normal of a triangle only dims its colour, so any vector may be used: here the position of a corner.
-            let normal = corners[0];
-            normal.iter().for_each(|c| body.extend(c.to_le_bytes()));
-            body.extend([0; 2]);
+            let triangle = mesh::Triangle {
+                indices: [0, 1, 2].map(|corner| 3 * number + corner),
+                colour: Rgb565(*colour),
+                // The normal of a triangle only dims its colour, so any vector may be used: here the position of a corner.
+                normal: corners[0],
+            };
+            body.extend(triangle.to_bytes());
         }
     }
     let radius = triangles
@@ -59,21 +61,17 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
         .fold(0.0, f64::max)
         .sqrt()
         .ceil();
-    let mut bytes = b"GLM2".to_vec();
-    let length = 32 + body.len();
-    for word in [
-        length,
-        chunks.len(),
-        vertices,
-        triangles.len(),
-        radius as usize,
-        0,
-        0,
-    ] {
-        bytes.extend((word as u32).to_le_bytes());
-    }
-    bytes.extend(body);
-    bytes
+    let header = MeshHeader {
+        magic: mesh::MAGIC,
+        length: (MeshHeader::BYTES + body.len()) as u32,
+        chunks: chunks.len() as u32,
+        vertices: vertices as u32,
+        triangles: triangles.len() as u32,
+        radius: radius as u32,
+        checksum: 0,
+        attributes: 0,
+    };
+    [header.to_bytes().to_vec(), body].concat()
 }
 
 /// Camera at (0, -2, 0) that looks along +y: a point (x, y, z) appears at the distance y + 2, farther right for larger x,

@@ -6,7 +6,6 @@
 //! does not depend on the time, the machine or the order in which LiteX collects the parts: the same SoC gives the same bytes.
 
 mod description;
-mod machine;
 mod markdown;
 mod rust;
 mod soc;
@@ -19,7 +18,7 @@ use anyhow::{Context, Result};
 use crate::{generated, paths};
 use soc::Soc;
 
-/// Generates `firmware/litex-pac/src/generated.rs`, `firmware/core/src/machine.rs` and `docs/registers.md` from the virtual board's SoC.
+/// Generates `firmware/litex-pac/src/generated.rs` and `docs/registers.md` from the virtual board's SoC.
 /// With `check` nothing is written: the files must equal the generated text.
 ///
 /// # Errors
@@ -34,7 +33,6 @@ pub fn generate(check: bool) -> Result<()> {
     .with_context(|| format!("joining the SoC's descriptions in {}", built.display()))?;
     let outputs = [
         ("firmware/litex-pac/src/generated.rs", rust::print(&soc)?),
-        ("firmware/core/src/machine.rs", machine::print(&soc.machine)),
         ("docs/registers.md", markdown::print(&soc)),
     ];
     generated::write(&outputs, "cargo xtask pac", check)

@@ -4,9 +4,10 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::{
-    CHECKSUM, CONTENTS, ENTRY, FIRMWARE, FlashError, HEADER, Image, Kind, MAGIC, MAX_FIRMWARE,
-    MAX_ITEMS, list_checksum,
+    CONTENTS, FIRMWARE, FlashError, Image, Kind, MAGIC, MAX_FIRMWARE, MAX_ITEMS, list_checksum,
+    list_end,
 };
+use crate::records::{FirmwareHeader, FlashEntry, FlashHeader, WORD};
 use crate::wire::crc32;
 
 /// An item to encode.
@@ -66,9 +67,11 @@ pub fn encode(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec
     }
     let mut image = bitstream.to_vec();
     image.resize(FIRMWARE, 0xff);
-    for word in [firmware.len() as u32, crc32(firmware)] {
-        image.extend(word.to_le_bytes());
-    }
+    let header = FirmwareHeader {
+        length: firmware.len() as u32,
+        checksum: crc32(firmware),
+    };
+    image.extend(header.to_bytes());
     image.extend(firmware);
     image.resize(CONTENTS, 0xff);
     image.extend(contents(pieces));
@@ -77,27 +80,34 @@ pub fn encode(bitstream: &[u8], firmware: &[u8], pieces: &[Piece]) -> Result<Vec
 }
 
 fn contents(pieces: &[Piece]) -> Vec<u8> {
-    let list = HEADER + pieces.len() * ENTRY;
-    let mut bytes = MAGIC.to_vec();
-    bytes.resize(HEADER, 0);
+    let list = list_end(pieces.len());
+    let mut bytes = alloc::vec![0; FlashHeader::BYTES];
     for piece in pieces {
-        let length = piece.bytes.len() as u32;
-        for word in [piece.kind as u32, length, crc32(&piece.bytes), 0] {
-            bytes.extend(word.to_le_bytes());
+        // A name that is too long has no end here, and the check refuses it.
+        let mut name = [0; FlashEntry::NAME.end - FlashEntry::NAME.start];
+        for (to, byte) in name.iter_mut().zip(piece.name.as_bytes()) {
+            *to = *byte;
         }
-        let mut name = piece.name.as_bytes().to_vec();
-        // A longer name has no end, and the check refuses it.
-        name.resize(ENTRY - HEADER, 0);
-        bytes.extend(name);
+        let entry = FlashEntry {
+            kind: piece.kind as u32,
+            length: piece.bytes.len() as u32,
+            checksum: crc32(&piece.bytes),
+            name,
+        };
+        bytes.extend(entry.to_bytes());
     }
     for piece in pieces {
-        bytes.resize(bytes.len().next_multiple_of(HEADER), 0xff);
+        bytes.resize(bytes.len().next_multiple_of(WORD), 0xff);
         bytes.extend(&piece.bytes);
     }
-    let [length, count] = [bytes.len() as u32, pieces.len() as u32].map(u32::to_le_bytes);
-    bytes[4..8].copy_from_slice(&length);
-    bytes[8..CHECKSUM].copy_from_slice(&count);
-    let checksum = list_checksum(&bytes, list);
-    bytes[CHECKSUM..HEADER].copy_from_slice(&checksum.to_le_bytes());
+    let mut header = FlashHeader {
+        magic: MAGIC,
+        length: bytes.len() as u32,
+        items: pieces.len() as u32,
+        checksum: 0,
+    };
+    bytes[..FlashHeader::BYTES].copy_from_slice(&header.to_bytes());
+    header.checksum = list_checksum(&bytes, list);
+    bytes[..FlashHeader::BYTES].copy_from_slice(&header.to_bytes());
     bytes
 }

@@ -3,7 +3,11 @@
 use alloc::vec::Vec;
 use core::fmt;
 
-use super::{HEADER, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, RECORD, Rgb565, Vertex, set_checksum};
+use super::{
+    Attribute, ChunkHeader, MAGIC, MAX_BYTES, MAX_CHUNK_VERTICES, MeshHeader, Rgb565, Triangle,
+    Vertex, set_checksum,
+};
+use crate::records::WORD;
 
 /// A triangle of an indexed mesh of any size.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,11 +28,30 @@ pub struct IndexedTriangle {
 /// # Errors
 /// The mesh has no vertex, a triangle uses a missing vertex, or the encoded mesh exceeds [`MAX_BYTES`].
 pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<u8>, EncodeError> {
-    let mut writer = Writer::default();
+    encode_with(vertices, triangles, &[])
+}
+
+/// Encodes an indexed mesh with optional attributes, in the order of their numbers: for each the elements of all vertices. Missing
+/// elements are 0.
+///
+/// # Errors
+/// Those of [`encode`].
+pub fn encode_with(
+    vertices: &[Vertex],
+    triangles: &[IndexedTriangle],
+    attributes: &[(Attribute, &[u8])],
+) -> Result<Vec<u8>, EncodeError> {
+    let mut writer = Writer {
+        arrays: attributes
+            .iter()
+            .map(|&(attribute, elements)| (attribute, elements, Vec::new()))
+            .collect(),
+        ..Writer::default()
+    };
     // For each vertex of the mesh: its index in the present chunk; `None` if the chunk does not have the vertex.
     let mut local = alloc::vec![None; vertices.len()];
     let mut used: Vec<u32> = Vec::new();
-    let mut records: Vec<[u8; RECORD]> = Vec::new();
+    let mut records: Vec<[u8; WORD]> = Vec::new();
     for (number, triangle) in triangles.iter().enumerate() {
         let new = triangle
             .indices
@@ -53,10 +76,12 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
                 (used.len() - 1) as u16
             });
         }
-        let normal = triangle.normal.map(|x| x as u16);
-        records.push(record(
-            indices.into_iter().chain([triangle.colour.0]).chain(normal),
-        ));
+        let record = Triangle {
+            indices,
+            colour: triangle.colour,
+            normal: triangle.normal,
+        };
+        records.push(record.to_bytes());
     }
     if used.is_empty() {
         if vertices.is_empty() {
@@ -68,41 +93,37 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     Ok(writer.finish())
 }
 
-/// Makes a record of little-endian 16-bit half words, padded with zeros.
-fn record(halves: impl IntoIterator<Item = u16>) -> [u8; RECORD] {
-    let mut record = [0; RECORD];
-    for (bytes, half) in record.as_chunks_mut().0.iter_mut().zip(halves) {
-        *bytes = half.to_le_bytes();
-    }
-    record
-}
-
 /// The encoded chunks, and the sums over all chunks that the mesh's header needs.
 #[derive(Default)]
-struct Writer {
-    records: Vec<[u8; RECORD]>,
+struct Writer<'a> {
+    records: Vec<[u8; WORD]>,
+    /// For each attribute the elements of the mesh, and those of the vertices of the chunks.
+    arrays: Vec<(Attribute, &'a [u8], Vec<u8>)>,
     chunks: u32,
     vertices: u32,
     triangles: u32,
     squared_radius: u32,
 }
 
-impl Writer {
+impl Writer<'_> {
     fn chunk(
         &mut self,
         vertices: &[Vertex],
         used: &[u32],
-        triangles: &[[u8; RECORD]],
+        triangles: &[[u8; WORD]],
     ) -> Result<(), EncodeError> {
         let records = self.records.len() + 1 + used.len() + triangles.len();
-        let bytes = HEADER + RECORD * records;
-        if bytes > MAX_BYTES as usize {
+        let arrays: usize = (self.arrays.iter())
+            .map(|(attribute, _, array)| array.len() + attribute.bytes() * used.len() + WORD)
+            .sum();
+        if MeshHeader::BYTES + WORD * records + arrays > MAX_BYTES as usize {
             return Err(EncodeError::TooLarge);
         }
-        let mut header = [0; RECORD];
-        header[..4].copy_from_slice(&(used.len() as u32).to_le_bytes());
-        header[4..8].copy_from_slice(&(triangles.len() as u32).to_le_bytes());
-        self.records.push(header);
+        let header = ChunkHeader {
+            vertices: used.len() as u32,
+            triangles: triangles.len() as u32,
+        };
+        self.records.push(header.to_bytes());
         for &index in used {
             let vertex = &vertices[index as usize];
             let squared = vertex
@@ -111,34 +132,43 @@ impl Writer {
                 .map(|&x| u32::from(x.unsigned_abs()).pow(2))
                 .sum();
             self.squared_radius = self.squared_radius.max(squared);
-            let vectors = [vertex.position, vertex.normal];
-            let halves = vectors.into_iter().flatten().map(|x| x as u16);
-            self.records.push(record(halves.chain([vertex.colour.0])));
+            self.records.push(vertex.to_bytes());
+            for (attribute, elements, array) in &mut self.arrays {
+                let bytes = attribute.bytes();
+                let element = elements.chunks_exact(bytes).nth(index as usize);
+                match element {
+                    Some(element) => array.extend(element),
+                    None => array.resize(array.len() + bytes, 0),
+                }
+            }
         }
         self.records.extend(triangles);
         self.chunks += 1;
-        self.vertices += used.len() as u32;
-        self.triangles += triangles.len() as u32;
+        self.vertices += header.vertices;
+        self.triangles += header.triangles;
         Ok(())
     }
 
     fn finish(self) -> Vec<u8> {
         let floor = self.squared_radius.isqrt();
-        let radius = floor + u32::from(floor.pow(2) < self.squared_radius);
-        let length = (HEADER + RECORD * self.records.len()) as u32;
-        let header = [
-            length,
-            self.chunks,
-            self.vertices,
-            self.triangles,
-            radius,
-            0,
-            0,
-        ];
-        let mut bytes = Vec::with_capacity(length as usize);
-        bytes.extend(MAGIC);
-        bytes.extend(header.into_iter().flat_map(u32::to_le_bytes));
-        bytes.extend(self.records.as_flattened());
+        let mut body = self.records.into_flattened();
+        for (_, _, array) in &self.arrays {
+            body.extend(array);
+            body.resize(body.len().next_multiple_of(WORD), 0);
+        }
+        let header = MeshHeader {
+            magic: MAGIC,
+            length: (MeshHeader::BYTES + body.len()) as u32,
+            chunks: self.chunks,
+            vertices: self.vertices,
+            triangles: self.triangles,
+            radius: floor + u32::from(floor.pow(2) < self.squared_radius),
+            checksum: 0,
+            attributes: (self.arrays.iter())
+                .fold(0, |bits, (attribute, ..)| bits | attribute.bit()),
+        };
+        let mut bytes = header.to_bytes().to_vec();
+        bytes.extend(body);
         set_checksum(&mut bytes);
         bytes
     }

@@ -1,10 +1,6 @@
 //! Copies of meshes with other normals, for objects whose normals a matrix turns.
 
-use super::{HEADER, Mesh, RECORD};
-
-/// Offset of the normal in a vertex and in a triangle (docs/formats/mesh.md, "Mesh in memory").
-const OF_VERTEX: usize = 6;
-const OF_TRIANGLE: usize = 8;
+use super::{Mesh, MeshHeader, Triangle, Vertex};
 
 impl Mesh<'_> {
     /// Copies the mesh to the start of `memory`, with the normals that `turn` returns for those of this mesh. `None` if `memory` is
@@ -16,34 +12,30 @@ impl Mesh<'_> {
     ) -> Option<Mesh<'m>> {
         let memory = memory.get_mut(..self.bytes.len())?;
         memory.copy_from_slice(self.bytes);
-        let mut records = memory.get_mut(HEADER..)?.as_chunks_mut().0.iter_mut();
+        let records = memory.get_mut(MeshHeader::BYTES..)?.as_chunks_mut().0;
+        let mut records = records.iter_mut();
         for chunk in self.chunks() {
             // The chunk's header.
             records.next();
             for record in records.by_ref().take(chunk.vertex_count()) {
-                replace(record, OF_VERTEX, turn);
+                let mut vertex = Vertex::from_bytes(record);
+                vertex.normal = turn(vertex.normal);
+                *record = vertex.to_bytes();
             }
             for record in records.by_ref().take(chunk.triangle_count()) {
-                replace(record, OF_TRIANGLE, turn);
+                let mut triangle = Triangle::from_bytes(record);
+                triangle.normal = turn(triangle.normal);
+                *record = triangle.to_bytes();
             }
         }
         let bytes: &[u8] = memory;
-        let records = bytes.get(HEADER..)?.as_chunks().0;
+        let words = bytes.get(MeshHeader::BYTES..)?.as_chunks().0;
+        let (records, arrays) = words.split_at_checked(self.records.len())?;
         Some(Mesh {
             bytes,
             records,
-            vertices: self.vertices,
-            triangles: self.triangles,
-            radius: self.radius,
+            arrays,
+            ..*self
         })
     }
-}
-
-/// Replaces the normal at `offset` of a record.
-fn replace(record: &mut [u8; RECORD], offset: usize, turn: &mut dyn FnMut([i16; 3]) -> [i16; 3]) {
-    let halves = record.get_mut(offset..).unwrap_or_default();
-    let Some([x, y, z]) = halves.as_chunks_mut().0.first_chunk_mut() else {
-        return;
-    };
-    [*x, *y, *z] = turn([*x, *y, *z].map(i16::from_le_bytes)).map(i16::to_le_bytes);
 }

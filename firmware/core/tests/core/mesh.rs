@@ -1,8 +1,8 @@
 //! Tests of meshes: encoding, decoding and error messages.
 
 use glint_core::mesh::{
-    EncodeError, IndexedTriangle, MAX_RADIUS, Mesh, Rgb565, Vertex, checksum, encode, set_checksum,
-    stated_checksum,
+    Attribute, EncodeError, IndexedTriangle, MAX_RADIUS, Mesh, MeshHeader, Rgb565, Vertex,
+    checksum, encode, encode_with, set_checksum, stated_checksum,
 };
 use proptest::prelude::*;
 
@@ -44,6 +44,46 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
             })
         })
         .collect()
+}
+
+/// An optional attribute is an array behind the chunks, with an element for each vertex in the order of the chunks.
+#[test]
+fn an_optional_attribute_follows_the_chunks() {
+    let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
+    let triangles = [triangle([4, 1, 2]), triangle([4, 2, 3])];
+    let plain = encode(&vertices, &triangles).expect("a good mesh");
+    let element = |vertex: u8| [vertex; 8];
+    let elements = [0, 1, 2, 3, 4].map(element);
+    let attributes = [(Attribute::TextureCoordinates, elements.as_flattened())];
+    let bytes = encode_with(&vertices, &triangles, &attributes).expect("a good mesh");
+    let mesh = Mesh::new_checked(&bytes).expect("a good mesh");
+    let without = Mesh::new_checked(&plain).expect("a good mesh");
+    assert_eq!(mesh.records(), without.records());
+    assert_eq!(bytes.len(), plain.len() + 4 * 8);
+    // Vertices have the order of their first use, and the first one is not used.
+    let found = [4, 1, 2, 3].map(element);
+    let attribute =
+        |mesh: &Mesh| (mesh.attribute(Attribute::TextureCoordinates)).map(<[u8]>::to_vec);
+    assert_eq!(attribute(&mesh), Some(found.as_flattened().to_vec()));
+    assert_eq!(attribute(&without), None);
+
+    let mut memory = vec![0; bytes.len()];
+    let copy = mesh.copy_with_normals(&mut memory, &mut |normal| normal.map(|x| !x));
+    let copy = copy.expect("enough memory");
+    assert_eq!(Mesh::new_checked(copy.bytes()), Ok(copy));
+    assert_eq!(attribute(&copy), attribute(&mesh));
+
+    let mut short = bytes.clone();
+    short.truncate(bytes.len() - 16);
+    short[MeshHeader::LENGTH].copy_from_slice(&(bytes.len() as u32 - 16).to_le_bytes());
+    let refused = Mesh::new_checked(&short).expect_err("an array that is too short");
+    assert_eq!(
+        refused.to_string(),
+        format!(
+            "mesh byte {}: expected 32 bytes after the last chunk, found 16",
+            plain.len()
+        )
+    );
 }
 
 #[test]

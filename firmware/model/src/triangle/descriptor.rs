@@ -4,9 +4,11 @@ mod contents;
 
 use core::ops::RangeInclusive;
 
+use glint_core::bits::Bits;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::machine::{self, LIST_GAP_WORDS, LIST_TABLE_WORDS};
 use glint_core::picture::Size;
+use glint_core::records::{PIECE_MARK, descriptor, piece as piece_fields, planes, stored_piece};
 
 use crate::line::Piece;
 use crate::triangle::setup::{Plane, Setup};
@@ -24,9 +26,9 @@ pub struct Descriptor {
 }
 
 /// Number of 32-bit words of a descriptor for gateware without smooth shading.
-const FLAT_WORDS: usize = machine::FLAT_DESCRIPTOR_BYTES as usize / 4;
+const FLAT_WORDS: usize = descriptor::BITS / 32;
 /// Number of 32-bit words of a descriptor for gateware with smooth shading.
-const SMOOTH_WORDS: usize = machine::SMOOTH_DESCRIPTOR_BYTES as usize / 4;
+const SMOOTH_WORDS: usize = 2 * FLAT_WORDS;
 
 /// Number of 32-bit words of a descriptor, a multiple of four, for gateware whose best shading is `capability`.
 pub const fn words(capability: Shading) -> usize {
@@ -36,8 +38,29 @@ pub const fn words(capability: Shading) -> usize {
     }
 }
 
-/// The bits of a descriptor that mark a piece of a line.
-const PIECE: i64 = 3;
+/// Start, and steps to the right and down, of the plane of the depth, and of the plane of a channel of light.
+type PlaneFields = [Bits; 3];
+const DEPTH: PlaneFields = [
+    descriptor::DEPTH_START,
+    descriptor::DEPTH_STEP_X,
+    descriptor::DEPTH_STEP_Y,
+];
+const fn light(channel: usize) -> PlaneFields {
+    [
+        in_planes(planes::LIGHT_START).element(channel),
+        in_planes(planes::LIGHT_STEP_X).element(channel),
+        in_planes(planes::LIGHT_STEP_Y).element(channel),
+    ]
+}
+const SMOOTH: Bits = in_planes(planes::SMOOTH);
+
+/// A field of the planes, which follow the descriptor.
+const fn in_planes(field: Bits) -> Bits {
+    field.from(descriptor::BITS)
+}
+
+/// Words of a piece at its start that are stored at [`stored_piece::LOW`]; the others are stored at [`stored_piece::HIGH`].
+const LOW_WORDS: usize = 4;
 /// Half a depth code, 14 fraction bits, which the depth of a piece includes.
 const HALF_A_CODE: i64 = 1 << 13;
 
@@ -48,26 +71,31 @@ impl Descriptor {
         // The bounds are in the picture and not negative, so unsigned divisions suffice.
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
-        let mut bits = Packer::default();
-        for edge in &setup.edges {
-            bits.put(edge.start - i64::from(back) * i64::from(edge.step_x), 34);
+        let mut words = [0; SMOOTH_WORDS];
+        for (k, edge) in setup.edges.iter().enumerate() {
+            let start = edge.start - i64::from(back) * i64::from(edge.step_x);
+            descriptor::START.element(k).put(&mut words, start);
+            (descriptor::STEPS_X.element(k)).put(&mut words, edge.step_x.into());
+            (descriptor::STEPS_Y.element(k)).put(&mut words, edge.step_y.into());
         }
-        bits.put_plane(&setup.depth, back);
-        for edge in &setup.edges {
-            bits.put(edge.step_x.into(), 21);
-            bits.put(edge.step_y.into(), 21);
+        put_plane(&mut words, DEPTH, &setup.depth, back);
+        for (field, value) in [
+            (descriptor::TOP, bounds.top),
+            (descriptor::BOTTOM, bounds.bottom),
+            (descriptor::GROUP_LEFT, bounds.left / GROUP),
+            (descriptor::GROUP_RIGHT, (bounds.right - 1) / GROUP),
+            (descriptor::GROUP_START, group_start),
+            (descriptor::COLOUR, colour.0.into()),
+        ] {
+            field.put(&mut words, value.into());
         }
-        bits.put(bounds.top.into(), 10);
-        bits.put(bounds.bottom.into(), 10);
-        bits.put((bounds.left / GROUP).into(), 8);
-        bits.put(((bounds.right - 1) / GROUP).into(), 8);
-        bits.put(group_start.into(), 8);
-        bits.put(colour.0.into(), 16);
-        if let Some(light) = &setup.light {
-            light.iter().for_each(|plane| bits.put_plane(plane, back));
-            bits.put(1, 1);
+        if let Some(planes) = &setup.light {
+            for (channel, plane) in planes.iter().enumerate() {
+                put_plane(&mut words, light(channel), plane, back);
+            }
+            SMOOTH.put(&mut words, 1);
         }
-        Self { words: bits.words }
+        Self { words }
     }
 
     /// Packs a piece of a line, whose first pixel is in the picture.
@@ -80,31 +108,37 @@ impl Descriptor {
             [line.backward[1], line.backward[0]]
         };
         let [column, row] = piece.first();
-        let mut bits = Packer {
-            used: 128,
-            ..Packer::default()
-        };
-        bits.put(line.x_major.into(), 1);
-        bits.put(left.into(), 1);
-        bits.put(up.into(), 1);
-        bits.put(column.into(), 11);
-        bits.put(row.into(), 10);
-        bits.put(line.count.into(), 12);
-        bits.put((line.error + minor).into(), 21);
-        bits.put(minor.into(), 20);
-        bits.put((minor - major).into(), 21);
-        // The depth has its lowest 30 bits here, and the others behind the repeated words.
-        let depth = line.depth + HALF_A_CODE;
-        bits.put(depth, 30);
-        bits.used = 320;
-        bits.put(depth >> 30, 4);
-        bits.put(line.depth_step, 34);
-        bits.used = 366;
-        bits.put(PIECE, 2);
-        bits.put(piece.colour.0.into(), 16);
-        let mut words = bits.words;
-        words.copy_within(4..8, 0);
-        words.copy_within(4..6, 8);
+        let mut fields = [0; piece_fields::BITS.div_ceil(32)];
+        for (field, value) in [
+            (piece_fields::X_MAJOR, line.x_major.into()),
+            (piece_fields::LEFT, left.into()),
+            (piece_fields::UP, up.into()),
+            (piece_fields::COLUMN, column.into()),
+            (piece_fields::ROW, row.into()),
+            (piece_fields::COUNT, line.count.into()),
+            (piece_fields::ERROR, (line.error + minor).into()),
+            (piece_fields::MINOR, minor.into()),
+            (piece_fields::FALL, (minor - major).into()),
+            (piece_fields::DEPTH, line.depth + HALF_A_CODE),
+            (piece_fields::DEPTH_STEP, line.depth_step),
+        ] {
+            field.put(&mut fields, value);
+        }
+        let mut words = [0; SMOOTH_WORDS];
+        for (at, count) in [
+            (stored_piece::REPEATS, LOW_WORDS),
+            (stored_piece::LOW, LOW_WORDS),
+            (stored_piece::REPEATS_LOW, LOW_WORDS / 2),
+        ] {
+            let stored = words.iter_mut().skip(at.word()).zip(fields);
+            stored.take(count).for_each(|(to, word)| *to = word);
+        }
+        let high = words.iter_mut().skip(stored_piece::HIGH.word());
+        for (to, word) in high.zip(fields.into_iter().skip(LOW_WORDS)) {
+            *to = word;
+        }
+        stored_piece::MARK.put(&mut words, PIECE_MARK as i64);
+        stored_piece::COLOUR.put(&mut words, piece.colour.0.into());
         Self { words }
     }
 
@@ -114,39 +148,13 @@ impl Descriptor {
     }
 }
 
-/// Packs consecutive bit fields.
-#[derive(Default)]
-struct Packer {
-    words: [u32; SMOOTH_WORDS],
-    used: usize,
-}
-
-impl Packer {
-    /// Appends the lowest `width` bits of `value`, which must fit this width.
-    fn put(&mut self, value: i64, width: usize) {
-        let (mut value, mut left) = (value, width);
-        while left > 0 {
-            let shift = self.used % 32;
-            let count = left.min(32 - shift);
-            // The bits of this field in a word: `count` ones from `shift` on.
-            let mask = u32::MAX >> (32 - count) << shift;
-            if let Some(word) = self.words.get_mut(self.used / 32) {
-                *word |= (value as u32) << shift & mask;
-            }
-            value >>= count;
-            left -= count;
-            self.used += count;
-        }
-    }
-
-    /// Appends a plane whose start is moved `back` columns to the left.
-    fn put_plane(&mut self, plane: &Plane, back: i32) {
-        let start = plane
-            .start
-            .wrapping_sub(plane.step_x.wrapping_mul(back as u32));
-        for value in [start, plane.step_x, plane.step_y] {
-            self.put(value.into(), 32);
-        }
+/// Puts a plane whose start is moved `back` columns to the left.
+fn put_plane(words: &mut [u32], fields: PlaneFields, plane: &Plane, back: i32) {
+    let start = plane
+        .start
+        .wrapping_sub(plane.step_x.wrapping_mul(back as u32));
+    for (field, value) in fields.iter().zip([start, plane.step_x, plane.step_y]) {
+        field.put(words, value.into());
     }
 }
 

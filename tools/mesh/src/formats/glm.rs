@@ -2,7 +2,7 @@
 
 use crate::error::{FormatError, Place};
 use crate::polygons::{Corner, Polygons, Rgb8};
-use glint_core::mesh::{Mesh, Rgb565, checksum, stated_checksum};
+use glint_core::mesh::{Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
 
 /// Parses a GLM. Positions and normals are converted exactly, colours by bit replication. The chunks of the mesh are joined.
 ///
@@ -22,8 +22,8 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
         }
         for triangle in chunk.triangles() {
             let corner = |index| Corner {
-                point: first + u32::from(index),
                 normal: first + u32::from(index),
+                ..Corner::at(first + u32::from(index))
             };
             polygons.add_face(
                 &triangle.indices.map(corner),
@@ -54,7 +54,7 @@ pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     match stated_checksum(bytes) {
         Some(stated) if stated == needed => Ok(mesh),
         stated => Err(FormatError::new(
-            Place::Byte(24),
+            Place::Byte(MeshHeader::CHECKSUM.start),
             format!("the CRC-32 {needed:08x} of the other bytes"),
             format!("{:08x}: the file is damaged", stated.unwrap_or_default()),
         )),

@@ -29,7 +29,7 @@ impl Bench {
         Self {
             source: Source::new(&module, "in", &["piece"], stalls(1, source_stalls)),
             sink: Sink::new(&module, "group", &payload, stalls(2, sink_stalls)),
-            piece: module.packed_type("line_pkg::piece_t").clone(),
+            piece: module.packed_type("records_pkg::piece_t").clone(),
             idle: module.port("idle"),
             module,
         }

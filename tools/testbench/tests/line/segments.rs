@@ -32,7 +32,7 @@ pub fn pixels(segment: &Segment, band: &Bounds) -> Vec<LinePixel> {
     pixels.into_iter().flatten().collect()
 }
 
-/// The piece of a line in a band, as `line_pkg::piece_t`.
+/// The piece of a line in a band, as `records_pkg::piece_t`.
 pub fn piece(segment: &Segment, layout: &Layout, size: usize, band: &Bounds) -> Option<Bits> {
     let is_inside = |piece: &Piece| (band.top..band.bottom).contains(&piece.first()[1]);
     let mut pieces = segment.pieces(Size::ALL[size]).filter(is_inside);

@@ -20,8 +20,8 @@ fn check(
     let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
     let mut source = Source::new(&module, "in", &["segment"], stalls(1, source_stalls));
     let mut sink = Sink::new(&module, "out", &["piece"], stalls(2, sink_stalls));
-    let layouts = ["segment_t", "piece_t"]
-        .map(|name| module.packed_type(&format!("line_pkg::{name}")).clone());
+    let layouts = ["line_pkg::segment_t", "records_pkg::piece_t"]
+        .map(|name| module.packed_type(name).clone());
     module.drive("size", size as u32);
     let start = module.cycles();
     for segment in segments {

@@ -2,10 +2,11 @@
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
+use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Counters, Module, Sink, Stalls};
 
 use crate::scenes::{
-    FIELDS, ROUND, SPONGES, UNIONS, band_lines, further_kinds, lights, setup, setup_with, tunnel,
+    FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, setup, setup_with, tunnel,
 };
 use glint_testbench::raymarch::{
     Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
@@ -104,7 +105,7 @@ impl Bench {
         hurry: bool,
     ) -> Taken {
         self.set(setup, palette);
-        let lines = band_lines(setup.width);
+        let lines = band_rows(setup.width);
         let eyes: u32 = if setup.stereo.is_some() { 2 } else { 1 };
         let share = if hurry { 0.0 } else { 0.3 };
         let mut sink = Sink::new(

@@ -1,9 +1,10 @@
 //! Tests of the ray generator: its rays equal the model's rays of the frame, in order.
 
 use glint_model::raymarch::FieldSetup;
+use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
-use crate::scenes::{FIELDS, ROUND, band_lines, every_field, setup, setup_with};
+use crate::scenes::{FIELDS, ROUND, every_field, setup, setup_with};
 use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
 use glint_vectors::Random;
 
@@ -18,7 +19,7 @@ fn ray_type(module: &Module) -> Layout {
 /// Returns the model's rays of the first `lines` lines of a frame, in the order of the generator.
 fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
-    let band_lines = band_lines(setup.width);
+    let band_lines = band_rows(setup.width);
     let places = (0..lines).flat_map(move |y| {
         (0..eyes).flat_map(move |eye| {
             (0..setup.width).map(move |x| {
@@ -59,7 +60,7 @@ fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
 
 /// Compares the rays of the first `lines` lines of a frame with the model's; returns the clocks up to the last ray.
 fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) -> u64 {
-    set_generator(module, setup, band_lines(setup.width));
+    set_generator(module, setup, band_rows(setup.width));
     module.drive("round", setup.is_round());
     module.drive("cones", 0);
     module.drive("prepass", 0);

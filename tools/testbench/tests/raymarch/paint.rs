@@ -2,9 +2,10 @@
 
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
+use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Module, Sink, Source, Stalls, step};
 
-use crate::scenes::{FIELDS, band_lines, setup};
+use crate::scenes::{FIELDS, setup};
 use glint_testbench::raymarch::{Pixel, Place, end, pixel, set_paint};
 use glint_vectors::Random;
 
@@ -71,7 +72,7 @@ fn ends_of_random_rays() {
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
                 let column = random.integer(0, i64::from(setup.width) - 1) as u32;
-                let lines = i64::from(band_lines(setup.width));
+                let lines = i64::from(band_rows(setup.width));
                 let place = Place {
                     odd: random.coin(),
                     line: random.integer(0, lines - 1) as u32,

@@ -155,12 +155,3 @@ pub fn tunnel(size: (u32, u32), prepass: bool) -> FieldSetup {
     let sponge = Field::parse("menger:4").unwrap();
     FieldSetup::new(&sponge, &view, size, &options).unwrap()
 }
-
-/// Returns the number of lines of a band in a picture of this width.
-pub fn band_lines(width: u32) -> u32 {
-    match width {
-        320 => 45,
-        640 => 24,
-        _ => 12,
-    }
-}

@@ -165,7 +165,7 @@ impl Bench {
         for input in inputs {
             self.source.push(types.item(input, self.ability));
         }
-        let planes_type = self.module.packed_type("triangle_pkg::planes_t").clone();
+        let planes_type = self.module.packed_type("records_pkg::planes_t").clone();
         let start = self.module.cycles();
         let (mut culled, mut drawn) = (0, 0);
         loop {

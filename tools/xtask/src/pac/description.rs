@@ -9,29 +9,6 @@ use serde::Deserialize;
 #[derive(Deserialize)]
 pub struct Description {
     blocks: BTreeMap<String, Block>,
-    /// Numbers that gateware, firmware and host share.
-    machine: Machine,
-}
-
-/// Numbers that gateware, firmware and host share: `gateware/glint_soc/constants.py`.
-#[derive(Debug, Deserialize)]
-pub struct Machine {
-    /// Picture sizes in the order of their codes in registers.
-    pub sizes: Vec<Size>,
-    pub group: u32,
-    pub list_table_words: u32,
-    pub list_gap_words: u32,
-    pub flat_descriptor_bytes: u32,
-    pub smooth_descriptor_bytes: u32,
-    pub flash_firmware: u32,
-}
-
-/// A size of a picture.
-#[derive(Debug, Deserialize)]
-pub struct Size {
-    pub width: u32,
-    pub height: u32,
-    pub band_lines: u32,
 }
 
 /// A block's registers, counters and constants.
@@ -116,17 +93,17 @@ impl Description {
         Ok(block)
     }
 
-    /// Returns the shared numbers. All blocks must have been taken out before.
+    /// Checks that all blocks have been taken out.
     ///
     /// # Errors
     /// A block has not been taken out; the error names the first one.
-    pub fn finish(self) -> Result<Machine> {
+    pub fn finish(self) -> Result<()> {
         let left = self.blocks.keys().next();
         ensure!(
             left.is_none(),
             "description.json has the block `{}`, soc.svd has not",
             left.map_or("", String::as_str)
         );
-        Ok(self.machine)
+        Ok(())
     }
 }

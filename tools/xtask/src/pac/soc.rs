@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use roxmltree::{Document, Node};
 use serde_json::Value;
 
-use super::description::{self, Block, Constant, Description, Machine, NamedValue};
+use super::description::{self, Block, Constant, Description, NamedValue};
 
 /// Name of the constant with the CRC-32 of the register map that `gateware/glint_soc/register_map.py` fixes.
 const BUILD_ID: &str = "build_id";
@@ -20,8 +20,6 @@ pub struct Soc {
     pub peripherals: Vec<Peripheral>,
     /// Memories in the order of their base addresses, without `csr`, the window of the registers.
     pub memories: Vec<Memory>,
-    /// Numbers that gateware, firmware and host share.
-    pub machine: Machine,
     /// Numeric constants that firmware may rely on, sorted by name.
     pub constants: Vec<(String, u32)>,
 }
@@ -105,10 +103,10 @@ impl Soc {
             .remove(BUILD_ID)
             .with_context(|| format!("csr.json has no constant `{BUILD_ID}`"))?;
         let peripherals = peripherals(&document, &csr, &mut description)?;
+        description.finish()?;
         Ok(Self {
             build_id,
             peripherals,
-            machine: description.finish()?,
             memories: memories(&csr)?,
             constants: constants.into_iter().collect(),
         })

@@ -2,9 +2,11 @@
 
 use core::ops::Range;
 
+use glint_core::bits::Bits;
 use glint_core::colour::Rgb565;
+use glint_core::records::{PIECE_MARK, descriptor, piece, stored_piece};
 
-use super::{Descriptor, GROUP, HALF_A_CODE, PIECE};
+use super::{DEPTH, Descriptor, GROUP, HALF_A_CODE, LOW_WORDS, PlaneFields, SMOOTH, light};
 use crate::line::{Line, Piece};
 use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
 
@@ -31,24 +33,31 @@ impl Descriptor {
 
     /// Unpacks the descriptor for a picture of this width. Any words have contents.
     pub fn contents(&self, width: u32) -> Contents {
-        let colour = Rgb565(self.bits(368, 16) as u16);
-        if self.bits(366, 2) == PIECE as u64 {
+        let words = &self.words;
+        let colour = Rgb565(descriptor::COLOUR.get(words) as u16);
+        if stored_piece::MARK.get(words) == PIECE_MARK {
             return Contents::Piece(Piece {
                 line: self.line(),
                 colour,
             });
         }
-        let [left, right, start] = [344, 352, 360].map(|at| self.bits(at, 8) as i32);
+        let number = |field: Bits| field.get(words) as i32;
+        let [left, right, start] = [
+            descriptor::GROUP_LEFT,
+            descriptor::GROUP_RIGHT,
+            descriptor::GROUP_START,
+        ]
+        .map(number);
         if !(left <= start && start <= right && right < width as i32 / GROUP) {
             return Contents::Stray;
         }
-        let [top, bottom] = [324, 334].map(|at| self.bits(at, 10) as i32);
+        let [top, bottom] = [descriptor::TOP, descriptor::BOTTOM].map(number);
         let edges = [0, 1, 2].map(|k| Edge {
-            start: self.signed(34 * k, 34),
-            step_x: self.signed(198 + 42 * k, 21) as i32,
-            step_y: self.signed(219 + 42 * k, 21) as i32,
+            start: descriptor::START.element(k).signed(words),
+            step_x: descriptor::STEPS_X.element(k).signed(words) as i32,
+            step_y: descriptor::STEPS_Y.element(k).signed(words) as i32,
         });
-        let light = [0, 1, 2].map(|channel| self.plane(384 + 96 * channel));
+        let light = [0, 1, 2].map(|channel| self.plane(light(channel)));
         let [columns, rows] = [GROUP * (right - left + 2), bottom - top + 2].map(i64::from);
         let setup = Setup {
             bounds: Bounds {
@@ -59,8 +68,8 @@ impl Descriptor {
             },
             start_column: GROUP * start,
             edges,
-            depth: self.plane(102),
-            light: (self.bits(672, 1) != 0).then_some(light),
+            depth: self.plane(DEPTH),
+            light: (SMOOTH.get(words) != 0).then_some(light),
             weight: None,
             narrow: edges.iter().all(|edge| {
                 let [across, down] = [edge.step_x, edge.step_y].map(|x| i64::from(x).abs());
@@ -71,10 +80,18 @@ impl Descriptor {
     }
 
     fn line(&self) -> Line {
-        let [x_major, left, up] = [128, 129, 130].map(|at| self.bits(at, 1) != 0);
-        let [column, row] = [(131, 11), (142, 10)].map(|(at, width)| self.bits(at, width) as i32);
-        let minor = self.bits(185, 20) as i32;
-        let depth = self.bits(226, 30) as i64 | self.signed(320, 4) << 30;
+        let low = self.words.iter().skip(stored_piece::LOW.word());
+        let high = self.words.iter().skip(stored_piece::HIGH.word());
+        let mut fields = [0; piece::BITS.div_ceil(32)];
+        for (to, word) in fields.iter_mut().zip(low.take(LOW_WORDS).chain(high)) {
+            *to = *word;
+        }
+        let words = &fields;
+        let [x_major, left, up] =
+            [piece::X_MAJOR, piece::LEFT, piece::UP].map(|field| field.get(words) != 0);
+        let [column, row, minor, count] = [piece::COLUMN, piece::ROW, piece::MINOR, piece::COUNT]
+            .map(|field| field.get(words) as i32);
+        let [error, fall] = [piece::ERROR, piece::FALL].map(|field| field.signed(words) as i32);
         let mirrored = |place: i32, backward: bool| if backward { !place } else { place };
         let (start, backward) = ([mirrored(column, left), mirrored(row, up)], [left, up]);
         let by_axis = |[x, y]: [i32; 2]| if x_major { [x, y] } else { [y, x] };
@@ -82,37 +99,21 @@ impl Descriptor {
             x_major,
             backward: if x_major { backward } else { [up, left] },
             start: by_axis(start),
-            count: self.bits(152, 12) as i32,
-            span: [minor - self.signed(205, 21) as i32, minor],
-            error: self.signed(164, 21) as i32 - minor,
-            depth: depth - HALF_A_CODE,
-            depth_step: self.signed(324, 34),
+            count,
+            span: [minor - fall, minor],
+            error: error - minor,
+            depth: piece::DEPTH.signed(words) - HALF_A_CODE,
+            depth_step: piece::DEPTH_STEP.signed(words),
         }
     }
 
-    fn plane(&self, at: usize) -> Plane {
-        let [start, step_x, step_y] = [0, 32, 64].map(|offset| self.bits(at + offset, 32) as u32);
+    fn plane(&self, fields: PlaneFields) -> Plane {
+        let [start, step_x, step_y] = fields.map(|field| field.get(&self.words) as u32);
         Plane {
             start,
             step_x,
             step_y,
         }
-    }
-
-    /// The field of `width` bits, at most 34, that begins at bit `at`.
-    fn bits(&self, at: usize, width: usize) -> u64 {
-        let word = |number| u64::from(self.words.get(number).copied().unwrap_or(0));
-        let (first, shift) = (at / 32, at % 32);
-        let low = word(first) | word(first + 1) << 32;
-        // A field of 34 bits has bits in up to three words.
-        let high = (word(first + 2) << 1) << (63 - shift);
-        (low >> shift | high) & ((1 << width) - 1)
-    }
-
-    /// The same as a two's complement number.
-    fn signed(&self, at: usize, width: usize) -> i64 {
-        let unused = 64 - width;
-        (self.bits(at, width) << unused) as i64 >> unused
     }
 }
 

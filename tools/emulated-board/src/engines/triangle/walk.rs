@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use glint_core::mesh::ChunkHeader;
+
 use super::region::record;
 use crate::MainMemory;
 
@@ -47,11 +49,10 @@ impl Walk {
             return None;
         }
         self.has_begun = true;
-        let header = record(ram, self.header as u32);
-        let [vertices, triangles] = [0, 1].map(|field: usize| {
-            let bytes = header.as_chunks().0.get(field).copied();
-            u32::from_le_bytes(bytes.unwrap_or_default())
-        });
+        let ChunkHeader {
+            vertices,
+            triangles,
+        } = ChunkHeader::from_bytes(&record(ram, self.header as u32));
         let first = self.header + 1;
         let base = first + u64::from(vertices);
         let end = base + u64::from(triangles);

@@ -279,11 +279,11 @@ fn add_primitive(
             ));
         }
         Ok(Corner {
-            point: first_point + index as u32,
             normal: match normals {
                 Some(_) => first_normal + index as u32,
                 None => Corner::NO_NORMAL,
             },
+            ..Corner::at(first_point + index as u32)
         })
     };
     let triangles = match mode {

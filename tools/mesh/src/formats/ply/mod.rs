@@ -291,12 +291,12 @@ fn read_corners(
         }
         let point = index as u32;
         corners.push(Corner {
-            point,
             normal: if with_normal {
                 point
             } else {
                 Corner::NO_NORMAL
             },
+            ..Corner::at(point)
         });
     }
     Ok(())
@@ -355,8 +355,8 @@ mod tests {
             assert_eq!(
                 polygons.corners[2],
                 Corner {
-                    point: 2,
-                    normal: 2
+                    normal: 2,
+                    ..Corner::at(2)
                 }
             );
             assert_eq!(polygons.normals[2], [0.0; 3]);

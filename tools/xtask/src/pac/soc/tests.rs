@@ -33,11 +33,7 @@ fn descriptions() -> (String, String, String) {
         "constants": {"build_id": 7, "config_clock_frequency": 81250000, "timer0_interrupt": 1, "config_cpu_name": "x", "config_has_i2c": null},
         "memories": {"main_ram": {"base": 1073741824, "size": 16, "type": "cached"}, "csr": {"base": 4026531840, "size": 65536, "type": "io"}}
     }"#;
-    let description = r#"{"machine": {
-        "sizes": [{"width": 320, "height": 180, "band_lines": 45}],
-        "group": 8, "list_table_words": 16, "list_gap_words": 128,
-        "flat_descriptor_bytes": 48, "smooth_descriptor_bytes": 96, "flash_firmware": 3145728
-    }, "blocks": {"timer0": {
+    let description = r#"{"blocks": {"timer0": {
         "registers": [
             {"name": "load", "width": 8, "fields": []},
             {"name": "ev_pending", "width": 5, "fields": [
@@ -61,7 +57,6 @@ fn joins_fields_and_access_rights() {
     let (svd, json, description) = descriptions();
     let soc = Soc::read(&svd, &json, &description).unwrap();
     assert_eq!(soc.build_id, 7);
-    assert_eq!(soc.machine.sizes[0].width, 320);
     assert_eq!(
         soc.constants,
         [("config_clock_frequency".to_owned(), 81_250_000)]

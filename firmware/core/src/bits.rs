@@ -1,0 +1,72 @@
+//! Fields of records that are not whole bytes.
+
+/// A field of a record in 32-bit words: elements of `width` bits, which begin `every` bits apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bits {
+    at: usize,
+    width: usize,
+    every: usize,
+}
+
+impl Bits {
+    /// The field whose first element begins at bit `at` of the record. Only fields of 1 to 34 bits are numbers.
+    pub const fn new(at: usize, width: usize, every: usize) -> Self {
+        Self { at, width, every }
+    }
+
+    /// The field in a record that begins at bit `start`.
+    #[must_use]
+    pub const fn from(self, start: usize) -> Self {
+        Self {
+            at: self.at + start,
+            ..self
+        }
+    }
+
+    /// The element with this number.
+    #[must_use]
+    pub const fn element(self, number: usize) -> Self {
+        self.from(self.every * number)
+    }
+
+    /// Number of the word in which the field begins.
+    pub const fn word(self) -> usize {
+        self.at / 32
+    }
+
+    /// The number in the field. Missing words are 0.
+    #[inline]
+    pub fn get(self, words: &[u32]) -> u64 {
+        let word = |number| u64::from(words.get(number).copied().unwrap_or(0));
+        let (first, shift) = (self.at / 32, self.at % 32);
+        let low = word(first) | word(first + 1) << 32;
+        // A field of 34 bits has bits in up to three words.
+        let high = (word(first + 2) << 1) << (63 - shift);
+        (low >> shift | high) & ((1 << self.width) - 1)
+    }
+
+    /// The same as a two's complement number.
+    #[inline]
+    pub fn signed(self, words: &[u32]) -> i64 {
+        let unused = 64 - self.width;
+        (self.get(words) << unused) as i64 >> unused
+    }
+
+    /// Sets the field, which was 0, to the lowest bits of `value`. Bits in missing words are dropped.
+    #[inline]
+    pub fn put(self, words: &mut [u32], value: i64) {
+        let (mut value, mut at, mut left) = (value, self.at, self.width);
+        while left > 0 {
+            let shift = at % 32;
+            let count = left.min(32 - shift);
+            // The bits of this field in a word: `count` ones from `shift` on.
+            let mask = u32::MAX >> (32 - count) << shift;
+            if let Some(word) = words.get_mut(at / 32) {
+                *word |= (value as u32) << shift & mask;
+            }
+            value >>= count;
+            left -= count;
+            at += count;
+        }
+    }
+}

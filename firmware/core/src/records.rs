@@ -1,0 +1,576 @@
+//! Records in memory (docs/formats/records.md).
+// Generated from gateware/glint_soc/records.py by `gateware/tests/run.py --packages`. Do not edit.
+
+use core::ops::Range;
+
+use crate::bits::Bits;
+use crate::colour::Rgb565;
+
+/// Bytes of a word of memory. Every record begins at a multiple of it, or of its own size if that is smaller.
+pub const WORD: usize = 16;
+
+/// The mark of a piece of a line in the place of a descriptor.
+pub const PIECE_MARK: u64 = 3;
+
+/// An optional attribute of a mesh's vertices. The discriminant is the number of its bit in [`MeshHeader::attributes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attribute {
+    /// Texture coordinates of a vertex.
+    TextureCoordinates = 4,
+}
+
+impl Attribute {
+    /// All attributes, by their numbers.
+    pub const ALL: [Self; 1] = [Self::TextureCoordinates];
+
+    /// The attribute's bit in the header.
+    pub const fn bit(self) -> u32 {
+        1 << self as u32
+    }
+
+    /// Bytes of an element, the attribute of one vertex.
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::TextureCoordinates => TextureCoordinates::BYTES,
+        }
+    }
+}
+
+/// Header of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MeshHeader {
+    /// `GLM2`.
+    pub magic: [u8; 4],
+    /// Length of the whole in bytes.
+    pub length: u32,
+    /// Number of chunks, at least 1.
+    pub chunks: u32,
+    /// Number of vertices in all chunks.
+    pub vertices: u32,
+    /// Number of triangles in all chunks.
+    pub triangles: u32,
+    /// Radius about the origin, u.14, rounded up.
+    pub radius: u32,
+    /// CRC-32 of all other bytes.
+    pub checksum: u32,
+    /// A bit for each optional attribute that the mesh has.
+    pub attributes: u32,
+}
+
+impl MeshHeader {
+    /// Bytes of the record.
+    pub const BYTES: usize = 32;
+    /// Place of the field `magic`.
+    pub const MAGIC: Range<usize> = 0..4;
+    /// Place of the field `length`.
+    pub const LENGTH: Range<usize> = 4..8;
+    /// Place of the field `chunks`.
+    pub const CHUNKS: Range<usize> = 8..12;
+    /// Place of the field `vertices`.
+    pub const VERTICES: Range<usize> = 12..16;
+    /// Place of the field `triangles`.
+    pub const TRIANGLES: Range<usize> = 16..20;
+    /// Place of the field `radius`.
+    pub const RADIUS: Range<usize> = 20..24;
+    /// Place of the field `checksum`.
+    pub const CHECKSUM: Range<usize> = 24..28;
+    /// Place of the field `attributes`.
+    pub const ATTRIBUTES: Range<usize> = 28..32;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31] = *bytes;
+        Self {
+            magic: [b0, b1, b2, b3],
+            length: u32::from_le_bytes([b4, b5, b6, b7]),
+            chunks: u32::from_le_bytes([b8, b9, b10, b11]),
+            vertices: u32::from_le_bytes([b12, b13, b14, b15]),
+            triangles: u32::from_le_bytes([b16, b17, b18, b19]),
+            radius: u32::from_le_bytes([b20, b21, b22, b23]),
+            checksum: u32::from_le_bytes([b24, b25, b26, b27]),
+            attributes: u32::from_le_bytes([b28, b29, b30, b31]),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let b0 = self.magic[0];
+        let b1 = self.magic[1];
+        let b2 = self.magic[2];
+        let b3 = self.magic[3];
+        let [b4, b5, b6, b7] = self.length.to_le_bytes();
+        let [b8, b9, b10, b11] = self.chunks.to_le_bytes();
+        let [b12, b13, b14, b15] = self.vertices.to_le_bytes();
+        let [b16, b17, b18, b19] = self.triangles.to_le_bytes();
+        let [b20, b21, b22, b23] = self.radius.to_le_bytes();
+        let [b24, b25, b26, b27] = self.checksum.to_le_bytes();
+        let [b28, b29, b30, b31] = self.attributes.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31]
+    }
+}
+
+/// Header of a chunk of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ChunkHeader {
+    /// Number of vertices, 1 to 65,535.
+    pub vertices: u32,
+    /// Number of triangles.
+    pub triangles: u32,
+}
+
+impl ChunkHeader {
+    /// Bytes of the record.
+    pub const BYTES: usize = 16;
+    /// Place of the field `vertices`.
+    pub const VERTICES: Range<usize> = 0..4;
+    /// Place of the field `triangles`.
+    pub const TRIANGLES: Range<usize> = 4..8;
+    /// Place of the field `reserved`.
+    pub const RESERVED: Range<usize> = 8..16;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, _, _, _, _, _, _, _, _] = *bytes;
+        Self {
+            vertices: u32::from_le_bytes([b0, b1, b2, b3]),
+            triangles: u32::from_le_bytes([b4, b5, b6, b7]),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1, b2, b3] = self.vertices.to_le_bytes();
+        let [b4, b5, b6, b7] = self.triangles.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, 0, 0, 0, 0, 0, 0, 0, 0]
+    }
+}
+
+/// Vertex of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Vertex {
+    /// Place, s2.14.
+    pub position: [i16; 3],
+    /// Normal of the surface, s2.14.
+    pub normal: [i16; 3],
+    /// RGB565.
+    pub colour: Rgb565,
+}
+
+impl Vertex {
+    /// Bytes of the record.
+    pub const BYTES: usize = 16;
+    /// Place of the field `position`.
+    pub const POSITION: Range<usize> = 0..6;
+    /// Place of the field `normal`.
+    pub const NORMAL: Range<usize> = 6..12;
+    /// Place of the field `colour`.
+    pub const COLOUR: Range<usize> = 12..14;
+    /// Place of the field `reserved`.
+    pub const RESERVED: Range<usize> = 14..16;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, _, _] = *bytes;
+        Self {
+            position: [i16::from_le_bytes([b0, b1]), i16::from_le_bytes([b2, b3]), i16::from_le_bytes([b4, b5])],
+            normal: [i16::from_le_bytes([b6, b7]), i16::from_le_bytes([b8, b9]), i16::from_le_bytes([b10, b11])],
+            colour: Rgb565(u16::from_le_bytes([b12, b13])),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1] = self.position[0].to_le_bytes();
+        let [b2, b3] = self.position[1].to_le_bytes();
+        let [b4, b5] = self.position[2].to_le_bytes();
+        let [b6, b7] = self.normal[0].to_le_bytes();
+        let [b8, b9] = self.normal[1].to_le_bytes();
+        let [b10, b11] = self.normal[2].to_le_bytes();
+        let [b12, b13] = self.colour.0.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, 0, 0]
+    }
+}
+
+/// Triangle of a mesh.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Triangle {
+    /// Numbers of the vertices in the chunk, counter-clockwise seen from outside.
+    pub indices: [u16; 3],
+    /// RGB565.
+    pub colour: Rgb565,
+    /// Normal of the face, s2.14.
+    pub normal: [i16; 3],
+}
+
+impl Triangle {
+    /// Bytes of the record.
+    pub const BYTES: usize = 16;
+    /// Place of the field `indices`.
+    pub const INDICES: Range<usize> = 0..6;
+    /// Place of the field `colour`.
+    pub const COLOUR: Range<usize> = 6..8;
+    /// Place of the field `normal`.
+    pub const NORMAL: Range<usize> = 8..14;
+    /// Place of the field `reserved`.
+    pub const RESERVED: Range<usize> = 14..16;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, _, _] = *bytes;
+        Self {
+            indices: [u16::from_le_bytes([b0, b1]), u16::from_le_bytes([b2, b3]), u16::from_le_bytes([b4, b5])],
+            colour: Rgb565(u16::from_le_bytes([b6, b7])),
+            normal: [i16::from_le_bytes([b8, b9]), i16::from_le_bytes([b10, b11]), i16::from_le_bytes([b12, b13])],
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1] = self.indices[0].to_le_bytes();
+        let [b2, b3] = self.indices[1].to_le_bytes();
+        let [b4, b5] = self.indices[2].to_le_bytes();
+        let [b6, b7] = self.colour.0.to_le_bytes();
+        let [b8, b9] = self.normal[0].to_le_bytes();
+        let [b10, b11] = self.normal[1].to_le_bytes();
+        let [b12, b13] = self.normal[2].to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, 0, 0]
+    }
+}
+
+/// Texture coordinates of a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TextureCoordinates {
+    /// Across, 1 is the width of the texture, s16.16.
+    pub s: i32,
+    /// Down, 1 is the height of the texture, s16.16.
+    pub t: i32,
+}
+
+impl TextureCoordinates {
+    /// Bytes of the record.
+    pub const BYTES: usize = 8;
+    /// Place of the field `s`.
+    pub const S: Range<usize> = 0..4;
+    /// Place of the field `t`.
+    pub const T: Range<usize> = 4..8;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7] = *bytes;
+        Self {
+            s: i32::from_le_bytes([b0, b1, b2, b3]),
+            t: i32::from_le_bytes([b4, b5, b6, b7]),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1, b2, b3] = self.s.to_le_bytes();
+        let [b4, b5, b6, b7] = self.t.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7]
+    }
+}
+
+/// End point of a segment.
+pub mod segment_end {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 128;
+    /// X, s12.8.
+    pub const X: Bits = Bits::new(0, 20, 20);
+    /// Y, s12.8.
+    pub const Y: Bits = Bits::new(32, 20, 20);
+    /// Depth code before its rounding, u18.6.
+    pub const W: Bits = Bits::new(64, 24, 24);
+    /// Colour, RGB565, in the first end; bias in the second one.
+    pub const SIDE: Bits = Bits::new(96, 16, 16);
+}
+
+/// Increments of an edge function.
+pub mod steps {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 42;
+    /// Increment of E' for one pixel to the right, s21.
+    pub const X: Bits = Bits::new(0, 21, 21);
+    /// Increment of E' for one pixel down, s21.
+    pub const Y: Bits = Bits::new(21, 21, 21);
+}
+
+/// Triangle after the setup, three words of 16 bytes.
+pub mod descriptor {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 384;
+    /// E' of each edge at the start, s34.
+    pub const START: Bits = Bits::new(0, 34, 34);
+    /// Depth accumulator at the start, 18.14, modulo 2^32.
+    pub const DEPTH_START: Bits = Bits::new(102, 32, 32);
+    /// Gx: its increment for one pixel to the right.
+    pub const DEPTH_STEP_X: Bits = Bits::new(134, 32, 32);
+    /// Gy: its increment for one pixel down.
+    pub const DEPTH_STEP_Y: Bits = Bits::new(166, 32, 32);
+    /// Increment of E' for one pixel to the right, s21, of each edge.
+    pub const STEPS_X: Bits = Bits::new(198, 21, 42);
+    /// Increment of E' for one pixel down, s21, of each edge.
+    pub const STEPS_Y: Bits = Bits::new(219, 21, 42);
+    /// First row.
+    pub const TOP: Bits = Bits::new(324, 10, 10);
+    /// One past the last row.
+    pub const BOTTOM: Bits = Bits::new(334, 10, 10);
+    /// First group of eight columns in the bounds.
+    pub const GROUP_LEFT: Bits = Bits::new(344, 8, 8);
+    /// Last group in the bounds.
+    pub const GROUP_RIGHT: Bits = Bits::new(352, 8, 8);
+    /// Group of the start.
+    pub const GROUP_START: Bits = Bits::new(360, 8, 8);
+    /// Colour, RGB565, after shading.
+    pub const COLOUR: Bits = Bits::new(368, 16, 16);
+}
+
+/// Plane of a depth or of a channel of light.
+pub mod plane {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 96;
+    /// Accumulator at the start of the triangle, 18.14, modulo 2^32.
+    pub const START: Bits = Bits::new(0, 32, 32);
+    /// Its increment for one pixel to the right.
+    pub const STEP_X: Bits = Bits::new(32, 32, 32);
+    /// Its increment for one pixel down.
+    pub const STEP_Y: Bits = Bits::new(64, 32, 32);
+}
+
+/// Planes of light of a triangle, in the three words behind its descriptor.
+pub mod planes {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 289;
+    /// Accumulator at the start of the triangle, 18.14, modulo 2^32, of red, green and blue.
+    pub const LIGHT_START: Bits = Bits::new(0, 32, 96);
+    /// Its increment for one pixel to the right, of red, green and blue.
+    pub const LIGHT_STEP_X: Bits = Bits::new(32, 32, 96);
+    /// Its increment for one pixel down, of red, green and blue.
+    pub const LIGHT_STEP_Y: Bits = Bits::new(64, 32, 96);
+    /// 1: smooth; 0: flat, in the colour of the descriptor.
+    pub const SMOOTH: Bits = Bits::new(288, 1, 1);
+}
+
+/// Piece of a line.
+pub mod piece {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 182;
+    /// 1: a pixel in each column, otherwise in each row.
+    pub const X_MAJOR: Bits = Bits::new(0, 1, 1);
+    /// Towards lower columns.
+    pub const LEFT: Bits = Bits::new(1, 1, 1);
+    /// Towards lower rows.
+    pub const UP: Bits = Bits::new(2, 1, 1);
+    /// Column of the first pixel.
+    pub const COLUMN: Bits = Bits::new(3, 11, 11);
+    /// Row of the first pixel.
+    pub const ROW: Bits = Bits::new(14, 10, 10);
+    /// Pixels to the end of the line.
+    pub const COUNT: Bits = Bits::new(24, 12, 12);
+    /// Error of the second pixel, s21; from 0 on, the way to it has a step along the minor axis.
+    pub const ERROR: Bits = Bits::new(36, 21, 21);
+    /// Increment of the error for one pixel without such a step.
+    pub const MINOR: Bits = Bits::new(57, 20, 20);
+    /// Increment of the error for one pixel with such a step, s21: minor − major.
+    pub const FALL: Bits = Bits::new(77, 21, 21);
+    /// Depth accumulator of the first pixel, with the bias and half a code, s20.14.
+    pub const DEPTH: Bits = Bits::new(98, 34, 34);
+    /// Increment of the depth for one pixel, s20.14.
+    pub const DEPTH_STEP: Bits = Bits::new(132, 34, 34);
+    /// RGB565.
+    pub const COLOUR: Bits = Bits::new(166, 16, 16);
+}
+
+/// Piece in memory, in the place of a descriptor.
+pub mod stored_piece {
+    use super::Bits;
+
+    /// Bits of the record.
+    pub const BITS: usize = 384;
+    /// Bits 0 to 127 of the piece again.
+    pub const REPEATS: Bits = Bits::new(0, 128, 128);
+    /// Bits 0 to 127 of the piece.
+    pub const LOW: Bits = Bits::new(128, 128, 128);
+    /// Bits 0 to 63 of the piece again.
+    pub const REPEATS_LOW: Bits = Bits::new(256, 64, 64);
+    /// Bits 128 to 165 of the piece.
+    pub const HIGH: Bits = Bits::new(320, 38, 38);
+    /// 3; in a triangle at most 2, because no picture has 192 groups of columns.
+    pub const MARK: Bits = Bits::new(366, 2, 2);
+    /// RGB565.
+    pub const COLOUR: Bits = Bits::new(368, 16, 16);
+}
+
+/// Header of the contents of a flash image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FlashHeader {
+    /// `GFC1`.
+    pub magic: [u8; 4],
+    /// Length of the contents in bytes.
+    pub length: u32,
+    /// Number of items.
+    pub items: u32,
+    /// CRC-32 of header and list, without this word.
+    pub checksum: u32,
+}
+
+impl FlashHeader {
+    /// Bytes of the record.
+    pub const BYTES: usize = 16;
+    /// Place of the field `magic`.
+    pub const MAGIC: Range<usize> = 0..4;
+    /// Place of the field `length`.
+    pub const LENGTH: Range<usize> = 4..8;
+    /// Place of the field `items`.
+    pub const ITEMS: Range<usize> = 8..12;
+    /// Place of the field `checksum`.
+    pub const CHECKSUM: Range<usize> = 12..16;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15] = *bytes;
+        Self {
+            magic: [b0, b1, b2, b3],
+            length: u32::from_le_bytes([b4, b5, b6, b7]),
+            items: u32::from_le_bytes([b8, b9, b10, b11]),
+            checksum: u32::from_le_bytes([b12, b13, b14, b15]),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let b0 = self.magic[0];
+        let b1 = self.magic[1];
+        let b2 = self.magic[2];
+        let b3 = self.magic[3];
+        let [b4, b5, b6, b7] = self.length.to_le_bytes();
+        let [b8, b9, b10, b11] = self.items.to_le_bytes();
+        let [b12, b13, b14, b15] = self.checksum.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15]
+    }
+}
+
+/// Entry of the list of items of a flash image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FlashEntry {
+    /// Kind: 1 mesh, 2 scene, 3 list.
+    pub kind: u32,
+    /// Length of the item in bytes.
+    pub length: u32,
+    /// CRC-32 of the item.
+    pub checksum: u32,
+    /// Name: 1 to 24 visible characters of ASCII, then zeros.
+    pub name: [u8; 32],
+}
+
+impl FlashEntry {
+    /// Bytes of the record.
+    pub const BYTES: usize = 48;
+    /// Place of the field `kind`.
+    pub const KIND: Range<usize> = 0..4;
+    /// Place of the field `length`.
+    pub const LENGTH: Range<usize> = 4..8;
+    /// Place of the field `checksum`.
+    pub const CHECKSUM: Range<usize> = 8..12;
+    /// Place of the field `reserved`.
+    pub const RESERVED: Range<usize> = 12..16;
+    /// Place of the field `name`.
+    pub const NAME: Range<usize> = 16..48;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, _, _, _, _, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47] = *bytes;
+        Self {
+            kind: u32::from_le_bytes([b0, b1, b2, b3]),
+            length: u32::from_le_bytes([b4, b5, b6, b7]),
+            checksum: u32::from_le_bytes([b8, b9, b10, b11]),
+            name: [b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47],
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1, b2, b3] = self.kind.to_le_bytes();
+        let [b4, b5, b6, b7] = self.length.to_le_bytes();
+        let [b8, b9, b10, b11] = self.checksum.to_le_bytes();
+        let b16 = self.name[0];
+        let b17 = self.name[1];
+        let b18 = self.name[2];
+        let b19 = self.name[3];
+        let b20 = self.name[4];
+        let b21 = self.name[5];
+        let b22 = self.name[6];
+        let b23 = self.name[7];
+        let b24 = self.name[8];
+        let b25 = self.name[9];
+        let b26 = self.name[10];
+        let b27 = self.name[11];
+        let b28 = self.name[12];
+        let b29 = self.name[13];
+        let b30 = self.name[14];
+        let b31 = self.name[15];
+        let b32 = self.name[16];
+        let b33 = self.name[17];
+        let b34 = self.name[18];
+        let b35 = self.name[19];
+        let b36 = self.name[20];
+        let b37 = self.name[21];
+        let b38 = self.name[22];
+        let b39 = self.name[23];
+        let b40 = self.name[24];
+        let b41 = self.name[25];
+        let b42 = self.name[26];
+        let b43 = self.name[27];
+        let b44 = self.name[28];
+        let b45 = self.name[29];
+        let b46 = self.name[30];
+        let b47 = self.name[31];
+        [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, 0, 0, 0, 0, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47]
+    }
+}
+
+/// Header of the firmware in a flash image: that of LiteX's flash boot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FirmwareHeader {
+    /// Length of the program in bytes.
+    pub length: u32,
+    /// CRC-32 of the program.
+    pub checksum: u32,
+}
+
+impl FirmwareHeader {
+    /// Bytes of the record.
+    pub const BYTES: usize = 8;
+    /// Place of the field `length`.
+    pub const LENGTH: Range<usize> = 0..4;
+    /// Place of the field `checksum`.
+    pub const CHECKSUM: Range<usize> = 4..8;
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
+        let [b0, b1, b2, b3, b4, b5, b6, b7] = *bytes;
+        Self {
+            length: u32::from_le_bytes([b0, b1, b2, b3]),
+            checksum: u32::from_le_bytes([b4, b5, b6, b7]),
+        }
+    }
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {
+        let [b0, b1, b2, b3] = self.length.to_le_bytes();
+        let [b4, b5, b6, b7] = self.checksum.to_le_bytes();
+        [b0, b1, b2, b3, b4, b5, b6, b7]
+    }
+}

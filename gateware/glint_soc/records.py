@@ -1,0 +1,395 @@
+"""Records in memory that gateware, firmware and host share: meshes, segments, descriptors, flash images.
+
+`gateware/tests/run.py --packages` writes them as the SystemVerilog package `records_pkg`, as the module `records` of glint-core, and
+as docs/formats/records.md. All three name the fields, so no offset or width is written anywhere else.
+
+To add an optional attribute of a mesh's vertices, add its element to `ATTRIBUTES`.
+"""
+
+import re
+from dataclasses import dataclass
+
+from migen import Signal
+
+from .constants import LIST_GAP_WORDS, LIST_TABLE_WORDS, LISTS, SIZES
+from .packed import Struct, generated, package
+from .rtl import CORE, ROOT, RTL
+
+
+@dataclass(frozen=True)
+class Field:
+    """A field of a record: `count` neighbouring elements of `bits` bits each, which may be records.
+
+    `rust` is a type of glint-core that has the number, for a field of whole bytes. Fields with the name `reserved` are 0.
+    """
+
+    name: str
+    bits: int
+    text: str = ""
+    count: int = 1
+    signed: bool = False
+    rust: str = ""
+    record: "Record | None" = None
+
+    @property
+    def width(self):
+        """Bits of all elements."""
+        return self.bits * self.count
+
+
+@dataclass(frozen=True)
+class Record:
+    """A record: its fields, the lowest bits first.
+
+    A record of `bytes` has fields of whole bytes and becomes a struct in Rust; the fields of any other become constants. `rtl` is the
+    name of its type in SystemVerilog, if the gateware reads it.
+    """
+
+    name: str
+    text: str
+    fields: tuple
+    rtl: str = ""
+    bytes: bool = True
+
+    @property
+    def bits(self):
+        """Bits of the record."""
+        return sum(field.width for field in self.fields)
+
+    @property
+    def size(self):
+        """Bytes of the record."""
+        return self.bits // 8
+
+    def places(self):
+        """Yields each field with the number of its first bit."""
+        at = 0
+        for field in self.fields:
+            yield at, field
+            at += field.width
+
+
+def _vector(name, text):
+    return Field(name, 16, f"{text}, s2.14", count=3, signed=True)
+
+
+def _reserved(bits, count=1):
+    return Field("reserved", bits, "0", count=count)
+
+
+_COLOUR = Field("colour", 16, "RGB565", rust="Rgb565")
+
+HEADER = Record("MeshHeader", "Header of a mesh.", (
+    Field("magic", 8, "`GLM2`", count=4),
+    Field("length", 32, "length of the whole in bytes"),
+    Field("chunks", 32, "number of chunks, at least 1"),
+    Field("vertices", 32, "number of vertices in all chunks"),
+    Field("triangles", 32, "number of triangles in all chunks"),
+    Field("radius", 32, "radius about the origin, u.14, rounded up"),
+    Field("checksum", 32, "CRC-32 of all other bytes"),
+    Field("attributes", 32, "a bit for each optional attribute that the mesh has"),
+))
+
+CHUNK = Record("ChunkHeader", "Header of a chunk of a mesh.", (
+    Field("vertices", 32, "number of vertices, 1 to 65,535"),
+    Field("triangles", 32, "number of triangles"),
+    _reserved(32, count=2),
+), rtl="chunk_t")
+
+VERTEX = Record("Vertex", "Vertex of a mesh.", (
+    _vector("position", "place"), _vector("normal", "normal of the surface"), _COLOUR, _reserved(16),
+), rtl="vertex_t")
+
+TRIANGLE = Record("Triangle", "Triangle of a mesh.", (
+    Field("indices", 16, "numbers of the vertices in the chunk, counter-clockwise seen from outside", count=3),
+    _COLOUR, _vector("normal", "normal of the face"), _reserved(16),
+), rtl="triangle_t")
+
+ATTRIBUTES = (
+    Record("TextureCoordinates", "Texture coordinates of a vertex.", (
+        Field("s", 32, "across, 1 is the width of the texture, s16.16", signed=True),
+        Field("t", 32, "down, 1 is the height of the texture, s16.16", signed=True),
+    )),
+)
+"""Elements of the optional attributes of a mesh's vertices, in the order of their bits in the mesh's header."""
+
+FIRST_ATTRIBUTE = 4
+"""Number of the bit of the first optional attribute. The bits before it stand for the attributes that every mesh has in its records:
+positions, faces, normals and colours. They are 0."""
+
+SEGMENT_END = Record("segment_end", "End point of a segment.", (
+    Field("x", 20, "x, s12.8"), _reserved(12), Field("y", 20, "y, s12.8"), _reserved(12),
+    Field("w", 24, "depth code before its rounding, u18.6"), _reserved(8),
+    Field("side", 16, "colour, RGB565, in the first end; bias in the second one"), _reserved(16),
+), rtl="segment_end_t", bytes=False)
+
+STEPS = Record("steps", "Increments of an edge function.", (
+    Field("x", 21, "increment of E' for one pixel to the right, s21"), Field("y", 21, "increment of E' for one pixel down, s21"),
+), rtl="steps_t", bytes=False)
+
+PLANE = Record("plane", "Plane of a depth or of a channel of light.", (
+    Field("start", 32, "accumulator at the start of the triangle, 18.14, modulo 2^32"),
+    Field("step_x", 32, "its increment for one pixel to the right"),
+    Field("step_y", 32, "its increment for one pixel down"),
+), rtl="plane_t", bytes=False)
+
+DESCRIPTOR = Record("descriptor", "Triangle after the setup, three words of 16 bytes.", (
+    Field("start", 34, "E' of each edge at the start, s34", count=3),
+    Field("depth_start", 32, "depth accumulator at the start, 18.14, modulo 2^32"),
+    Field("depth_step_x", 32, "Gx: its increment for one pixel to the right"),
+    Field("depth_step_y", 32, "Gy: its increment for one pixel down"),
+    Field("steps", STEPS.bits, "of each edge", count=3, record=STEPS),
+    Field("top", 10, "first row"),
+    Field("bottom", 10, "one past the last row"),
+    Field("group_left", 8, "first group of eight columns in the bounds"),
+    Field("group_right", 8, "last group in the bounds"),
+    Field("group_start", 8, "group of the start"),
+    Field("colour", 16, "colour, RGB565, after shading"),
+), rtl="descriptor_t", bytes=False)
+
+PLANES = Record("planes", "Planes of light of a triangle, in the three words behind its descriptor.", (
+    Field("light", PLANE.bits, "of red, green and blue", count=3, record=PLANE),
+    Field("smooth", 1, "1: smooth; 0: flat, in the colour of the descriptor"),
+), rtl="planes_t", bytes=False)
+
+PIECE = Record("piece", "Piece of a line.", (
+    Field("x_major", 1, "1: a pixel in each column, otherwise in each row"),
+    Field("left", 1, "towards lower columns"),
+    Field("up", 1, "towards lower rows"),
+    Field("column", 11, "column of the first pixel"),
+    Field("row", 10, "row of the first pixel"),
+    Field("count", 12, "pixels to the end of the line"),
+    Field("error", 21, "error of the second pixel, s21; from 0 on, the way to it has a step along the minor axis"),
+    Field("minor", 20, "increment of the error for one pixel without such a step"),
+    Field("fall", 21, "increment of the error for one pixel with such a step, s21: minor − major"),
+    Field("depth", 34, "depth accumulator of the first pixel, with the bias and half a code, s20.14"),
+    Field("depth_step", 34, "increment of the depth for one pixel, s20.14"),
+    _COLOUR,
+), rtl="piece_t", bytes=False)
+
+STORED_PIECE = Record("stored_piece", "Piece in memory, in the place of a descriptor.", (
+    Field("repeats", 128, "bits 0 to 127 of the piece again"),
+    Field("low", 128, "bits 0 to 127 of the piece"),
+    Field("repeats_low", 64, "bits 0 to 63 of the piece again"),
+    Field("high", 38, "bits 128 to 165 of the piece"),
+    _reserved(8),
+    Field("mark", 2, "3; in a triangle at most 2, because no picture has 192 groups of columns"),
+    _COLOUR,
+), rtl="stored_piece_t", bytes=False)
+
+FLASH_HEADER = Record("FlashHeader", "Header of the contents of a flash image.", (
+    Field("magic", 8, "`GFC1`", count=4),
+    Field("length", 32, "length of the contents in bytes"),
+    Field("items", 32, "number of items"),
+    Field("checksum", 32, "CRC-32 of header and list, without this word"),
+))
+
+FLASH_ENTRY = Record("FlashEntry", "Entry of the list of items of a flash image.", (
+    Field("kind", 32, "kind: 1 mesh, 2 scene, 3 list"),
+    Field("length", 32, "length of the item in bytes"),
+    Field("checksum", 32, "CRC-32 of the item"),
+    _reserved(32),
+    Field("name", 8, "name: 1 to 24 visible characters of ASCII, then zeros", count=32),
+))
+
+FIRMWARE_HEADER = Record("FirmwareHeader", "Header of the firmware in a flash image: that of LiteX's flash boot.", (
+    Field("length", 32, "length of the program in bytes"),
+    Field("checksum", 32, "CRC-32 of the program"),
+))
+
+RECORDS = (HEADER, CHUNK, VERTEX, TRIANGLE, *ATTRIBUTES, SEGMENT_END, STEPS, DESCRIPTOR, PLANE, PLANES, PIECE, STORED_PIECE,
+           FLASH_HEADER, FLASH_ENTRY, FIRMWARE_HEADER)
+
+DESCRIPTOR_BYTES = {"flat": DESCRIPTOR.size, "smooth": 2 * DESCRIPTOR.size}
+"""Size of a triangle's descriptor in bytes, without and with smooth shading."""
+
+PIECE_MARK = 3
+
+WORD_BYTES = 16
+
+
+def files():
+    """Returns the texts of the generated files by path."""
+    return {
+        RTL / "common" / "records_pkg.sv": _package(),
+        CORE / "records.rs": _rust(),
+        ROOT / "docs" / "formats" / "records.md": _page(),
+    }
+
+
+def _package():
+    return package("records_pkg", "records.py", "Records in memory. docs/formats/records.md explains the fields.", [
+        f"    // The mark of a stored_piece_t.\n    localparam logic [1:0] PIECE_MARK = 2'd{PIECE_MARK};",
+        *(_struct(record).typedef() for record in RECORDS if record.rtl),
+    ])
+
+
+def _struct(record):
+    """Returns the type of a record. Records within it are vectors: Yosys reads an array of structs as a narrower type, without a
+    message."""
+    members = {}
+    for at, field in reversed(list(record.places())):
+        name = f"reserved_{at}" if field.name == "reserved" else field.name
+        members[name] = Signal(field.bits) if field.count == 1 else [Signal(field.bits) for _ in range(field.count)]
+    return Struct(record.rtl, record.text, members)
+
+
+def _rust():
+    parts = [_rust_struct(record) if record.bytes else _rust_fields(record) for record in RECORDS]
+    names = [record.name for record in ATTRIBUTES]
+    variants = "\n".join(f"    /// {record.text}\n    {record.name} = {bit}," for bit, record in enumerate(ATTRIBUTES, FIRST_ATTRIBUTE))
+    sizes = "\n".join(f"            Self::{name} => {name}::BYTES," for name in names)
+    return f"""//! Records in memory (docs/formats/records.md).
+{generated("//", "records.py")}
+
+use core::ops::Range;
+
+use crate::bits::Bits;
+use crate::colour::Rgb565;
+
+/// Bytes of a word of memory. Every record begins at a multiple of it, or of its own size if that is smaller.
+pub const WORD: usize = {WORD_BYTES};
+
+/// The mark of a piece of a line in the place of a descriptor.
+pub const PIECE_MARK: u64 = {PIECE_MARK};
+
+/// An optional attribute of a mesh's vertices. The discriminant is the number of its bit in [`MeshHeader::attributes`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Attribute {{
+{variants}
+}}
+
+impl Attribute {{
+    /// All attributes, by their numbers.
+    pub const ALL: [Self; {len(names)}] = [{", ".join(f"Self::{name}" for name in names)}];
+
+    /// The attribute's bit in the header.
+    pub const fn bit(self) -> u32 {{
+        1 << self as u32
+    }}
+
+    /// Bytes of an element, the attribute of one vertex.
+    pub const fn bytes(self) -> usize {{
+        match self {{
+{sizes}
+        }}
+    }}
+}}
+
+""" + "\n".join(parts)
+
+
+def _rust_struct(record):
+    """Returns a record of bytes: a struct with the functions to read and to write it, and with the places of its fields."""
+    fields, places, reads, writes = [], [], [], []
+    for at, field in record.places():
+        start, size, end = at // 8, field.bits // 8, (at + field.width) // 8
+        places.append(f"    /// Place of the field `{field.name}`.\n"
+                      f"    pub const {field.name.upper()}: Range<usize> = {start}..{end};")
+        if field.name == "reserved":
+            reads.append((None, [f"_, " * (end - start)]))
+            continue
+        number = f"{'i' if field.signed else 'u'}{field.bits}"
+        kind = field.rust or number
+        fields.append(f"    /// {_sentence(field.text)}\n    pub {field.name}: {kind if field.count == 1 else f'[{kind}; {field.count}]'},")
+        elements = [[f"b{start + size * i + byte}" for byte in range(size)] for i in range(field.count)]
+        values = [f"{number}::from_le_bytes([{', '.join(names)}])" if size > 1 else names[0] for names in elements]
+        values = [f"{field.rust}({value})" if field.rust else value for value in values]
+        reads.append((f"{field.name}: {values[0] if field.count == 1 else '[' + ', '.join(values) + ']'}", elements))
+        for i, names in enumerate(elements):
+            value = f"self.{field.name}{'' if field.count == 1 else f'[{i}]'}{'.0' if field.rust else ''}"
+            writes.append(f"        let [{', '.join(names)}] = {value}.to_le_bytes();" if size > 1 else f"        let {names[0]} = {value};")
+    used = {name for _, elements in reads for names in elements for name in names}
+    taken = ", ".join(f"b{byte}" if f"b{byte}" in used else "_" for byte in range(record.size))
+    made = ", ".join(f"b{byte}" if f"b{byte}" in used else "0" for byte in range(record.size))
+    set_fields = "\n".join(f"            {read}," for read, _ in reads if read)
+    lines = "\n".join
+    default = "Default, " if record.size <= 32 else ""
+    return f"""/// {record.text}
+#[derive(Clone, Copy, Debug, {default}PartialEq, Eq)]
+pub struct {record.name} {{
+{lines(fields)}
+}}
+
+impl {record.name} {{
+    /// Bytes of the record.
+    pub const BYTES: usize = {record.size};
+{lines(places)}
+
+    /// The record with these bytes in memory.
+    pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {{
+        let [{taken}] = *bytes;
+        Self {{
+{set_fields}
+        }}
+    }}
+
+    /// The bytes of the record in memory.
+    pub const fn to_bytes(self) -> [u8; Self::BYTES] {{
+{lines(writes)}
+        [{made}]
+    }}
+}}
+"""
+
+
+def _rust_fields(record):
+    """Returns the places of the fields of a record of bits, as a module."""
+    constants = [f"    /// Bits of the record.\n    pub const BITS: usize = {record.bits};"]
+    for at, field in record.places():
+        inner = list(field.record.places()) if field.record else [(0, field)]
+        for offset, part in inner:
+            name = f"{field.name}_{part.name}" if field.record else field.name
+            text = f"{part.text}, {field.text}" if field.record else field.text
+            if name != "reserved":
+                constants.append(f"    /// {_sentence(text)}\n"
+                                 f"    pub const {name.upper()}: Bits = Bits::new({at + offset}, {part.bits}, {field.bits});")
+    return f"""/// {record.text}
+pub mod {record.name} {{
+    use super::Bits;
+
+{chr(10).join(constants)}
+}}
+"""
+
+
+def _sentence(text):
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _page():
+    sections = []
+    for record in RECORDS:
+        unit = 8 if record.bytes else 1
+        size = f"{record.bits // unit} {'bytes' if record.bytes else 'bits'}"
+        title = re.sub(r"(?<=[a-z])(?=[A-Z])|_", " ", record.name).capitalize()
+        sections.append("\n".join([
+            f"## {title}", "", f"{record.text} {size}.", "", f"| {'bytes' if record.bytes else 'bits'} | field | content |",
+            "|---|---|---|", *(_row(at, field, unit) for at, field in record.places()), ""]))
+    attributes = [f"| {bit} | {record.name} | {record.text} {record.size} bytes |" for bit, record in enumerate(ATTRIBUTES, FIRST_ATTRIBUTE)]
+    sizes = [f"| {size.text} | {size.band_lines} | {size.bands} |" for size in SIZES]
+    return "\n".join([
+        generated("<!--", "records.py") + " -->", "",
+        "# Records", "",
+        "The fields of the records that gateware, firmware and host exchange in memory and in files. All are little-endian: bit 0 is the",
+        "lowest of the first byte. RTL takes the fields by name from `records_pkg`, Rust from `glint_core::records`.",
+        "The other [pages](README.md) explain the values and how records follow each other.", "",
+        "\n".join(sections),
+        "## Optional attributes", "",
+        "Of the vertices of a mesh: the bits of `attributes` in the header of the mesh.", "",
+        "| bit | attribute | element |", "|---|---|---|",
+        f"| 0–{FIRST_ATTRIBUTE - 1} | positions, faces, normals, colours | in the records of every mesh; the bits are 0 |", *attributes, "",
+        "## Bands", "",
+        "Horizontal strips of a picture, in which it is drawn.", "",
+        "| picture | lines of a band | bands |", "|---|---|---|", *sizes, "",
+        f"A set of band lists begins with a table of {LIST_TABLE_WORDS} words of 16 bytes: the lengths of {LISTS} lists. {LIST_GAP_WORDS} "
+        "words are between two lists.", "",
+    ])
+
+
+def _row(at, field, unit):
+    first, last = at // unit, (at + field.width) // unit - 1
+    parts = "" if field.record is None else f"`{field.record.name}` "
+    count = f"{field.count} × " if field.count > 1 else ""
+    kind = f"{'s' if field.signed else 'u'}{field.bits}: " if unit == 8 else ""
+    return f"| {first if first == last else f'{first}–{last}'} | {field.name} | {count}{kind}{parts}{field.text} |"
