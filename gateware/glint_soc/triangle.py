@@ -99,12 +99,12 @@ class TriangleEngine(LiteXModule):
             CSRField("cull", offset=1, description="Cull back faces."),
             CSRField("size", size=SIZES.bits, offset=2, values=SIZES.values, description="Size of the picture."),
             CSRField("smooth", offset=4, description="Interpolate colours between vertices. No effect without `gouraud` in `caps`."),
-            CSRField("append", offset=5, description="Continue the descriptors, lists and exceptions of the pass before in place of "
+            CSRField("append", offset=5, description="Continue the descriptors, lists and exceptions of the previous pass instead of "
                      "empty ones. `size`, `geometry_descriptors`, `geometry_lists`, `list_shift` and `exceptions` must be as in that "
                      "pass. No effect in the first pass after a reset or after `cancel`."),
             CSRField("mirror", offset=6, description="The mesh is mirrored: front faces are clockwise on the screen."),
-            CSRField("recolour", offset=7, description="Use `colour` in place of the colours of the mesh."),
-            CSRField("lines", offset=8, description="Draw lines: `mesh` has segments in place of triangles."),
+            CSRField("recolour", offset=7, description="Use `colour` instead of the colours of the mesh."),
+            CSRField("lines", offset=8, description="Draw lines: `mesh` has segments instead of triangles."),
             CSRField("orthographic", offset=9, description="Orthographic projection, in which X and Y are not divided and depth codes "
                      "are linear. Light between vertices is not: `smooth` must be 0."),
         ], description="Start of the geometry pass: descriptors and band lists of a mesh. The registers down to `depth_scale`, "
@@ -175,9 +175,9 @@ class TriangleEngine(LiteXModule):
             "unseen": "Triangles behind the near plane or beyond one side of the picture.",
             "culled": "Triangles culled by the setup: back faces, triangles without area or without a pixel centre in their bounds, "
                       "and tiny ones that cover no pixel.",
-            "descriptor_count": "Descriptors written, with `append` those of the passes before included.",
-            "exception_count": "Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` those "
-                               "of the passes before included.",
+            "descriptor_count": "Descriptors written, with `append` including those of earlier passes.",
+            "exception_count": "Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` "
+                               "including those of earlier passes.",
         }
         results = {name: CSRStatus(32, name=name, description=description) for name, description in results.items()}
         for name, register in results.items():
@@ -200,7 +200,7 @@ class TriangleEngine(LiteXModule):
             "pixels_drawn": ("Pixels that passed the depth test.", 4),
             "cycles_held": "Clock cycles in which a group waited for an earlier group of the same pixels.",
             "cycles_memory": "Clock cycles in which the flush of a band waited for memory.",
-            "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the band before it.",
+            "cycles_flush": "Clock cycles in which a drawn band waited for the flush of the previous band.",
         })
         # More parameters of the geometry pass.
         light = [Parameter(25, name=f"light_{i}", description=f"Row of the light, {axis}, s2.23, two's complement.")
@@ -211,7 +211,7 @@ class TriangleEngine(LiteXModule):
                                        "in bits 0 to 8, green, blue.")
         self._ambient = Parameter(27, name="ambient", description="Ambient light, in the format of `light_colour`. It must be 0 with "
                                   "`smooth` and without `cull`.")
-        self._colour = Parameter(16, name="colour", description="Colour in place of those of the mesh, with `recolour` in "
+        self._colour = Parameter(16, name="colour", description="Colour instead of those of the mesh, with `recolour` in "
                                  "`geometry`, RGB565.")
 
         # # #

@@ -6,7 +6,7 @@ pub const TURN_MS: u64 = 10_000;
 /// A move in the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
-    /// To the next scene, after the last one to the first.
+    /// Show the next scene; after the last one comes the first.
     Next,
     /// Show the previous scene; before the first one comes the last.
     Previous,

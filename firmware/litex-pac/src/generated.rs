@@ -3591,7 +3591,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50bc) }
         }
 
-        /// `descriptor_count`, 32 bits: Descriptors written, with `append` those of the passes before included.
+        /// `descriptor_count`, 32 bits: Descriptors written, with `append` including those of earlier passes.
         #[inline]
         #[must_use]
         pub const fn descriptor_count(&self) -> Register<u32, ReadOnly> {
@@ -3599,7 +3599,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_50c0) }
         }
 
-        /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` those of the passes before included.
+        /// `exception_count`, 32 bits: Triangles that need clipping, listed in `exceptions` by their numbers in the mesh, with `append` including those of earlier passes.
         #[inline]
         #[must_use]
         pub const fn exception_count(&self) -> Register<u32, ReadOnly> {
@@ -3743,7 +3743,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5108) }
         }
 
-        /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the band before it, modulo 2^32.
+        /// `cycles_flush`, 32 bits: Clock cycles in which a drawn band waited for the flush of the previous band, modulo 2^32.
         #[inline]
         #[must_use]
         pub const fn cycles_flush(&self) -> Register<u32, ReadOnly> {
@@ -3791,7 +3791,7 @@ pub mod triangle {
             unsafe { Register::at(0xf000_5120) }
         }
 
-        /// `colour`, 16 bits: Colour in place of those of the mesh, with `recolour` in `geometry`, RGB565. Reads as 0.
+        /// `colour`, 16 bits: Colour instead of those of the mesh, with `recolour` in `geometry`, RGB565. Reads as 0.
         #[inline]
         #[must_use]
         pub const fn colour(&self) -> Register<u16, ReadWrite> {
@@ -4357,7 +4357,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 4) | (value as u32 & 0x1) << 4)
         }
 
-        /// `append`, bit 5: Continue the descriptors, lists and exceptions of the pass before in place of empty ones. `size`, `geometry_descriptors`, `geometry_lists`, `list_shift` and `exceptions` must be as in that pass. No effect in the first pass after a reset or after `cancel`.
+        /// `append`, bit 5: Continue the descriptors, lists and exceptions of the previous pass instead of empty ones. `size`, `geometry_descriptors`, `geometry_lists`, `list_shift` and `exceptions` must be as in that pass. No effect in the first pass after a reset or after `cancel`.
         #[inline]
         #[must_use]
         pub const fn append(self) -> bool {
@@ -4385,7 +4385,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 6) | (value as u32 & 0x1) << 6)
         }
 
-        /// `recolour`, bit 7: Use `colour` in place of the colours of the mesh.
+        /// `recolour`, bit 7: Use `colour` instead of the colours of the mesh.
         #[inline]
         #[must_use]
         pub const fn recolour(self) -> bool {
@@ -4399,7 +4399,7 @@ pub mod triangle {
             Self(self.0 & !(0x1 << 7) | (value as u32 & 0x1) << 7)
         }
 
-        /// `lines`, bit 8: Draw lines: `mesh` has segments in place of triangles.
+        /// `lines`, bit 8: Draw lines: `mesh` has segments instead of triangles.
         #[inline]
         #[must_use]
         pub const fn lines(self) -> bool {
@@ -4756,7 +4756,7 @@ pub mod triangle {
         pub cycles_held: u32,
         /// Clock cycles in which the flush of a band waited for memory, modulo 2^32.
         pub cycles_memory: u32,
-        /// Clock cycles in which a drawn band waited for the flush of the band before it, modulo 2^32.
+        /// Clock cycles in which a drawn band waited for the flush of the previous band, modulo 2^32.
         pub cycles_flush: u32,
     }
 

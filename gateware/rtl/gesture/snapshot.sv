@@ -31,7 +31,7 @@ module snapshot #(
     logic [15:0]           word, next_word;
     logic [4:0]            between;
 
-    // Ones in the places of a column or line that are 0 in the picture.
+    // Mask of the bits of a column or line that must be 0 for a pixel of the small picture.
     always_comb
         for (int i = 0; i < 5; i++) between[i] = request.step > 3'(i);
 

@@ -15,7 +15,7 @@ use crate::error::Error;
 /// Longest time in cycles between two looks at a condition.
 const SLICE: u64 = 1000;
 
-/// Factor of the devices' time while the board follows another one: an engine whose time is estimated too long must have ended when the
+/// Factor of the devices' time while the board follows another one: an engine with an overestimated time must have ended when the
 /// program starts it again.
 const FOLLOWING: u64 = 16;
 

@@ -122,7 +122,7 @@ impl Mask {
     /// Writes the mask as a PNG picture of black and white.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write(&self, out: impl Write) -> io::Result<()> {
         let mut encoder = png::Encoder::new(out, self.width, self.height);
         encoder.set_color(png::ColorType::Grayscale);

@@ -88,7 +88,7 @@ impl<W: Write> Animation<W> {
     /// Begins a GIF of this width and height. The time of an image is rounded up to a multiple of 1/100 s.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn gif(out: W, size: [u32; 2], images_per_second: u16) -> io::Result<Self> {
         let [width, height] = size.map(|side| side as u16);
         let encoder = gif::Encoder::new(out, width, height, &[]);
@@ -102,7 +102,7 @@ impl<W: Write> Animation<W> {
     /// Writes the next image.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn add(&mut self, image: &Image) -> io::Result<()> {
         let picture = image.picture();
         let (rgb, [width, height]) = (picture.rgb(), [image.width, image.height]);

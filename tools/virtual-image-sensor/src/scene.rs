@@ -91,7 +91,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Creates a scene in full light, without noise, with the hands of a function from the time in s.
+    /// Creates a scene in full light, without noise. `hands` returns the hands at a time in s.
     #[must_use]
     pub fn new(size: [usize; 2], hands: impl Fn(f64) -> Vec<Place> + Send + 'static) -> Self {
         Self {

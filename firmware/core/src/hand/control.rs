@@ -125,7 +125,7 @@ impl Setting {
 /// Area and position of the hand in the last frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Last {
-    /// Number of the hand's pixels; 0 if the frame counted longer runs.
+    /// Number of the hand's pixels; 0 if the frame was counted with a larger minimum run.
     count: u32,
     /// Coordinates x and y of its centre.
     centre: [U20_12; 2],

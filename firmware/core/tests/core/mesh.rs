@@ -225,7 +225,7 @@ fn the_largest_radius_holds_every_position() {
     );
 }
 
-/// One flipped bit of any byte, that of the checksum too, is found; nothing else changes the checksum.
+/// A flipped bit in any byte, including the checksum, is detected; nothing else changes the checksum.
 #[test]
 fn the_checksum_covers_every_byte() {
     let good = small();

@@ -188,7 +188,7 @@ struct Watched<B> {
     board: B,
     /// The end of the output, in which a prompt may have begun.
     heard: Vec<u8>,
-    /// Taken at the first prompt.
+    /// Receiver of the event of the first prompt; `None` after it.
     report: Option<Sender<Event>>,
 }
 

@@ -54,7 +54,7 @@ struct LensArguments {
     /// The axis of the model that is up on the screen, without a camera [default: y for .obj, .gltf and .glb, otherwise z].
     #[arg(long, value_parser = named(Axis::ALL, Axis::name))]
     up: Option<Axis>,
-    /// Enlarge what is in the middle of the picture by this factor, by a narrower field of view.
+    /// Enlarge the middle of the picture by this factor, by a narrower field of view.
     #[arg(long, value_name = "FACTOR")]
     zoom: Option<f64>,
     /// The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square.

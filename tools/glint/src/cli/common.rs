@@ -126,7 +126,7 @@ impl LineArguments {
         started(board::emulated(&firmware)?)
     }
 
-    /// Opens a board on a serial port, and ends what an earlier program has left there.
+    /// Opens a board on a serial port, and ends a command or transfer that an earlier program has left.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
         let mut board = self.open(port)?;
         let spinner = spinner("waiting for the board");

@@ -112,7 +112,7 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// Shows a model on the first board by the serial line alone: BIOS, serial boot of the firmware, upload of the model. Then
+    /// Shows a model on the first board over the serial line only: BIOS, serial boot of the firmware, upload of the model. Then
     /// the soft core draws the same picture, to compare the cycles.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = board::verilated_bios()?;

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 /// For `man`: `glint man ~/.local/share/man/man1`.
 #[derive(Args)]
 pub struct ManArguments {
-    /// Folder to write them to; it is made if there is none.
+    /// Output folder; it is created if it is missing.
     folder: PathBuf,
 }
 

@@ -32,7 +32,7 @@ pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
 /// Amount of output in addition to a command's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loudness {
-    /// Errors alone.
+    /// Only errors.
     Quiet,
     /// Warnings, notes and progress too.
     Usual,

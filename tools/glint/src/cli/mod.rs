@@ -40,13 +40,13 @@ pub use messages::fail;
 pub struct Arguments {
     #[command(subcommand)]
     command: Command,
-    /// Print no warnings, notes and progress.
+    /// Print no warnings, notes or progress.
     #[arg(short, long, global = true)]
     quiet: bool,
     /// Print each step with its time.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
-    /// Replace output files that have contents. Without this they are refused.
+    /// Replace output files that are not empty; by default they are refused.
     #[arg(short, long, global = true)]
     force: bool,
 }

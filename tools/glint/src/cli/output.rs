@@ -123,7 +123,7 @@ impl Output {
     /// The open file, for an output that grows while the command runs, such as a log.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be created.
     pub fn into_file(self) -> anyhow::Result<File> {
         match self.device {
             Some(device) => Ok(device),
@@ -135,7 +135,7 @@ impl Output {
     /// closed, or when the program is killed.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be created.
     pub fn spool(&self) -> anyhow::Result<File> {
         let file = match self.device {
             Some(_) => tempfile::tempfile(),
@@ -152,7 +152,7 @@ impl Output {
     /// Writes the file whole or not at all: `write` fills a new file beside it, which then takes its place.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write(self, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> anyhow::Result<()> {
         let written = match self.device {
             Some(device) => fill(&device, write),

@@ -117,7 +117,7 @@ impl Step {
         self.bar.inc(1);
     }
 
-    /// Begins again.
+    /// Restarts the step.
     pub fn reset(&self) {
         self.bar.reset();
     }

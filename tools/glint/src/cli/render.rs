@@ -59,7 +59,7 @@ pub struct RenderArguments {
     /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
-    /// Draw the picture 2 or 4 times as wide and high, and show the mean of 2×2 or 4×4 pixels as one; up to 1280x720. By the model alone.
+    /// Draw the picture 2 or 4 times as wide and high, and show the mean of 2×2 or 4×4 pixels as one; up to 1280x720. Only with the model.
     /// Counts are those of the larger picture.
     #[arg(long, value_name = "2|4", conflicts_with = "depth", value_parser = PossibleValuesParser::new(["2", "4"]))]
     supersample: Option<String>,
@@ -84,7 +84,7 @@ pub struct RenderArguments {
     /// upper left vertex: all triangles are seen, and none is culled).
     #[arg(long, value_parser = named(Winding::ALL, Winding::name), default_value_t, requires = "model")]
     winding: Winding,
-    /// Draw the edges of the model, white, each once: `hidden` (edges alone, without those that faces hide), or `over` (over the shaded
+    /// Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded
     /// faces).
     #[arg(long, value_parser = named(Edges::ALL, Edges::name), requires = "model", conflicts_with_all = ["field", "object"])]
     wireframe: Option<Edges>,

@@ -37,10 +37,10 @@ pub struct ConsoleArguments {
     /// Send the commands of a file, one a line; `-` is standard input. Empty lines and lines that start with # are skipped.
     #[arg(long, value_name = "SCRIPT", conflicts_with = "send")]
     file: Option<PathBuf>,
-    /// Write all that the board sends to a file, as it comes.
+    /// Write all output of the board to a file, as it arrives.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Print what the board sends, after all commands, until this text has come.
+    /// After all commands, print the output of the board until it contains this text.
     #[arg(long, value_name = "TEXT", conflicts_with = "json", value_parser = NonEmptyStringValueParser::new())]
     until: Option<String>,
     /// Longest wait for the text of --until, in seconds of the board's time [default: none].
@@ -144,10 +144,10 @@ struct Heard<'b> {
 }
 
 impl Heard<'_> {
-    /// Whether the text has come.
+    /// Whether the text has been received.
     ///
     /// # Errors
-    /// It has not come in time.
+    /// The text was not received in time.
     fn is_over(&self) -> anyhow::Result<bool> {
         let Some(until) = &self.until else {
             return Ok(false);

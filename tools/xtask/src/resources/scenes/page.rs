@@ -108,7 +108,7 @@ fn fits(size: &Size, device: &Limits) -> String {
     }
 }
 
-/// Whether a build fits the ULX3S, where that for all scenes alone is measured: a build that takes no more of any resource fits if that
+/// Whether a build fits the ULX3S. Only the build for all scenes is measured there: a build that takes no more of any resource fits if that
 /// one does.
 fn fits_ulx3s(row: &Row, all: Option<&Row>, ulx3s: &Cells) -> &'static str {
     let is_smaller = |all: &Row| {

@@ -35,8 +35,8 @@ pub fn one_count(part: f64) -> Largest {
     against_f64(Sensor::ideal(1000.0), COUNT, part * DAY, false)
 }
 
-/// Measures all errors that have a requirement, `count` excepted: those of [`one_count`]. `part` is the fraction of the full duration of
-/// long motions.
+/// Measures all errors that have a requirement, except `count`, which [`one_count`] measures. `part` is the fraction of the full
+/// duration of long motions.
 pub fn measure(part: f64, count: Largest) -> Vec<Target> {
     let Provenance { commit, tools } = Provenance::find();
     let mut rows = Vec::new();
