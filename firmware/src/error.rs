@@ -2,25 +2,22 @@
 
 use core::fmt::{self, Display};
 
+use glint_core::block::Block;
 use glint_core::camera::ViewError;
 use glint_core::console::{LINE_MAX, ParseError};
-use glint_core::feature::{DEMO, Feature, GESTURE, IMU, MESH, OBJECT, REPLAY, UPLOAD};
+use glint_core::feature::{DEMO, Feature, GESTURE, IMU, REPLAY, UPLOAD};
 use glint_core::flash::FlashError;
-use glint_core::framing::FramingError;
 use glint_core::hand::CalibrationError as HandColourError;
-use glint_core::light::MAX_LIGHTS;
 use glint_core::mesh::MeshError;
 use glint_core::orientation::log::LogError;
-use glint_core::picture::Size;
-use glint_core::scene::{LineError, blocks_of};
 use glint_core::wire::Failure;
 use glint_core::wireframe::ProgramError;
 use glint_engines::gesture::SetUpError;
+use glint_scene::{LineError, SettingError};
 
 use crate::gateware::Fallback;
-use crate::models::{MAX_MESHES, NameError, RemoveError};
-use crate::objects::ObjectError;
-use crate::scene::DrawError;
+use crate::models::{MAX_MESHES, NameError};
+use crate::picture::DrawError;
 use crate::scenes::{BuiltIn, DEFAULT, SCENES};
 use crate::sensor::{CalibrationError, SensorError};
 use crate::shapes::Shapes;
@@ -80,24 +77,8 @@ pub enum CommandError<'l> {
         /// The scene.
         built_in: &'static BuiltIn,
     },
-    /// The board has no memory or no screen for this picture size.
-    Size(Size),
-    /// The name is not a mesh, so it cannot be an object.
-    ObjectMesh(&'l str),
-    /// The list of objects cannot be changed.
-    Object(ObjectError),
-    /// The SoC has no triangle engine.
-    NoEngine,
-    /// `stereo` was requested while the wireframe is shown, which has an eye of its own.
-    StereoOfWireframe,
-    /// Edges were requested while no mesh is shown alone.
-    EdgesOfOthers,
-    /// `fit` was requested while neither a mesh alone nor objects are shown.
-    FitOfOthers,
-    /// No camera shows the whole of the meshes.
-    Fit(FramingError),
-    /// The list of lights is full.
-    Lights,
+    /// An option of the scene cannot be set.
+    Setting(SettingError<'l>),
     /// `bench field` needs a shown field.
     NoField,
     /// `bench triangle` needs triangles, but a field is shown.
@@ -124,8 +105,8 @@ pub enum CommandError<'l> {
     Unload {
         /// The name.
         name: &'l str,
-        /// The reason.
-        error: RemoveError,
+        /// The number of the object that has the mesh, from 1; `None` for an unknown name.
+        object: Option<u32>,
     },
     /// A transfer failed.
     Transfer(Failure),
@@ -187,13 +168,53 @@ impl CommandError<'_> {
             Self::Blocks { .. } => 5,
             Self::Features { .. } | Self::LeftOut(_) => 6,
             Self::Line { .. } => 7,
-            _ => 8,
+            Self::Parse(_)
+            | Self::Overlong
+            | Self::View(_)
+            | Self::Key(_)
+            | Self::Setting(_)
+            | Self::NoField
+            | Self::FieldShown
+            | Self::Engine(_)
+            | Self::Unload { .. }
+            | Self::Transfer(_)
+            | Self::Mesh(_)
+            | Self::Program(_)
+            | Self::NoWireframe
+            | Self::Reach
+            | Self::Render(_)
+            | Self::NoFrame
+            | Self::Kernel { .. }
+            | Self::SelfTest(_)
+            | Self::Calibration(_)
+            | Self::Sensor(_)
+            | Self::NoGesture
+            | Self::GestureOff
+            | Self::ImageSensor(_)
+            | Self::NoSensorFrame
+            | Self::HandColour(_)
+            | Self::Log(_)
+            | Self::DemoOff
+            | Self::NoReplay
+            | Self::Mismatch => 8,
         }
     }
 
     /// Whether a sensor is missing or failed, so that nothing moves the camera.
     pub const fn is_of_sensor(&self) -> bool {
         matches!(self, Self::ImageSensor(_) | Self::NoGesture)
+    }
+}
+
+impl From<ViewError> for CommandError<'_> {
+    fn from(error: ViewError) -> Self {
+        Self::View(error)
+    }
+}
+
+impl<'l> From<SettingError<'l>> for CommandError<'l> {
+    fn from(error: SettingError<'l>) -> Self {
+        Self::Setting(error)
     }
 }
 
@@ -212,18 +233,18 @@ impl Display for CommandError<'_> {
                 names.try_for_each(|name| write!(f, " {name} or"))?;
                 f.write_str(" an uploaded mesh, `scene` lists them")
             }
-            Self::Flash { name, error } if DEMO.is_built => write!(f, "{name}: {error}"),
-            Self::Line { name, error } if DEMO.is_built => write!(f, "scene {name}: {error}"),
+            Self::Flash { name, error } => DEMO.when_built(|| write!(f, "{name}: {error}")),
+            Self::Line { name, error } => DEMO.when_built(|| write!(f, "scene {name}: {error}")),
             Self::NoMesh { name, mesh } => write!(
                 f,
                 "scene {name}: no mesh `{mesh}`, expected a built-in one, or one of the flash"
             ),
-            Self::FlashMesh { name, error } if DEMO.is_built => {
-                write!(f, "mesh {name} of the flash: {error}")
+            Self::FlashMesh { name, error } => {
+                DEMO.when_built(|| write!(f, "mesh {name} of the flash: {error}"))
             }
             Self::Blocks { name, lacks } => {
                 write!(f, "scene {name}: this gateware lacks")?;
-                let mut lacks = blocks_of(*lacks);
+                let mut lacks = Block::of_bits(*lacks);
                 lacks.try_for_each(|block| write!(f, " {block}"))?;
                 write!(f, ", expected that of `cargo xtask gateware --scene {name}`")
             }
@@ -234,32 +255,7 @@ impl Display for CommandError<'_> {
                 lacks.try_for_each(|feature| write!(f, " {}", feature.name))?;
                 write!(f, ", expected that of `cargo xtask firmware --scene {name}`")
             }
-            Self::Size(size) => write!(
-                f,
-                "size: {size} not available on this board, expected a smaller size"
-            ),
-            Self::ObjectMesh(name) => {
-                write!(
-                    f,
-                    "object add `{name}`: expected a mesh, `models` lists them"
-                )
-            }
-            Self::Object(error) if OBJECT.is_built => error.fmt(f),
-            Self::NoEngine => f.write_str("gateware: no triangle engine in this SoC, expected cpu"),
-            Self::StereoOfWireframe => f.write_str(
-                "stereo: not available for the wireframe, expected `scene NAME` or `field FIELD` first",
-            ),
-            Self::EdgesOfOthers => f.write_str(
-                "edges: not available for objects, fields and wireframes, expected `scene NAME` of a mesh first",
-            ),
-            Self::FitOfOthers => f.write_str(
-                "fit: expected a mesh alone or objects; `camera 4 30 60` shows most fields",
-            ),
-            Self::Fit(error) if MESH.is_built => write!(f, "fit: {error}"),
-            Self::Lights => write!(
-                f,
-                "light: expected at most {MAX_LIGHTS} lights, `light default` removes them"
-            ),
+            Self::Setting(error) => error.fmt(f),
             Self::NoField => {
                 f.write_str("bench field: no field shown, expected `field FIELD` first")
             }
@@ -281,21 +277,20 @@ impl Display for CommandError<'_> {
                     ),
                 }
             }
-            Self::Unload { name, error } => {
-                write!(f, "unload `{name}`: ")?;
-                match error {
-                    RemoveError::Unknown => {
-                        f.write_str("expected an uploaded mesh, `models` lists them")
-                    }
-                    RemoveError::Object(number) => write!(
-                        f,
-                        "the mesh of object {number}, expected `object remove {number}` first"
-                    ),
-                }
-            }
+            Self::Unload { name, object: None } => write!(
+                f,
+                "unload `{name}`: expected an uploaded mesh, `models` lists them"
+            ),
+            Self::Unload {
+                name,
+                object: Some(number),
+            } => write!(
+                f,
+                "unload `{name}`: the mesh of object {number}, expected `object remove {number}` first"
+            ),
             Self::Transfer(error) => error.fmt(f),
-            Self::Mesh(error) if UPLOAD.is_built => write!(f, "load: not a mesh, previous meshes kept: {error}"),
-            Self::Program(error) if UPLOAD.is_built => write!(f, "program: previous scene kept: {error}"),
+            Self::Mesh(error) => UPLOAD.when_built(|| write!(f, "load: not a mesh, previous meshes kept: {error}")),
+            Self::Program(error) => UPLOAD.when_built(|| write!(f, "program: previous scene kept: {error}")),
             Self::NoWireframe => f.write_str(
                 "press: no wireframe shown, expected `program` first",
             ),
@@ -311,18 +306,18 @@ impl Display for CommandError<'_> {
                     .try_for_each(|kernel| write!(f, " {kernel}"))
             }
             Self::SelfTest(failed) => write!(f, "selftest: {failed} failed, expected none"),
-            Self::Calibration(error) if IMU.is_built => write!(f, "imu calibrate: {error}"),
-            Self::Sensor(error) if IMU.is_built => write!(f, "imu: {error}"),
+            Self::Calibration(error) => IMU.when_built(|| write!(f, "imu calibrate: {error}")),
+            Self::Sensor(error) => IMU.when_built(|| write!(f, "imu: {error}")),
             Self::NoGesture => f.write_str("gesture: no gesture engine in this SoC"),
             Self::GestureOff => {
                 f.write_str("gesture: the image sensor is off, expected `gesture on` first")
             }
-            Self::ImageSensor(error) if GESTURE.is_built => write!(f, "gesture: {error}"),
+            Self::ImageSensor(error) => GESTURE.when_built(|| write!(f, "gesture: {error}")),
             Self::NoSensorFrame => f.write_str(
                 "gesture: no whole frame came within 500 ms, `gesture` shows what the image sensor sends",
             ),
-            Self::HandColour(error) if GESTURE.is_built => write!(f, "gesture calibrate: {error}"),
-            Self::Log(error) if REPLAY.is_built => write!(f, "replay: {error}"),
+            Self::HandColour(error) => GESTURE.when_built(|| write!(f, "gesture calibrate: {error}")),
+            Self::Log(error) => REPLAY.when_built(|| write!(f, "replay: {error}")),
             Self::DemoOff => f.write_str("demo: off, expected `demo on` first"),
             Self::NoReplay => {
                 f.write_str("replay: no attitudes, expected an upload of a log first")
@@ -330,8 +325,6 @@ impl Display for CommandError<'_> {
             Self::Mismatch => f.write_str(
                 "devices: build ids of firmware and gateware differ, expected a matching gateware",
             ),
-            // An error of a part that this build leaves out.
-            _ => Ok(()),
         }
     }
 }

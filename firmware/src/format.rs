@@ -16,18 +16,6 @@ impl<T: Display> Display for OrOff<T> {
     }
 }
 
-/// Displays a value, or `default` for `None`.
-pub struct OrDefault<T>(pub Option<T>);
-
-impl<T: Display> Display for OrDefault<T> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match &self.0 {
-            Some(value) => value.fmt(f),
-            None => f.write_str("default"),
-        }
-    }
-}
-
 /// Displays the three numbers of a vector with six decimals each.
 pub struct Vector(pub [Q32_32; 3]);
 

@@ -4,9 +4,9 @@ use core::task::Poll;
 
 use glint_core::fixed::Turns;
 use glint_hal::timer::Deadline;
+use glint_scene::{Scene, Sphere};
 
 use crate::error::CommandError;
-use crate::scene::{Scene, Sphere};
 
 /// The result of a command.
 pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
@@ -20,8 +20,6 @@ pub enum Reply {
     Done,
     /// The command is done when this job has ended.
     After(Job),
-    /// The command is done when these lines have been executed as commands.
-    Lines(&'static str),
 }
 
 /// Work that continues after a command has returned.

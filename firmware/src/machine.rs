@@ -4,6 +4,7 @@ use glint_hal::digits::Digits;
 use glint_hal::gpio::{InputPort, OutputPort};
 use glint_hal::i2c::I2c;
 use glint_hal::timer::Clock;
+use glint_scene::Scene;
 use litex_pac::ctrl::Ctrl;
 
 use crate::demo::Demo;
@@ -11,9 +12,9 @@ use crate::gesture::Gesture;
 use crate::interrupts::UART;
 use crate::models::Models;
 use crate::panel::Switches;
+use crate::picture::Picture;
 use crate::renderer::Renderer;
 use crate::replay::Replay;
-use crate::scene::Scene;
 use crate::scenes::Library;
 use crate::sensor::Imu;
 use crate::terminal::{ConsoleUart, Terminal};
@@ -62,9 +63,11 @@ pub struct Machine {
     pub uart: &'static ConsoleUart,
     /// The console on the UART.
     pub terminal: Terminal,
-    /// Camera, field, size and appearance.
+    /// Everything that the next picture depends on.
     pub scene: Scene,
-    /// The built-in mesh and wireframe program, the uploaded ones, the objects and the staging memory.
+    /// The last picture.
+    pub picture: Picture,
+    /// The built-in meshes and wireframe program, the uploaded ones and the staging memory.
     pub models: Models,
     /// Scenes, lists and meshes of the flash.
     pub library: Library,
@@ -109,6 +112,7 @@ impl Machine {
             uart: &UART,
             terminal: Terminal::new(&UART, clock),
             scene,
+            picture: Picture::default(),
             models,
             library: Library::new(None),
             demo: Demo::default(),

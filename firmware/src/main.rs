@@ -47,15 +47,14 @@ mod overlay;
 mod panel;
 #[allow(unsafe_code)] // Exports the trap handler's symbol, and takes the UART after a panic.
 mod panic;
+mod picture;
 mod renderer;
 mod replay;
-mod scene;
 mod scenes;
 mod selftest;
 #[allow(unsafe_code)] // Polls a pinned future from interrupts.
 mod sensor;
 mod shapes;
-mod shown;
 #[allow(unsafe_code)] // Uses the UART before it has an owner.
 mod start;
 mod terminal;

@@ -13,6 +13,7 @@ use glint_core::feature::{DEMO, GESTURE, IMU, REPLAY, WIREFRAME};
 use glint_core::hand::Pose;
 use glint_core::mpu6050::Stream;
 use glint_hal::timer::{Clock, Deadline};
+use glint_scene::{Scene, Sphere};
 use litex_pac::cpu;
 
 use crate::commands::{self, gesture as gesture_commands, imu, replay, statistics};
@@ -23,7 +24,6 @@ use crate::interrupts;
 use crate::job::{Job, Reply};
 use crate::machine::{Devices, Machine};
 use crate::panel::{self, HOLD};
-use crate::scene::{Scene, Sphere};
 use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::Input;
 use crate::wireframe::{self, Keypad};
@@ -123,12 +123,15 @@ impl MainLoop {
             clock,
             renderer,
             scene,
+            picture,
+            models,
             ..
         } = &mut self.machine;
         if !demo.is_on() || self.job.is_some() || renderer.is_busy() {
             return;
         }
-        if let (Some(orbit), false) = (&mut demo.orbit, scene.changed())
+        if let Some(orbit) = &mut demo.orbit
+            && !picture.is_outdated(scene, models)
             && orbit.poll(scene).is_ready()
         {
             demo.orbit = None;
@@ -157,8 +160,16 @@ impl MainLoop {
     /// Whether there is work for the next pass of the loop, so that the CPU must not sleep.
     fn is_busy(&mut self) -> bool {
         // The last condition is for SoCs without scan-out, where no interrupt would wake the loop for the blinking LED.
-        self.answers_next()
-            || self.machine.renderer.is_ready(&self.machine.scene)
+        let Machine {
+            renderer,
+            scene,
+            models,
+            picture,
+            ..
+        } = &mut self.machine;
+        let is_ready = renderer.is_ready(|| picture.is_outdated(scene, models));
+        is_ready
+            || self.answers_next()
             || self.machine.keypad.is_changing()
             || self.may_step()
             || sensor::has_events()
@@ -210,7 +221,7 @@ impl MainLoop {
         match input {
             Input::Line(line) => match commands::execute(&mut self.machine, &line) {
                 Ok(None) => self.machine.terminal.prompt(),
-                Ok(Some(Reply::Done | Reply::Lines(_))) => self.finish(Ok(())),
+                Ok(Some(Reply::Done)) => self.finish(Ok(())),
                 Ok(Some(Reply::After(job))) => self.job = Some(job),
                 Err(error) => self.finish(Err(error)),
             },
@@ -233,6 +244,8 @@ impl MainLoop {
         let Machine {
             renderer,
             scene,
+            picture,
+            models,
             imu,
             gesture,
             ..
@@ -246,13 +259,13 @@ impl MainLoop {
             if let Some(Pose { r, theta, phi }) = gesture.move_to() {
                 // The control keeps the distance in its range.
                 let _ = scene.set_sphere(Sphere { r, theta, phi });
-                if !scene.changed() {
+                if !picture.is_outdated(scene, models) {
                     gesture.on_unchanged();
                 }
             }
-            scene.set_mark(gesture.mark());
+            picture.mark = gesture.mark();
         }
-        let (eye, radius) = (scene.view().eye(), scene.sphere().r);
+        let (eye, radius) = (scene.view.eye(), scene.sphere.r);
         if IMU.is_built
             && let Some(Ok(view)) = imu.view(eye, radius)
         {
@@ -265,12 +278,14 @@ impl MainLoop {
         let Machine {
             keypad,
             scene,
+            picture,
+            models,
             renderer,
             ..
         } = &mut self.machine;
         WIREFRAME.is_built
             && keypad.has_request()
-            && !scene.changed()
+            && !picture.is_outdated(scene, models)
             && !renderer.is_busy()
             && renderer.display.back().is_some()
     }
@@ -296,6 +311,7 @@ impl MainLoop {
         let Machine {
             terminal,
             scene,
+            picture,
             models,
             renderer,
             imu,
@@ -306,8 +322,8 @@ impl MainLoop {
             demo,
             ..
         } = &mut self.machine;
-        if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && scene.changed()
-        {
+        let is_outdated = !renderer.is_busy() && picture.is_outdated(scene, models);
+        if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && is_outdated {
             renderer.drop_pending();
         }
         let mut progress = || {
@@ -316,15 +332,13 @@ impl MainLoop {
             poll_buttons(devices, keypad, *clock, scene, imu, demo);
         };
         if !renderer.is_busy() {
-            if !scene.changed() || !(self.job.is_some() || self.quiet.passed()) {
+            if !is_outdated || !(self.job.is_some() || self.quiet.passed()) {
                 return;
             }
-            if scene.shows_objects() {
-                models.objects_mut().turn_normals(&mut progress);
-            }
+            models.update_objects(scene, &mut progress);
         }
-        if let Some(drawn) = renderer.draw(models, scene, progress) {
-            scene.set_drawn(drawn);
+        if let Some(drawn) = renderer.draw(models, scene, picture, progress) {
+            picture.set_drawn(drawn, scene, models);
             if GESTURE.is_built
                 && let Some(gesture) = gesture
             {
@@ -337,17 +351,28 @@ impl MainLoop {
     fn poll_job(&mut self) {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else { return };
+        let is_outdated = |machine: &Machine| {
+            let Machine {
+                picture,
+                scene,
+                models,
+                ..
+            } = machine;
+            picture.is_outdated(scene, models)
+        };
+        // No command of a build leaves a job of a part that it leaves out.
         let result = match job {
             Job::Sensor(job) if IMU.is_built => imu::poll(machine, job),
             Job::Replay if REPLAY.is_built => replay::poll(machine),
             Job::Gesture(job) if GESTURE.is_built => gesture_commands::poll(machine, job),
-            _ if machine.scene.changed() => Poll::Pending,
+            Job::Sensor(_) | Job::Replay | Job::Gesture(_) => Poll::Ready(Ok(())),
+            Job::Draw | Job::Render | Job::Frame { .. } | Job::Orbit(_) if is_outdated(machine) => {
+                Poll::Pending
+            }
             Job::Draw => Poll::Ready(Ok(())),
             Job::Render => Poll::Ready(statistics::print(machine, false)),
             Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
             Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
-            // No command of this build starts another job.
-            _ => Poll::Ready(Ok(())),
         };
         if let Poll::Ready(result) = result {
             self.finish(result);
@@ -365,11 +390,11 @@ impl MainLoop {
         self.job = None;
         let Machine {
             terminal,
-            scene,
+            picture,
             clock,
             ..
         } = &mut self.machine;
-        scene.want_depth(false);
+        picture.wants_depth = false;
         self.quiet = clock.after(QUIET);
         match result {
             Ok(()) => terminal.print(format_args!("ok\n")),
@@ -407,7 +432,7 @@ impl MainLoop {
             devices,
             heartbeat,
             demo,
-            scene,
+            picture,
             ..
         } = &mut self.machine;
         self.beat = clock.after(HEARTBEAT);
@@ -418,7 +443,7 @@ impl MainLoop {
         if *heartbeat {
             devices.leds.set(panel::leds(demo, self.blinks));
         }
-        let drawn = scene.drawn().and_then(Result::ok);
+        let drawn = picture.drawn().and_then(Result::ok);
         let rate = drawn.map(|drawn| drawn.rate(clock.frequency()));
         devices.digits.show(panel::digits(demo, rate, self.blinks));
     }
@@ -445,7 +470,7 @@ fn poll_buttons(
         return;
     }
     let switches = devices.switches.read();
-    if scene.shows_wireframe() && (!demo.is_on() || switches & HOLD != 0) {
+    if scene.wireframe().is_some() && (!demo.is_on() || switches & HOLD != 0) {
         keypad.press(pressed, switches);
         return;
     }

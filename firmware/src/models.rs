@@ -2,27 +2,24 @@
 
 use core::slice;
 
-use glint_core::mesh::{MAX_NAME, Mesh, MeshError};
-use glint_core::object::Place;
+use glint_core::mesh::{Mesh, MeshError};
 use glint_core::regions::Region;
 use glint_core::shape::Shape;
 use glint_core::wireframe::{Program, ProgramError};
-use heapless::{String, Vec};
+use glint_model::Frame;
+use glint_scene::{Content, Name, Scene};
+use heapless::Vec;
 
 use crate::arena::Arena;
-use crate::objects::{ObjectError, Objects};
-use crate::shapes::{CUBE, Shapes};
+use crate::objects::Objects;
+use crate::shapes::Shapes;
 
 /// Name of a mesh that is uploaded without a name.
 pub const MODEL: &str = "model";
 /// Largest number of uploaded meshes.
 pub const MAX_MESHES: usize = 16;
 
-/// The name of a mesh.
-pub type Name = String<MAX_NAME>;
-
 /// A mesh and its name.
-#[derive(Clone)]
 struct Named {
     name: Name,
     mesh: Mesh<'static>,
@@ -37,15 +34,6 @@ pub enum NameError {
     Full,
 }
 
-/// Reason why a mesh cannot be removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RemoveError {
-    /// No uploaded mesh has the name.
-    Unknown,
-    /// The object with this number, from 1, has the mesh.
-    Object(u32),
-}
-
 /// The built-in meshes and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes. An
 /// uploaded mesh replaces a built-in one with its name.
 pub struct Models {
@@ -54,16 +42,15 @@ pub struct Models {
     meshes: Vec<(Named, Region), MAX_MESHES>,
     /// The uploaded program and its memory.
     program: Option<(Program<'static>, Region)>,
-    /// The shown mesh.
-    shown: Named,
     shapes: Shapes,
     /// The built-in program, shown until a program is uploaded.
     cube_program: Program<'static>,
     objects: Objects,
+    revision: u32,
 }
 
 impl Models {
-    /// The models at start: the cube is shown. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with turned
+    /// The models at start. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with turned
     /// normals, and `cube_program` the built-in wireframe program.
     ///
     /// # Errors
@@ -74,26 +61,47 @@ impl Models {
         turned: Arena,
         cube_program: Program<'static>,
     ) -> Result<Self, MeshError> {
-        let shapes = Shapes::new(shapes)?;
         Ok(Self {
             arena,
             meshes: Vec::new(),
             program: None,
-            shown: named(CUBE, shapes.cube()),
-            shapes,
+            shapes: Shapes::new(shapes)?,
             cube_program,
             objects: Objects::new(turned),
+            revision: 0,
         })
     }
 
-    /// The shown mesh.
-    pub const fn mesh(&self) -> &Mesh<'_> {
-        &self.shown.mesh
+    /// A number that is another one after each change of uploads.
+    pub const fn revision(&self) -> u32 {
+        self.revision
     }
 
-    /// The name of the shown mesh.
-    pub fn shown(&self) -> &str {
-        &self.shown.name
+    /// The mesh that `scene` has, alone or in its field; the cube if there is none.
+    pub fn mesh(&self, scene: &Scene) -> Mesh<'_> {
+        self.known(&scene.mesh).unwrap_or(self.shapes.cube())
+    }
+
+    /// The frame of `scene`. Its objects are those of the last [`update`](Self::update_objects).
+    pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
+        scene.frame(Content {
+            mesh: Some(self.mesh(scene)),
+            objects: self.objects.all(),
+            program: *self.program(),
+        })
+    }
+
+    /// Prepares the objects of `scene`, if it shows them, for the next frame. Calls `progress` at short intervals.
+    pub fn update_objects(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
+        if scene.shows_objects() {
+            let Self {
+                objects,
+                meshes,
+                shapes,
+                ..
+            } = self;
+            objects.update(scene, |name| known(meshes, shapes, name), progress);
+        }
     }
 
     /// The wireframe program.
@@ -122,30 +130,6 @@ impl Models {
         self.arena.free()
     }
 
-    /// Shows the mesh with this name. Returns whether it exists, and whether it was not shown before.
-    pub fn show(&mut self, name: &str) -> Option<bool> {
-        let mesh = self.find(name)?;
-        let is_other = self.shown.name != name;
-        self.shown = named(name, mesh);
-        Some(is_other)
-    }
-
-    /// The objects.
-    pub const fn objects(&self) -> &Objects {
-        &self.objects
-    }
-
-    /// The objects, to change their places or to remove them.
-    pub const fn objects_mut(&mut self) -> &mut Objects {
-        &mut self.objects
-    }
-
-    /// Adds an object with the mesh of this name, if it exists.
-    pub fn add_object(&mut self, name: &str, place: &Place) -> Option<Result<(), ObjectError>> {
-        let mesh = self.find(name)?;
-        Some(self.objects.add(&named(name, mesh).name, mesh, place))
-    }
-
     /// A built-in shape; `None` if there is no memory for it.
     pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         self.shapes.shape(shape)
@@ -161,12 +145,14 @@ impl Models {
         self.has_upload(name) || Shapes::names().any(|built_in| built_in == name)
     }
 
-    fn find(&mut self, name: &str) -> Option<Mesh<'static>> {
-        let uploaded = self.meshes.iter().find(|(named, _)| named.name == name);
-        match uploaded {
-            Some((named, _)) => Some(named.mesh),
-            None => self.shapes.named(name),
-        }
+    /// Whether there is a mesh with this name. A shape is made when it is used for the first time.
+    pub fn prepare(&mut self, name: &str) -> bool {
+        self.has_upload(name) || self.shapes.named(name).is_some()
+    }
+
+    /// The mesh with this name, if it is an upload or has been made.
+    pub fn known(&self, name: &str) -> Option<Mesh<'_>> {
+        known(&self.meshes, &self.shapes, name)
     }
 
     /// The staging memory for the next upload, which is separate from all uploads.
@@ -211,18 +197,24 @@ impl Models {
                 return Err(error);
             }
         };
+        self.revise();
         let new = (named(name, mesh), region);
-        if self.shown.name == name {
-            self.shown = new.0.clone();
-        }
-        self.objects.replace(name, mesh);
         let old = self.meshes.iter_mut().find(|(old, _)| old.name == name);
-        match old.map(|old| core::mem::replace(old, new.clone())) {
-            Some((_, unused)) => self.arena.release(unused),
+        match old {
+            Some(old) => {
+                let (_, unused) = core::mem::replace(old, new);
+                self.arena.release(unused);
+            }
             // The caller has checked that the list is not full.
             None => drop(self.meshes.push(new)),
         }
         Ok(())
+    }
+
+    /// Notes that uploads change. Nothing outside of them has their meshes from now on.
+    fn revise(&mut self) {
+        self.revision = self.revision.wrapping_add(1);
+        self.objects.truncate(0);
     }
 
     /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program instead of the
@@ -237,6 +229,7 @@ impl Models {
         };
         match Program::new_checked(self.lasting(region, length)) {
             Ok(program) => {
+                self.revise();
                 if let Some((_, old)) = self.program.replace((program, region)) {
                     self.arena.release(old);
                 }
@@ -249,29 +242,21 @@ impl Models {
         }
     }
 
-    /// Removes an uploaded mesh, and moves the others together, so no frame may be in progress. If the mesh is shown, the cube is
-    /// shown instead.
-    ///
-    /// # Errors
-    /// No mesh has the name, or an object has the mesh.
-    pub fn remove(&mut self, name: &str) -> Result<(), RemoveError> {
-        let position = self.meshes.iter().position(|(named, _)| named.name == name);
-        let position = position.ok_or(RemoveError::Unknown)?;
-        if let Some(number) = self.objects.first_of(name) {
-            return Err(RemoveError::Object(number));
-        }
+    /// Removes an uploaded mesh, and moves the others together, so no frame may be in progress. Returns whether there is such a mesh.
+    pub fn remove(&mut self, name: &str) -> bool {
+        let Some(position) = self.meshes.iter().position(|(named, _)| named.name == name) else {
+            return false;
+        };
         let (_, region) = self.meshes.remove(position);
-        if self.shown.name == name {
-            self.shown = named(CUBE, self.shapes.cube());
-        }
         self.arena.release(region);
         self.close_gaps();
-        Ok(())
+        true
     }
 
     /// Moves all uploads together, so that one gap remains.
     fn close_gaps(&mut self) {
-        let (shown, cube) = (self.shown.name.clone(), self.shapes.cube());
+        self.revise();
+        let cube = self.shapes.cube();
         // Nothing may borrow from the arena while it moves its regions.
         let lengths: Vec<usize, MAX_MESHES> = self
             .meshes
@@ -282,12 +267,6 @@ impl Models {
                 length
             })
             .collect();
-        let meshes = &self.meshes;
-        self.objects.replace_all(|name| {
-            let moves = meshes.iter().any(|(named, _)| named.name == name);
-            moves.then_some(cube)
-        });
-        self.shown = named(CUBE, cube);
         let program = self.program.take();
         let program = program.map(|(program, region)| (program.bytes().len(), region));
 
@@ -303,22 +282,22 @@ impl Models {
             let program = Program::new_checked(self.lasting(region, length));
             self.program = program.ok().map(|program| (program, region));
         }
-        let meshes = &self.meshes;
-        self.objects.replace_all(|name| {
-            let moved = meshes.iter().find(|(named, _)| named.name == name);
-            moved.map(|(named, _)| named.mesh)
-        });
-        self.show(&shown);
     }
 
     /// The first `length` bytes of a region, for a mesh or a program that borrows them.
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
-        // SAFETY: the memory is 'static. What borrows these bytes is dropped, or kept in `meshes`, `program`, `shown` and `objects`,
+        // SAFETY: the memory is 'static. What borrows these bytes is dropped, or kept in `meshes`, `program` and `objects`,
         // which are private. `accept`, `accept_program` and `remove` take it out of these before they release its region, and
         // `close_gaps` before it moves the regions; the arena lends nothing but gaps for writing.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
+}
+
+fn known(meshes: &[(Named, Region)], shapes: &Shapes, name: &str) -> Option<Mesh<'static>> {
+    let mut uploads = meshes.iter().map(|(named, _)| named);
+    let upload = uploads.find(|named| named.name == name);
+    upload.map_or_else(|| shapes.made(name), |named| Some(named.mesh))
 }
 
 /// A mesh and its name, which has at most [`MAX_NAME`] bytes.

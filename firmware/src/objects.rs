@@ -1,68 +1,22 @@
-//! The objects of the scene: several meshes, each with a position and a colour.
+//! The objects of the scene as they are drawn: meshes with places, and copies of meshes with turned normals.
 
-use core::fmt::{self, Display};
-use core::slice;
+use core::{ptr, slice};
 
-use glint_core::matrix::{MatrixError, Normals};
-use glint_core::mesh::{MAX_NAME, Mesh};
-use glint_core::object::{MAX_OBJECTS, Place};
+use glint_core::matrix::Normals;
+use glint_core::mesh::Mesh;
+use glint_core::object::MAX_OBJECTS;
 use glint_core::regions::Region;
-use glint_model::{MeshSubject, Object, Placement};
-use heapless::{String, Vec};
+use glint_model::{Object, Placement};
+use glint_scene::{PlacedMesh, Scene};
+use heapless::Vec;
 
 use crate::arena::Arena;
 
-/// Text for objects instead of the name of a mesh.
-pub const OBJECTS: &str = "objects";
-
-/// Number of normals that are turned between two calls of `progress` in [`Objects::turn_normals`].
+/// Number of normals that are turned between two calls of `progress` in [`Objects::update`].
 const NORMALS_A_CALL: u32 = 8;
 
-/// Reason why the list of objects cannot be changed.
-#[derive(Clone, Copy, Debug)]
-pub enum ObjectError {
-    /// The list is full.
-    Full,
-    /// The list is empty.
-    None,
-    /// No object has this number.
-    Number {
-        /// The number.
-        number: u32,
-        /// Number of objects.
-        count: usize,
-    },
-    /// The matrix of an object would be out of range or singular.
-    Matrix {
-        /// The number of the object.
-        number: u32,
-        /// The row, and the condition that it violates.
-        error: MatrixError,
-    },
-}
-
-impl Display for ObjectError {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Self::Full => write!(
-                f,
-                "object: expected at most {MAX_OBJECTS} objects, `object remove` removes one"
-            ),
-            Self::None => f.write_str("object: no objects, expected `object add MESH` first"),
-            Self::Number { number, count: 0 } => write!(
-                f,
-                "object {number}: no objects, expected `object add MESH` first"
-            ),
-            Self::Number { number, count } => write!(
-                f,
-                "object {number}: expected 1 to {count}, `object list` lists the objects"
-            ),
-            Self::Matrix { number, error } => write!(f, "object {number}: {error}"),
-        }
-    }
-}
-
-/// A bounded list of objects. Placements, and copies of meshes with turned normals, are made when an object changes, not for each frame.
+/// The objects as they are drawn. Placements, and copies of meshes with turned normals, are made when an object changes, not for each
+/// frame.
 pub struct Objects {
     /// The mesh of each object.
     sources: Vec<Source, MAX_OBJECTS>,
@@ -76,7 +30,6 @@ pub struct Objects {
 
 /// The mesh of an object.
 struct Source {
-    name: String<MAX_NAME>,
     mesh: Mesh<'static>,
     /// The copy that is drawn instead of the mesh.
     copy: Option<Copy>,
@@ -106,134 +59,88 @@ impl Objects {
         &self.objects
     }
 
-    /// Names of the meshes, and places, of all objects in order.
-    pub fn list(&self) -> impl Iterator<Item = (&str, Place)> {
-        let names = self.sources.iter().map(|source| source.name.as_str());
-        names.zip(self.objects.iter().map(place))
-    }
-
-    /// Adds an object at the end of the list.
-    ///
-    /// # Errors
-    /// [`ObjectError::Full`].
-    pub fn add(
-        &mut self,
-        name: &String<MAX_NAME>,
-        mesh: Mesh<'static>,
-        at: &Place,
-    ) -> Result<(), ObjectError> {
-        let object = Object {
-            subject: MeshSubject::new(mesh),
-            placement: Placement::new(at.matrix),
-            colour: at.colour,
-        };
-        let source = Source {
-            name: name.clone(),
-            mesh,
-            copy: None,
-        };
-        self.objects.push(object).map_err(|_| ObjectError::Full)?;
-        self.is_turned = false;
-        // Both lists have the same length and capacity.
-        self.sources.push(source).map_err(|_| ObjectError::Full)
-    }
-
-    /// Changes the object with this number, from 1: applies `next` to its place.
-    ///
-    /// # Errors
-    /// The number or the new matrix is out of range; the object is then unchanged.
-    pub fn change(&mut self, number: u32, next: &Place) -> Result<(), ObjectError> {
-        let index = self.index(number)?;
-        let Some(object) = self.objects.get_mut(index) else {
-            return Ok(());
-        };
-        let place = place(object).then(next);
-        let place = place.map_err(|error| ObjectError::Matrix { number, error })?;
-        object.colour = place.colour;
-        let placement = Placement::new(place.matrix);
-        let source = self.sources.get(index);
-        let copy = source.and_then(|source| source.copy.as_ref());
-        match copy {
-            // The object has moved, and its normals have not turned.
-            Some(copy) if placement.normals() == Some(&copy.normals) => {
-                object.placement = placement.of_turned_mesh();
-            }
-            _ => self.drop_copy(index, placement),
-        }
-        Ok(())
-    }
-
-    /// Removes the object with this number, from 1; `None` removes all objects.
-    ///
-    /// # Errors
-    /// The number is out of range.
-    pub fn remove(&mut self, number: Option<u32>) -> Result<(), ObjectError> {
-        let removed = match number {
-            Some(number) => {
-                let index = self.index(number)?;
-                index..index + 1
-            }
-            None => 0..self.objects.len(),
-        };
-        self.objects.drain(removed.clone());
-        for source in self.sources.drain(removed) {
-            if let Some(copy) = source.copy {
+    /// Forgets the objects from this index on, and their meshes.
+    pub fn truncate(&mut self, count: usize) {
+        self.objects.truncate(count);
+        while self.sources.len() > count {
+            let copy = self.sources.pop().and_then(|source| source.copy);
+            if let Some(copy) = copy {
                 self.memory.release(copy.region);
             }
-        }
-        // There may be memory for further copies now.
-        self.is_turned = false;
-        Ok(())
-    }
-
-    /// Gives the objects whose mesh has this name another mesh.
-    pub fn replace(&mut self, name: &str, mesh: Mesh<'static>) {
-        self.replace_all(|other| (other == name).then_some(mesh));
-    }
-
-    /// Gives each object the mesh that `find` returns for the name of its mesh; with `None` it keeps its mesh.
-    pub fn replace_all(&mut self, find: impl Fn(&str) -> Option<Mesh<'static>>) {
-        for index in 0..self.sources.len() {
-            if let Some(source) = self.sources.get_mut(index)
-                && let Some(mesh) = find(&source.name)
-            {
-                source.mesh = mesh;
-                self.restore(index);
-            }
+            // There may be memory for further copies now.
+            self.is_turned = false;
         }
     }
 
-    /// The number of the first object whose mesh has this name, from 1.
-    pub fn first_of(&self, name: &str) -> Option<u32> {
-        let mut numbered = (1..).zip(&self.sources);
-        numbered
-            .find(|(_, source)| source.name == name)
-            .map(|(number, _)| number)
-    }
-
-    /// Sets the options of all objects: `options` returns the subject for a mesh.
-    pub fn set_options(&mut self, options: impl Fn(Mesh<'static>) -> MeshSubject<'static>) {
-        for object in &mut self.objects {
-            object.subject = options(object.subject.mesh);
-        }
-    }
-
-    /// Gives each object whose normals a matrix turns a copy of its mesh with turned normals, as long as there is memory, so that the
-    /// gateware can draw it. Calls `progress` at short intervals. No frame may be in progress.
+    /// Makes the objects those of `scene`, with the meshes that `find` returns for their names. Gives each object whose normals a matrix
+    /// turns a copy of its mesh with turned normals, as long as there is memory, so that the gateware can draw it. Calls `progress` at
+    /// short intervals. No frame may be in progress.
     ///
     /// An object that has not changed since the last call keeps its copy.
-    pub fn turn_normals(&mut self, progress: &mut dyn FnMut()) {
+    pub fn update(
+        &mut self,
+        scene: &Scene,
+        find: impl Fn(&str) -> Option<Mesh<'static>>,
+        progress: &mut dyn FnMut(),
+    ) {
+        self.truncate(scene.objects.len());
+        for (index, placed) in scene.objects.iter().enumerate() {
+            // A scene has no object without a mesh.
+            if let Some(mesh) = find(&placed.mesh) {
+                self.set(index, scene, placed, mesh);
+            }
+        }
         if self.is_turned {
             return;
         }
         let has_gaps = self.sources.iter().any(|source| source.copy.is_some());
         if !self.make_copies(progress) && has_gaps {
-            for index in 0..self.sources.len() {
-                self.restore(index);
+            for (source, object) in self.sources.iter_mut().zip(&mut self.objects) {
+                if let Some(copy) = source.copy.take() {
+                    self.memory.release(copy.region);
+                    object.subject.mesh = source.mesh;
+                    object.placement = Placement::new(*object.placement.matrix());
+                }
             }
             self.make_copies(progress);
         }
         self.is_turned = true;
+    }
+
+    /// Draws `placed` as the object with this index from now on, with the copy of its mesh if that fits.
+    fn set(&mut self, index: usize, scene: &Scene, placed: &PlacedMesh, mesh: Mesh<'static>) {
+        let (Some(source), Some(old)) = (self.sources.get_mut(index), self.objects.get_mut(index))
+        else {
+            let source = Source { mesh, copy: None };
+            // Both lists have room for all objects of a scene.
+            let _ = self.sources.push(source);
+            let _ = self.objects.push(scene.object(placed, mesh));
+            self.is_turned = false;
+            return;
+        };
+        let is_same = ptr::eq(source.mesh.bytes(), mesh.bytes());
+        if is_same && *old.placement.matrix() == placed.place.matrix {
+            old.colour = placed.place.colour;
+            old.subject = scene.options.subject(old.subject.mesh);
+            return;
+        }
+        let mut object = scene.object(placed, mesh);
+        match source.copy.take() {
+            // The object has moved, and its normals have not turned.
+            Some(copy) if is_same && object.placement.normals() == Some(&copy.normals) => {
+                object.placement = object.placement.of_turned_mesh();
+                object.subject.mesh = old.subject.mesh;
+                source.copy = Some(copy);
+            }
+            unfit => {
+                if let Some(copy) = unfit {
+                    self.memory.release(copy.region);
+                }
+                source.mesh = mesh;
+                self.is_turned = false;
+            }
+        }
+        *old = object;
     }
 
     /// Makes the missing copies. Returns whether there was memory for all of them.
@@ -253,43 +160,6 @@ impl Objects {
             }
         }
         is_complete
-    }
-
-    /// Draws the object with its own mesh from now on, at the same position.
-    fn restore(&mut self, index: usize) {
-        if let Some(object) = self.objects.get(index) {
-            let placement = Placement::new(*object.placement.matrix());
-            self.drop_copy(index, placement);
-        }
-    }
-
-    /// Draws the object with its own mesh, at `placement`, from now on, and releases the memory of the copy if there is one.
-    fn drop_copy(&mut self, index: usize, placement: Placement) {
-        if let (Some(source), Some(object)) =
-            (self.sources.get_mut(index), self.objects.get_mut(index))
-        {
-            object.subject.mesh = source.mesh;
-            object.placement = placement;
-            if let Some(copy) = source.copy.take() {
-                self.memory.release(copy.region);
-            }
-            self.is_turned = false;
-        }
-    }
-
-    fn index(&self, number: u32) -> Result<usize, ObjectError> {
-        let count = self.objects.len();
-        let index = (number as usize).checked_sub(1);
-        index
-            .filter(|&index| index < count)
-            .ok_or(ObjectError::Number { number, count })
-    }
-}
-
-fn place(object: &Object) -> Place {
-    Place {
-        matrix: *object.placement.matrix(),
-        colour: object.colour,
     }
 }
 

@@ -1,9 +1,9 @@
 //! Switches, LEDs and displays of digits of the board.
 
 use glint_core::digits::Display;
+use glint_scene::Scene;
 
 use crate::demo::Demo;
-use crate::scene::Scene;
 
 /// Switch 2: the text over the picture.
 const OVERLAY: u16 = 1 << 2;
@@ -30,7 +30,7 @@ impl Switches {
     pub fn take(&mut self, switches: u16, demo: &mut Demo, scene: &mut Scene, now: u64) {
         let changed = core::mem::replace(&mut self.0, switches) ^ switches;
         if changed & OVERLAY != 0 {
-            scene.set_overlay(switches & OVERLAY != 0);
+            scene.overlay = switches & OVERLAY != 0;
         }
         if changed & HOLD != 0 && demo.is_on() {
             demo.turns.hold(now, switches & HOLD != 0);

@@ -7,14 +7,14 @@ use glint_hal::frequency::Frequency;
 use glint_hal::scanout::Display;
 use glint_model::edges::EdgeList;
 use glint_model::{Eyes, Frame, FrameBuffer, FrameStats, RenderError, Subject};
+use glint_scene::Scene;
 use litex_pac::cpu;
 
 use crate::gateware::{self, Cpu, Fallback, GatewareRenderer, Output, RightEye};
 use crate::memory::Scratch;
 use crate::models::Models;
 use crate::overlay::Overlay;
-use crate::scene::{DrawError, Drawn, RenderedBy, Scene};
-use crate::shown::Shown;
+use crate::picture::{DrawError, Drawn, Picture, RenderedBy};
 
 /// The renderers of gateware and CPU, and their memory.
 pub struct Renderer {
@@ -42,15 +42,22 @@ impl Renderer {
         &mut self,
         models: &Models,
         scene: &Scene,
+        picture: &Picture,
         mut progress: impl FnMut(),
     ) -> Option<Result<Drawn, DrawError>> {
-        let frame = scene.frame(models);
+        let frame = models.frame(scene);
         let eyes = match frame.eyes() {
             Ok(eyes) => eyes,
             Err(error) => return Some(Err(DrawError::Render(error))),
         };
         let eyes = eyes.as_ref();
-        let drawn = match self.draw_by_gateware(&frame, eyes, scene, &mut progress)? {
+        let drawn = match self.draw_by_gateware(
+            &frame,
+            eyes,
+            scene.backend,
+            picture.wants_depth,
+            &mut progress,
+        )? {
             Ok(gateware::Rendered {
                 cycles,
                 stats,
@@ -61,7 +68,7 @@ impl Renderer {
                 cycles,
                 stats,
                 by: RenderedBy::Gateware(counters, lack),
-                has_depth: scene.wants_depth(),
+                has_depth: picture.wants_depth,
             }),
             Err(fallback) if CPU.is_built => self
                 .draw_by_cpu(&frame, eyes, fallback, progress)?
@@ -69,32 +76,32 @@ impl Renderer {
             Err(fallback) => Err(DrawError::NoCpu(fallback)),
         };
         if let Ok(drawn) = &drawn {
-            self.draw_mark(scene);
-            self.draw_overlay(models, scene, drawn);
-            self.display.show(scene.size().width());
+            self.draw_mark(scene, picture);
+            self.draw_overlay(scene, drawn);
+            self.display.show(scene.size.width());
         }
         Some(drawn)
     }
 
     /// Draws the mark of the hand's position, if there is one, into the frame that was just drawn.
-    fn draw_mark(&mut self, scene: &Scene) {
-        let (Some(mark), Some(back)) = (scene.mark(), self.display.back()) else {
+    fn draw_mark(&mut self, scene: &Scene, picture: &Picture) {
+        let (Some(mark), Some(back)) = (picture.mark, self.display.back()) else {
             return;
         };
-        mark.draw(back, scene.size());
+        mark.draw(back, scene.size);
         if let Some(gateware) = &mut self.gateware {
             gateware.invalidate(back);
         }
     }
 
     /// Writes what the scene shows, and how fast it was drawn, over the frame that was just drawn.
-    fn draw_overlay(&mut self, models: &Models, scene: &Scene, drawn: &Drawn) {
+    fn draw_overlay(&mut self, scene: &Scene, drawn: &Drawn) {
         let (true, Some(back)) = (scene.has_overlay(), self.display.back()) else {
             return;
         };
-        let size = scene.size();
+        let size = scene.size;
         let mut overlay = Overlay::new(back, size);
-        overlay.line(format_args!("{}", Shown { scene, models }));
+        overlay.line(format_args!("{}", scene.shown()));
         let by = match drawn.by {
             RenderedBy::Cpu(_) => Backend::Cpu,
             RenderedBy::Gateware(..) => Backend::Gateware,
@@ -125,11 +132,11 @@ impl Renderer {
             .is_some_and(GatewareRenderer::is_busy)
     }
 
-    /// Whether [`draw`](Self::draw) would make progress with `scene`.
-    pub fn is_ready(&mut self, scene: &Scene) -> bool {
+    /// Whether [`draw`](Self::draw) would make progress: the gateware does, or `is_outdated` says that a frame is needed.
+    pub fn is_ready(&mut self, is_outdated: impl FnOnce() -> bool) -> bool {
         match &self.gateware {
             Some(gateware) if gateware.is_busy() => gateware.is_ready(),
-            _ => scene.changed() && self.display.back().is_some(),
+            Some(_) | None => self.display.back().is_some() && is_outdated(),
         }
     }
 
@@ -139,17 +146,18 @@ impl Renderer {
         &mut self,
         frame: &Frame,
         eyes: Option<&Eyes>,
-        scene: &Scene,
+        backend: Backend,
+        wants_depth: bool,
         progress: &mut dyn FnMut(),
     ) -> Option<Result<gateware::Rendered, Option<Fallback>>> {
         let colour = self.display.back()?;
         let Some(gateware) = &mut self.gateware else {
             return Some(Err(None));
         };
-        if scene.backend() == Backend::Cpu && !gateware.is_busy() {
+        if backend == Backend::Cpu && !gateware.is_busy() {
             return Some(Err(None));
         }
-        let depth = scene.wants_depth().then_some(&mut *self.depth);
+        let depth = wants_depth.then_some(&mut *self.depth);
         let mut output = Output { colour, depth };
         let mut cpu = Cpu {
             scratch: &mut self.scratch,
@@ -216,7 +224,7 @@ impl Renderer {
         scene: &Scene,
         count: u32,
     ) -> Option<Result<gateware::Rendered, Fallback>> {
-        let frame = scene.frame(models);
+        let frame = models.frame(scene);
         self.unseen(|gateware, right, output, cpu| match frame.eyes()? {
             Some(eyes) => right.repeat(gateware, &eyes, output, cpu, count),
             None => gateware.repeat(&frame, output, cpu, count),
@@ -260,13 +268,13 @@ impl Renderer {
 
     /// Colours of the last frame: RGB565, row by row.
     pub fn colours(&self, scene: &Scene) -> &[u16] {
-        let pixels = scene.size().pixel_count();
+        let pixels = scene.size.pixel_count();
         self.display.front().get(..pixels).unwrap_or_default()
     }
 
     /// Depth codes of the last frame, row by row.
     pub fn depths(&self, scene: &Scene) -> &[u32] {
-        let pixels = scene.size().pixel_count();
+        let pixels = scene.size.pixel_count();
         self.depth.get(..pixels).unwrap_or_default()
     }
 }

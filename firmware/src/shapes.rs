@@ -4,11 +4,9 @@ use core::mem;
 
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::shape::{MAX_BYTES, Shape};
+use glint_scene::CUBE;
 
 use crate::cube;
-
-/// Name of the mesh that is shown at start.
-pub const CUBE: &str = "cube";
 
 /// The built-in meshes, and memory for those that have not been made.
 pub struct Shapes {
@@ -47,6 +45,15 @@ impl Shapes {
         }
         let shape = Shape::ALL.into_iter().find(|shape| shape.name() == name)?;
         self.shape(shape)
+    }
+
+    /// The built-in mesh with this name, if it has been made.
+    pub fn made(&self, name: &str) -> Option<Mesh<'static>> {
+        if name == CUBE {
+            return Some(self.cube);
+        }
+        let shape = Shape::ALL.into_iter().find(|shape| shape.name() == name)?;
+        *self.shapes.get(shape as usize)?
     }
 
     /// A shape; `None` if there is no memory for it, which the windows of main memory exclude.

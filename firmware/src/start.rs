@@ -21,6 +21,7 @@ use glint_hal::timer::{Clock, Stopped};
 use glint_hal::triangle::TriangleEngine;
 use glint_hal::uart::Direct;
 use glint_model::edges::EdgeList;
+use glint_scene::Scene;
 use litex_pac::{BUILD_ID, Peripherals};
 
 use crate::gateware::{GatewareRenderer, RightEye};
@@ -30,7 +31,6 @@ use crate::machine::{Devices, Identity, Machine};
 use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::renderer::Renderer;
-use crate::scene::Scene;
 use crate::scenes::Library;
 
 /// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.

@@ -3,9 +3,6 @@
 use glint_core::wireframe::{Debouncer, Key, Requests};
 use glint_hal::timer::Clock;
 
-/// Text for a wireframe program instead of the name of a mesh.
-pub const WIREFRAME: &str = "wireframe";
-
 /// Switch 0: the arrows rotate instead of pan.
 const ROTATE: u16 = 1 << 0;
 /// Switch 1: the buttons up and down are the keys zoom-in and zoom-out.

@@ -2,7 +2,8 @@
 //!
 //! [`LineEditor`] turns the bytes of a terminal into lines, [`Command::parse`] turns a line into a command, and
 //! [`Command::execute`] calls the machine's method for this command. One table defines the commands; the parser, the help, the
-//! completion and the traits that the machine implements are generated from this table.
+//! completion and the traits that the machine implements are generated from this table. The table also states the options of a scene, with
+//! the keys of scene files.
 
 mod argument;
 mod command;
@@ -10,17 +11,19 @@ mod completion;
 mod editor;
 mod effect;
 mod error;
+mod forms;
 mod object;
 mod syntax;
 mod table;
 mod values;
 
 pub use command::{
-    AppearanceCommands, CameraCommands, Command, Executor, FrameCommands, GestureCommands,
-    ImuCommands, MachineCommands, ObjectCommands, SceneCommands, write_help,
+    Command, DemoCommands, Executor, FORMS, FrameCommands, GestureCommands, ImuCommands,
+    MachineCommands, OptionName, OrbitCommands, SceneCommands, Setting, write_help,
 };
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use effect::Effect;
 pub use error::ParseError;
+pub use forms::{Forms, Row, Turn};
 pub use object::ObjectAction;
 pub use values::{DemoAction, GestureAction, ImuAction};

@@ -14,6 +14,13 @@ pub struct Feature {
     pub is_built: bool,
 }
 
+impl Feature {
+    /// Calls `write` if this build has the part: what a build leaves out has no text.
+    pub fn when_built(self, write: impl FnOnce() -> fmt::Result) -> fmt::Result {
+        if self.is_built { write() } else { Ok(()) }
+    }
+}
+
 /// States that this build lacks the part, and how to build one that has it.
 impl fmt::Display for Feature {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {

@@ -45,7 +45,6 @@ pub mod quality;
 pub mod records;
 pub mod regions;
 pub mod root;
-pub mod scene;
 pub mod shape;
 pub mod stereo;
 pub mod trig;

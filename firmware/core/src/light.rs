@@ -145,7 +145,7 @@ pub const fn whole(part: u8) -> i32 {
 }
 
 /// Displays a colour as the six hexadecimal digits that [`parse_rgb`] reads.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hexadecimal(pub Rgb);
 
 impl fmt::Display for Hexadecimal {

@@ -1,5 +1,7 @@
 //! The command `bench`: measures the selected kernels and prints their cycles.
 
+use glint_scene::SettingError;
+
 use super::statistics::{engine_values, ray_values};
 use crate::bench::{self, Cycles};
 use crate::error::CommandError;
@@ -41,11 +43,11 @@ pub fn run<'l>(
                 frames(machine, FRAMES)?;
             }
         }
-        Some(("triangle" | "field", _)) if !has_engine => return Err(CommandError::NoEngine),
-        Some(("triangle", _)) if machine.scene.field().is_some() => {
+        Some(("triangle" | "field", _)) if !has_engine => return Err(SettingError::NoEngine.into()),
+        Some(("triangle", _)) if machine.scene.field.is_some() => {
             return Err(CommandError::FieldShown);
         }
-        Some(("field", _)) if machine.scene.field().is_none() => return Err(CommandError::NoField),
+        Some(("field", _)) if machine.scene.field.is_none() => return Err(CommandError::NoField),
         Some(("triangle" | "field", count)) => frames(machine, count.unwrap_or(FRAMES))?,
         Some((name, Some(_))) => {
             return Err(CommandError::Kernel {
@@ -83,9 +85,7 @@ fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>>
         renderer,
         ..
     } = machine;
-    if scene.shows_objects() {
-        models.objects_mut().turn_normals(&mut || {});
-    }
+    models.update_objects(scene, &mut || {});
     // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models, scene, count) {

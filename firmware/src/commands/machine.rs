@@ -3,6 +3,7 @@
 use core::fmt;
 
 use glint_core::console::{MachineCommands, write_help};
+use glint_core::mesh::Mesh;
 use litex_pac::{EMULATED, cpu, ctrl};
 
 use crate::error::CommandError;
@@ -10,7 +11,6 @@ use crate::gateware::GatewareRenderer;
 use crate::job::{Outcome, Reply};
 use crate::machine::{Devices, Machine};
 use crate::selftest;
-use crate::shown::Shown;
 
 impl<'l> MachineCommands<'l> for Machine {
     fn help(&mut self, command: Option<&'l str>) -> Outcome<'l> {
@@ -32,19 +32,19 @@ impl<'l> MachineCommands<'l> for Machine {
         } = self;
         let staging = models.staging();
         let (address, room) = (staging.as_ptr().addr(), staging.len());
-        let objects = scene.shows_objects().then(|| models.objects().all());
-        let objects = objects.map(|objects| objects.iter().map(|object| &object.subject.mesh));
-        let (vertices, triangles) = match objects {
-            Some(meshes) => meshes.fold((0, 0), |(vertices, triangles), mesh| {
-                // At most 16 times 2^21.
-                (
-                    vertices + mesh.vertex_count(),
-                    triangles + mesh.triangle_count(),
-                )
-            }),
-            None => (models.mesh().vertex_count(), models.mesh().triangle_count()),
+        let names = scene.objects.iter().map(|object| object.mesh.as_str());
+        let objects = names.filter(|_| scene.shows_objects());
+        let meshes = objects.filter_map(|name| models.known(name));
+        let counts = |mesh: Mesh| (mesh.vertex_count(), mesh.triangle_count());
+        let (vertices, triangles) = if scene.shows_objects() {
+            // At most 16 times 2^21.
+            meshes
+                .map(counts)
+                .fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1))
+        } else {
+            counts(models.mesh(scene))
         };
-        let [width, height] = scene.size().pixels();
+        let [width, height] = scene.size.pixels();
         let (frame, depth) = (renderer.display.front().as_ptr(), renderer.depth.as_ptr());
         let counters = renderer.display.counters();
         let subjects = renderer.gateware.as_ref();
@@ -61,12 +61,12 @@ impl<'l> MachineCommands<'l> for Machine {
             ("blocks", format_args!("{:#x}", identity.blocks)),
             ("gateware_draws", format_args!("{subjects}")),
             ("clock", format_args!("{}", clock.frequency().hertz())),
-            ("scene", format_args!("{}", Shown { scene, models })),
+            ("scene", format_args!("{}", scene.shown())),
             ("vertices", format_args!("{vertices}")),
             ("triangles", format_args!("{triangles}")),
             ("size", format_args!("{width} {height}")),
-            ("shading", format_args!("{}", scene.shading())),
-            ("backend", format_args!("{}", scene.backend())),
+            ("shading", format_args!("{}", scene.options.shading)),
+            ("backend", format_args!("{}", scene.backend)),
             ("frame", format_args!("{:#010x}", frame.addr())),
             ("depth", format_args!("{:#010x}", depth.addr())),
             ("staging", format_args!("{address:#010x} {room}")),

@@ -1,23 +1,20 @@
 //! Commands that upload meshes and wireframe programs and select what the scene shows: a mesh, a field, both, or a wireframe.
 
-use glint_core::choice::switch_name;
-use glint_core::console::{DemoAction, SceneCommands};
-use glint_core::feature::{GESTURE, MESH, OBJECT, UPLOAD};
-use glint_core::field::Field;
+use glint_core::block::Block;
+use glint_core::console::{Command, OrbitCommands, SceneCommands, Setting};
+use glint_core::feature::{GESTURE, MESH, UPLOAD};
 use glint_core::flash::Kind;
-use glint_core::scene::{blocks, commands};
-use glint_core::stereo::Stereo;
+use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
+use glint_scene::{CUBE, Line, lines};
 
-use super::{demo, upload};
+use super::{options, upload};
 use crate::error::CommandError;
-use crate::format::OrOff;
-use crate::job::{Job, Outcome, Reply};
+use crate::job::{Job, Orbit, Outcome, Reply};
 use crate::machine::Machine;
 use crate::models::{MAX_MESHES, MODEL, NameError};
 use crate::scenes::{BuiltIn, DEFAULT, Found, SCENES, Shows};
-use crate::shapes::CUBE;
 
 impl<'l> SceneCommands<'l> for Machine {
     fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
@@ -41,9 +38,7 @@ impl<'l> SceneCommands<'l> for Machine {
         upload::receive(self, "load", upload)?;
         let accepted = self.models.accept(name, length);
         accepted.map_err(CommandError::Mesh)?;
-        self.models.show(name);
-        self.scene.set_field(None);
-        self.scene.touch();
+        self.scene.show_mesh(name);
         Ok(Reply::Done)
     }
 
@@ -85,12 +80,16 @@ impl<'l> SceneCommands<'l> for Machine {
     }
 
     fn unload(&mut self, name: &'l str) -> Outcome<'l> {
-        let removed = self.models.remove(name);
-        removed.map_err(|error| CommandError::Unload { name, error })?;
+        let object = self.scene.first_object_of(name);
+        if object.is_some_and(|_| self.models.has_upload(name)) || !self.models.remove(name) {
+            return Err(CommandError::Unload { name, object });
+        }
+        if self.scene.mesh == name {
+            self.scene.set_mesh(CUBE);
+        }
         // The staging memory is another one from now on, and the other uploads may have moved.
         self.replay = None;
         self.renderer.edges.clear();
-        self.scene.touch();
         Ok(Reply::Done)
     }
 
@@ -111,7 +110,7 @@ impl<'l> SceneCommands<'l> for Machine {
     }
 
     fn press(&mut self, key: Key, rotate: bool) -> Outcome<'l> {
-        if !self.scene.shows_wireframe() {
+        if self.scene.wireframe().is_none() {
             return Err(CommandError::NoWireframe);
         }
         if !self.scene.move_wireframe(key.step(rotate)) {
@@ -119,46 +118,12 @@ impl<'l> SceneCommands<'l> for Machine {
         }
         Ok(Reply::After(Job::Draw))
     }
+}
 
-    fn field(&mut self, field: Option<Option<Field>>) -> Outcome<'l> {
-        match field {
-            Some(field) => self.scene.set_field(field),
-            None => {
-                let field = OrOff(self.scene.field());
-                self.terminal.print_entry("field", &field);
-            }
-        }
-        Ok(Reply::Done)
-    }
-
-    fn mesh(&mut self, on: Option<bool>) -> Outcome<'l> {
-        match on {
-            Some(on) => self.scene.set_with_mesh(on),
-            None => {
-                let on = switch_name(self.scene.with_mesh());
-                self.terminal.print_entry("mesh", &on);
-            }
-        }
-        Ok(Reply::Done)
-    }
-
-    fn demo(&mut self, action: Option<DemoAction>) -> Outcome<'l> {
-        demo::execute(self, action)
-    }
-
-    fn stereo(&mut self, eyes: Option<Option<Stereo>>) -> Outcome<'l> {
-        match eyes {
-            Some(eyes) => {
-                if !self.scene.set_stereo(eyes) {
-                    return Err(CommandError::StereoOfWireframe);
-                }
-            }
-            None => {
-                let eyes = OrOff(self.scene.stereo());
-                self.terminal.print_entry("stereo", &eyes);
-            }
-        }
-        Ok(Reply::Done)
+impl<'l> OrbitCommands<'l> for Machine {
+    fn orbit(&mut self, frames: Option<u32>) -> Outcome<'l> {
+        let orbit = Orbit::new(self.scene.sphere, frames);
+        Ok(Reply::After(Job::Orbit(orbit)))
     }
 }
 
@@ -170,11 +135,8 @@ fn list(machine: &mut Machine) {
         library,
         ..
     } = machine;
-    let shows_mesh = !scene.shows_wireframe()
-        && !scene.shows_objects()
-        && (scene.field().is_none() || scene.with_mesh());
     let mut print = |name: &str| {
-        let state = if shows_mesh && name == models.shown() {
+        let state = if scene.shown_mesh() == Some(name) {
             "shown"
         } else {
             "there"
@@ -198,37 +160,45 @@ fn list(machine: &mut Machine) {
 }
 
 /// Shows the scene at start; a scene, whose lines follow on the scene at start; the first scene of a list; or a mesh.
+///
+/// # Errors
+/// The scene cannot be shown: the shown one stays. Without a sensor the scene is shown as it is.
+#[inline(never)]
 pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
     if name == DEFAULT {
-        reset(machine)?;
+        release_camera(machine);
+        machine.scene.reset()?;
         return Ok(Reply::Done);
     }
     let Some(found) = machine.library.find(name) else {
         show_mesh(machine, name)?;
         return Ok(Reply::Done);
     };
-    let lines = match lines(name, &found)? {
+    let lines = match content(name, &found)? {
         Shows::Lines(lines) => lines,
         Shows::Scenes(list) => {
             let first = list.name(0).unwrap_or_default();
             let found = machine.library.find(first);
-            match lines(first, &found.ok_or(CommandError::Scene(first))?)? {
+            match content(first, &found.ok_or(CommandError::Scene(first))?)? {
                 Shows::Lines(lines) => lines,
                 // A list of lists.
                 Shows::Scenes(_) => return Err(CommandError::Scene(first)),
             }
         }
     };
-    prepare(machine, name, lines)?;
-    reset(machine)?;
-    Ok(Reply::Lines(lines))
+    let before = machine.scene.clone();
+    let shown = show_lines(machine, name, lines);
+    if shown.as_ref().is_err_and(|error| !error.is_of_sensor()) {
+        machine.scene = before;
+    }
+    shown
 }
 
 /// Content of a scene or list.
 ///
 /// # Errors
 /// The flash is damaged, or this build lacks parts of the firmware.
-fn lines<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> {
+fn content<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> {
     if let Found::BuiltIn(built_in) = *found
         && built_in.lacks_features().next().is_some()
     {
@@ -238,74 +208,82 @@ fn lines<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> {
     shows.map_err(|error| CommandError::Flash { name, error })
 }
 
-/// Checks the lines of the scene `name` and that the gateware has its blocks, and takes its meshes from the flash.
+/// Executes the lines of the scene `name` on the scene at start. What moves the camera starts when the lines before it are valid.
 ///
 /// # Errors
-/// The lines cannot be executed. The shown scene stays.
-fn prepare<'l>(
-    machine: &mut Machine,
-    name: &'l str,
-    lines: &'static str,
-) -> Result<(), CommandError<'l>> {
-    for command in commands(lines) {
-        command.map_err(|error| CommandError::Line { name, error })?;
-    }
-    let commands = || commands(lines).flatten().map(|(_, command)| command);
-    let lacks = blocks(commands()) & !machine.identity.blocks;
-    if lacks != 0 {
-        return Err(CommandError::Blocks { name, lacks });
-    }
-    for mesh in commands().filter_map(|command| command.mesh()) {
-        if !upload::from_flash(machine, mesh)? && !machine.models.has(mesh) {
-            return Err(CommandError::NoMesh { name, mesh });
+/// A line is no command of a scene or fails, a mesh is missing, or the gateware lacks a block.
+fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> Outcome<'l> {
+    let backend = machine.scene.backend;
+    machine.scene.reset()?;
+    // Unless the scene states the backend, the gateware needs the blocks that would draw it.
+    machine.scene.backend = Backend::Gateware;
+    let (mut is_stated, mut motion) = (false, None);
+    for line in lines(text) {
+        let (_, line) = line.map_err(|error| CommandError::Line { name, error })?;
+        if let Some(mesh) = line.mesh() {
+            let is_there = upload::from_flash(machine, mesh)? || machine.models.has(mesh);
+            if !is_there || !MESH.is_built || !machine.models.prepare(mesh) {
+                return Err(CommandError::NoMesh { name, mesh });
+            }
+        }
+        is_stated |= matches!(line, Line::Option(Setting::Backend { .. }));
+        line.apply(
+            &mut machine.scene,
+            &mut options::board(&machine.renderer, &mut machine.models),
+        )?;
+        if let Line::Motion(command) = line {
+            check_blocks(machine, name, matches!(command, Command::Gesture { .. }))?;
+            if motion.is_none() {
+                release_camera(machine);
+            }
+            motion = Some(command.execute(machine)?);
         }
     }
-    Ok(())
+    check_blocks(machine, name, false)?;
+    if !is_stated {
+        machine.scene.backend = backend;
+    }
+    if motion.is_none() {
+        release_camera(machine);
+    }
+    Ok(motion.unwrap_or(Reply::Done))
 }
 
-/// Sets everything except backend and overlay as at start.
-///
-/// # Errors
-/// The camera at start is out of range.
-pub fn reset(machine: &mut Machine) -> Result<(), CommandError<'static>> {
-    let Machine {
-        models,
-        scene,
-        imu,
-        gesture,
-        ..
-    } = machine;
-    imu.set_follow(None);
+/// Checks that the gateware has the blocks that draw the scene `name`, and that of the hand if one steers the camera.
+fn check_blocks<'l>(
+    machine: &Machine,
+    name: &'l str,
+    has_hand: bool,
+) -> Result<(), CommandError<'l>> {
+    let hand = if has_hand { Block::Gesture.bit() } else { 0 };
+    match (machine.scene.blocks() | hand) & !machine.identity.blocks {
+        0 => Ok(()),
+        lacks => Err(CommandError::Blocks { name, lacks }),
+    }
+}
+
+/// Stops what moves the camera.
+fn release_camera(machine: &mut Machine) {
+    machine.imu.set_follow(None);
     if GESTURE.is_built
-        && let Some(gesture) = gesture
+        && let Some(gesture) = &mut machine.gesture
     {
         gesture.stop();
     }
-    if OBJECT.is_built {
-        let removed = models.objects_mut().remove(None);
-        removed.map_err(CommandError::Object)?;
-    }
-    scene.reset().map_err(CommandError::View)?;
-    if MESH.is_built {
-        models.show(CUBE);
-    }
-    Ok(())
 }
 
 /// Shows a mesh: an uploaded one, one of the flash, or a built-in one.
 ///
 /// # Errors
 /// There is no such mesh, or it cannot be taken from the flash.
-pub fn show_mesh<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
+fn show_mesh<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
     if !MESH.is_built {
         return Err(CommandError::Scene(name));
     }
     upload::from_flash(machine, name)?;
-    let Machine { models, scene, .. } = machine;
-    let is_other = models.show(name).ok_or(CommandError::Scene(name))?;
-    scene.set_field(None);
-    if is_other {
-        scene.touch();
+    if !machine.models.prepare(name) {
+        return Err(CommandError::Scene(name));
     }
+    machine.scene.show_mesh(name);
     Ok(())
 }

@@ -11,7 +11,7 @@ use heapless::Vec;
 
 use crate::error::CommandError;
 use crate::machine::Machine;
-use crate::scene::RenderedBy;
+use crate::picture::RenderedBy;
 
 /// Prints the statistics of the last frame.
 ///
@@ -20,11 +20,11 @@ use crate::scene::RenderedBy;
 pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'static>> {
     let Machine {
         terminal,
-        scene,
+        picture,
         clock,
         ..
     } = machine;
-    let drawn = scene
+    let drawn = picture
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;

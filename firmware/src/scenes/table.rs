@@ -70,9 +70,9 @@ field box:0.35,0.35,0.35
         "\
 quality balanced
 camera 2.2 20 70
-shading smooth
 light 3,-1,2,fff0d8
 ambient 000000
+shading smooth
 object add sphere scale 0.8
 object add torus scale 1.5,1.5,0.8 rotate x 25 rotate y 15
 object add sphere scale 0.35,0.35,0.7 rotate x -30 move 0.1,1.05,0.2
@@ -88,8 +88,8 @@ object add torus scale 0.45,-0.45,0.7 rotate y 75 rotate z 40 move 0.5,0.65,-0.1
 quality balanced
 lookat 0.9 -1.6 0.9 -0.47 0.75 -0.47
 fov 74
-material ivory
 stereo 0.03,1.6,red-cyan
+material ivory
 field menger:3
 imu look
 ",
@@ -102,10 +102,10 @@ imu look
 quality balanced
 lookat 0 -1.2 0.3 0.1 1 -0.1
 fov 150
-clip 3
-winding screen
 light 0,0,1,000000
 ambient ffffff
+clip 3
+winding screen
 scene polygons
 ",
     ),

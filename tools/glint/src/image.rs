@@ -5,8 +5,8 @@ use crate::formats::glm;
 use crate::scene;
 use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
 use glint_core::mesh::is_name;
-use glint_core::scene::{LineError, Reason, commands};
-use glint_scene::Scene;
+use glint_scene::{LineError, Reason, lines};
+use glint_scene_file::SceneFile;
 
 /// Name of the list of scenes in an image, the first of which the board shows after power-up.
 pub const START: &str = "start";
@@ -53,16 +53,16 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
 ///
 /// # Errors
 /// A mesh cannot be read.
-pub fn pieces(scenes: &[Scene]) -> Result<Vec<Piece>, InputError> {
-    let of = |scene: &Scene| match scene.scenes() {
+pub fn pieces(scenes: &[SceneFile]) -> Result<Vec<Piece>, InputError> {
+    let of = |scene: &SceneFile| match scene.scenes() {
         [] => vec![scene.clone()],
         parts => parts.to_vec(),
     };
     let mut meshes: Vec<Piece> = Vec::new();
     let (mut all, mut list): (Vec<Piece>, String) = Default::default();
     for scene in scenes.iter().flat_map(of) {
-        for name in scene::meshes(&scene) {
-            if !is_built_in(name) && meshes.iter().all(|mesh| mesh.name != name) {
+        for name in scene.meshes() {
+            if !is_built_in(name) && meshes.iter().all(|mesh| mesh.name != *name) {
                 check_name(name)?;
                 meshes.push(piece(Kind::Mesh, name, scene::mesh(name)?));
             }
@@ -164,15 +164,15 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
 fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
     let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());
     let error = |line, expected| FormatError::new(Place::Line(line), expected, quoted(line));
-    for command in commands(text) {
-        let (line, command) = command.map_err(|LineError { line, reason }| {
+    for parsed in lines(text) {
+        let (line, parsed) = parsed.map_err(|LineError { line, reason }| {
             let expected = match reason {
                 Reason::Parse(reason) => format!("a command ({reason})"),
                 Reason::Effect => "a command that sets the picture".to_owned(),
             };
             error(line, expected)
         })?;
-        if let Some(mesh) = command.mesh()
+        if let Some(mesh) = parsed.mesh()
             && !is_built_in(mesh)
             && contents.find(Kind::Mesh, mesh).is_none()
         {

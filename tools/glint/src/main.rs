@@ -5,7 +5,7 @@ mod cli;
 
 use clap::Parser;
 use glint::error::{FormatError, InputError};
-use glint_scene::SceneError;
+use glint_scene_file::SceneError;
 use std::process::ExitCode;
 
 /// Exit code for bad input; clap uses it for a bad command line too.

@@ -1,26 +1,18 @@
-//! Frames of scene files, as the console commands of the scene make them on a board.
+//! Frames of scene files.
 
 use crate::convert::Options;
 use crate::error::{FormatError, InputError};
 use crate::model;
-use glint_core::appearance::Appearance;
-use glint_core::camera::View;
 use glint_core::colour::Shading;
-use glint_core::console::{Command, ObjectAction};
-use glint_core::field::Field;
-use glint_core::fixed::{Q32_32, Turns};
-use glint_core::light::MAX_LIGHTS;
+use glint_core::console::Setting;
 use glint_core::mesh::Mesh;
-use glint_core::object::Place;
-use glint_core::picture::{Edges, Size};
+use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::shape::{MAX_BYTES, Shape};
-use glint_core::stereo::Stereo;
-use glint_core::wireframe::{CUBE, Motion, Program};
-use glint_model::{
-    Clip, FieldSubject, Frame, MeshOptions, Object, Placement, Subject, WireframeSubject,
-};
-use glint_scene::Scene;
+use glint_core::wireframe::{CUBE, Program};
+use glint_model::Frame;
+use glint_scene::{AnyBoard, Content};
+use glint_scene_file::SceneFile;
 use std::fmt::Display;
 
 /// The error for a scene that no board shows, for this reason.
@@ -60,185 +52,50 @@ pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
     }
 }
 
-/// The state that the commands of a scene set, from the state at start on.
-struct State<'s> {
-    model: Option<&'s str>,
-    objects: Vec<(&'s str, Place)>,
-    program: bool,
-    field: Option<Field>,
-    stereo: Option<Stereo>,
-    appearance: Appearance,
-    quality: Quality,
-    prepass: bool,
-    edges: Option<Edges>,
-    view: View,
-    size: Size,
-    options: MeshOptions,
-}
-
-impl<'s> State<'s> {
-    fn of(scene: &'s Scene) -> Result<Self, FormatError> {
-        let degrees = |degrees| Turns::from_degrees(Q32_32::const_from_int(degrees));
-        let mut state = Self {
-            model: None,
-            objects: Vec::new(),
-            program: false,
-            field: None,
-            stereo: None,
-            appearance: Appearance::default(),
-            quality: Quality::default(),
-            prepass: false,
-            edges: None,
-            // Every scene states its camera; this one has the default field of view and near plane.
-            view: View::spherical(Q32_32::lit("2.5"), degrees(40), degrees(65)).map_err(refuse)?,
-            size: Size::default(),
-            options: MeshOptions::default(),
-        };
-        for command in scene.commands() {
-            state.apply(command)?;
-        }
-        Ok(state)
-    }
-
-    fn apply(&mut self, command: Command<'s>) -> Result<(), FormatError> {
-        let appearance = &mut self.appearance;
-        let lens = self.view;
-        match command {
-            Command::Scene { name } => self.model = name,
-            Command::Object {
-                action: Some(ObjectAction::Add { mesh, place }),
-            } => self.objects.push((mesh, place)),
-            Command::Program { .. } => self.program = true,
-            Command::Field { field } => self.field = field.flatten(),
-            Command::Stereo { eyes } => self.stereo = eyes.flatten(),
-            Command::Prepass { on } => self.prepass = on,
-            Command::Edges { edges } => self.edges = edges.flatten(),
-            Command::Quality {
-                quality: Some(quality),
-            } => {
-                (self.quality, self.size) = (quality, quality.size());
-            }
-            Command::Size { size } => self.size = size,
-            Command::Camera { r, theta, phi } => {
-                let view = View::spherical(r, theta, phi).map_err(refuse)?;
-                self.view = view.with_lens_of(&lens);
-            }
-            Command::LookAt { view } => self.view = view.with_lens_of(&lens),
-            Command::View { view } => self.view = view.unwrap_or(lens),
-            Command::FieldOfView { angle } => {
-                self.view = lens.with_field_of_view(angle).map_err(refuse)?
-            }
-            Command::Orthographic { width } => {
-                self.view = lens.with_width(width).map_err(refuse)?
-            }
-            Command::Cull { on } => self.options.cull = on,
-            Command::Clip { far } => {
-                self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
-            }
-            Command::Winding { rule } => self.options.winding = rule,
-            Command::Shading { shading } => {
-                self.options.shading = shading.unwrap_or(self.options.shading);
-            }
-            Command::Material { material } => appearance.material = material.unwrap_or_default(),
-            Command::Light { light } => match light.flatten() {
-                Some(light) => {
-                    let added = appearance.lights.push(light);
-                    added.map_err(|_| refuse(format_args!("more than {MAX_LIGHTS} lights")))?;
-                }
-                None => appearance.lights.clear(),
-            },
-            Command::Ambient { colour } => appearance.ambient = colour.flatten(),
-            Command::Background { background } => {
-                appearance.background = background.flatten();
-            }
-            Command::Fog { density } => {
-                appearance.fog = density.flatten().unwrap_or_default();
-            }
-            Command::Occlusion { on } => appearance.occlusion = on.unwrap_or_default(),
-            Command::Undecided { on } => appearance.undecided = on.unwrap_or_default(),
-            // The frame follows from its subject, and the model has no backends.
-            _ => {}
-        }
-        Ok(())
-    }
-}
-
-/// Names of the meshes of a scene, each once.
-pub fn meshes(scene: &Scene) -> Vec<&str> {
-    let mut names = Vec::new();
-    for mesh in scene.commands().filter_map(|command| command.mesh()) {
-        if !names.contains(&mesh) {
-            names.push(mesh);
-        }
-    }
-    names
-}
-
 /// Calls `draw` with the frame of a scene, with `changes`.
 ///
 /// # Errors
-/// A mesh cannot be read, or a setting is out of range.
+/// A mesh cannot be read.
 pub fn draw<T>(
-    scene: &Scene,
+    file: &SceneFile,
     changes: &Changes,
     draw: impl FnOnce(&Frame) -> T,
 ) -> Result<T, InputError> {
-    let in_scene = |error: FormatError| error.in_file(scene.name());
-    let mut state = State::of(scene).map_err(in_scene)?;
-    state.options.shading = changes.shading.unwrap_or(state.options.shading);
+    let in_scene = |error: FormatError| error.in_file(file.name());
+    let mut scene = file.scene().clone();
+    scene.options.shading = changes.shading.unwrap_or(scene.options.shading);
     if let Some(quality) = changes.quality {
-        (state.quality, state.size) = (quality, quality.size());
+        let set = scene.apply(&Setting::Quality { quality }, &mut AnyBoard);
+        set.map_err(|error| in_scene(refuse(error)))?;
     }
-    let options = state.options;
-    let names = meshes(scene);
-    let meshes = names.iter().map(|name| mesh(name));
-    let meshes = meshes.collect::<Result<Vec<_>, _>>()?;
-    let mesh = |name: &str| {
-        let known = names.iter().position(|known| *known == name);
-        let bytes = known.and_then(|known| meshes.get(known));
-        let bytes = bytes.map_or(&[][..], Vec::as_slice);
-        let mesh = Mesh::new_checked(bytes).map_err(|error| in_scene(refuse(error)))?;
-        Ok::<_, InputError>(options.subject(mesh))
-    };
-    let objects = state.objects.iter().map(|(name, place)| {
-        Ok(Object {
-            subject: mesh(name)?,
-            placement: Placement::new(place.matrix),
-            colour: place.colour,
+    scene.size = changes.size.unwrap_or(scene.size);
+    let names = file.meshes();
+    let bytes = names.iter().map(|name| mesh(name));
+    let bytes = bytes.collect::<Result<Vec<_>, _>>()?;
+    let meshes = bytes.iter().map(|bytes| Mesh::new_checked(bytes));
+    let meshes = meshes.collect::<Result<Vec<_>, _>>();
+    let meshes = meshes.map_err(|error| in_scene(refuse(error)))?;
+    let objects: Vec<_> = (scene.objects.iter())
+        .flat_map(|placed| {
+            let known = names.iter().position(|known| *known == *placed.mesh);
+            let mesh = known.and_then(|known| meshes.get(known));
+            mesh.map(|mesh| scene.object(placed, *mesh))
         })
-    });
-    let objects = objects.collect::<Result<Vec<_>, InputError>>()?;
-    let field = state.field.as_ref().map(|field| FieldSubject {
-        field,
-        appearance: &state.appearance,
-        quality: state.quality,
-        prepass: state.prepass,
-    });
-    let model = state.model.map(mesh).transpose()?;
-    let subject = match (model, field, state.edges) {
-        _ if state.program => Subject::Wireframe(WireframeSubject {
-            program: Program::new_checked(CUBE.as_flattened())
-                .map_err(|error| in_scene(refuse(error)))?,
-            pose: Motion::default().pose(),
-        }),
-        (None, None, _) => Subject::Objects(&objects),
-        (Some(mesh), Some(field), _) => Subject::MeshInField(mesh, field),
-        (None, Some(field), _) => Subject::Field(field),
-        (Some(mesh), None, Some(edges)) => Subject::edges(mesh, edges),
-        (Some(mesh), None, None) => Subject::Mesh(mesh),
-    };
-    let size = changes.size.unwrap_or(state.size);
-    Ok(draw(&Frame {
-        stereo: state.stereo,
-        ..Frame::in_appearance(subject, state.view, size, &state.appearance)
-    }))
+        .collect();
+    let program = Program::new_checked(CUBE.as_flattened());
+    Ok(draw(&scene.frame(Content {
+        // A scene without objects has one mesh at most.
+        mesh: meshes.first().copied(),
+        objects: &objects,
+        program: program.map_err(|error| in_scene(refuse(error)))?,
+    })))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::render;
-    use glint_scene::{NAMES, built_in};
+    use glint_scene_file::{NAMES, built_in};
 
     #[test]
     fn every_scene_has_its_content() {

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint_core::camera::View;
-use glint_core::console::Command;
+use glint_core::console::{Command, Setting};
 
 /// An emulated board with a console.
 pub type Emulated = SimulatedBoard<EmulatedBoard>;
@@ -64,7 +64,7 @@ pub fn view(board: &mut Emulated) -> Result<View> {
     let lines = command(board, "view")?;
     let line = lines.first().context("no camera")?;
     match Command::parse(line) {
-        Ok(Some(Command::View { view: Some(view) })) => Ok(view),
+        Ok(Some(Command::Set(Setting::View { view }))) => Ok(view),
         _ => bail!("expected a camera, found {line:?}"),
     }
 }

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use anyhow::{Context, Result, bail, ensure};
-use glint_scene::{NAMES, Needs, Scene};
+use glint_scene_file::{NAMES, Needs, SceneFile};
 use litex_pac::memories::{MAIN_RAM, SRAM};
 use object::elf::PT_LOAD;
 use object::read::elf::{ElfFile32, ProgramHeader};
@@ -83,8 +83,8 @@ pub fn check_peers() -> Result<Image> {
 ///
 /// # Errors
 /// As [`build`].
-pub fn build_for(board: Board, scenes: &[Scene], features: &[&str]) -> Result<Image> {
-    let mut names: Vec<&str> = scenes.iter().map(Scene::name).collect();
+pub fn build_for(board: Board, scenes: &[SceneFile], features: &[&str]) -> Result<Image> {
+    let mut names: Vec<&str> = scenes.iter().map(SceneFile::name).collect();
     if names == NAMES {
         names = vec!["all"];
     }

@@ -14,7 +14,7 @@ use std::process::Command;
 use anyhow::{Context, Result};
 use clap::builder::PossibleValuesParser;
 use glint_core::block::Block;
-use glint_scene::Needs;
+use glint_scene_file::Needs;
 
 use crate::{paths, run, scenes};
 

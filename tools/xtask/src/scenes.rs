@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use anyhow::{Result, bail};
-use glint_scene::{NAMES, Scene, built_in};
+use glint_scene_file::{NAMES, SceneFile, built_in};
 
 use crate::generated;
 
@@ -17,7 +17,7 @@ pub fn generate(check: bool) -> Result<()> {
 }
 
 /// The built-in scenes, in the order of their names.
-pub fn all() -> impl Iterator<Item = Scene> {
+pub fn all() -> impl Iterator<Item = SceneFile> {
     NAMES.into_iter().filter_map(built_in)
 }
 
@@ -25,12 +25,12 @@ pub fn all() -> impl Iterator<Item = Scene> {
 ///
 /// # Errors
 /// A scene cannot be read.
-pub fn read(names: &[String]) -> Result<Vec<Scene>> {
+pub fn read(names: &[String]) -> Result<Vec<SceneFile>> {
     let mut scenes = Vec::new();
     for name in names {
         match name.as_str() {
             "all" => scenes.extend(all()),
-            name => scenes.push(glint_scene::read(name)?),
+            name => scenes.push(glint_scene_file::read(name)?),
         }
     }
     Ok(scenes)
@@ -40,7 +40,7 @@ pub fn read(names: &[String]) -> Result<Vec<Scene>> {
 ///
 /// # Errors
 /// Two scenes state different frequencies.
-pub fn clock(scenes: &[Scene]) -> Result<Option<f64>> {
+pub fn clock(scenes: &[SceneFile]) -> Result<Option<f64>> {
     let mut stated = None;
     for scene in scenes {
         match (stated, scene.clock()) {
@@ -73,7 +73,7 @@ pub static SCENES: [BuiltIn; {}] = [
     )
 }
 
-fn entry(scene: &Scene) -> String {
+fn entry(scene: &SceneFile) -> String {
     let needs = scene.needs();
     let features = needs.features.iter().map(|feature| {
         let constant = feature.name.to_uppercase().replace('-', "_");

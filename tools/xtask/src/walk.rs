@@ -13,7 +13,7 @@ use std::slice;
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::block::Block;
 use glint_core::feature::{self, Feature};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use serde::Deserialize;
 
 use crate::gateware::{self, Board, Library};
@@ -85,8 +85,8 @@ pub fn set_up_and_walk(names: &[String]) -> Result<()> {
 /// # Errors
 /// A name is unknown, a build fails, does not answer, or draws another picture than the complete build, or takes more cycles.
 pub fn walk(names: &[String]) -> Result<()> {
-    let all: Vec<Scene> = scenes::all().collect();
-    let everything = || all.iter().map(Scene::name).map(str::to_owned);
+    let all: Vec<SceneFile> = scenes::all().collect();
+    let everything = || all.iter().map(SceneFile::name).map(str::to_owned);
     let subsets = || Block::ALL.map(|block| format!("{ONLY}{}", block.name()));
     let names = match names {
         [] => everything().chain(subsets()).collect(),
@@ -130,7 +130,7 @@ fn subset(name: &str) -> Result<String> {
 }
 
 /// Draws a scene's picture on its own build and on the `complete` one. Returns a line about it.
-fn of_scene(scene: &Scene, complete: &Build) -> Result<String> {
+fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     let own = Build::of_scene(scene)?;
     let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();
     own.answers(&blocks)?;
@@ -185,7 +185,7 @@ impl Build {
     }
 
     /// Builds what a scene needs.
-    fn of_scene(scene: &Scene) -> Result<Self> {
+    fn of_scene(scene: &SceneFile) -> Result<Self> {
         let name = scene.name();
         let options = scene.needs().options();
         let options: Vec<_> = options.iter().map(String::as_str).collect();
@@ -220,7 +220,7 @@ impl Build {
 
     /// Fails unless the firmware refuses the commands of each part that the scene does not need, on the emulated board, and depths that
     /// the gateware lacks.
-    fn refuses_others(&self, scene: &Scene) -> Result<()> {
+    fn refuses_others(&self, scene: &SceneFile) -> Result<()> {
         let needs = scene.needs().features;
         for (part, command) in COMMANDS {
             let is_reached = part != feature::SPHERES || needs.contains(&feature::FIELD);
@@ -254,7 +254,7 @@ impl Build {
     }
 
     /// Draws the scene's picture.
-    fn draw(&self, scene: &Scene) -> Result<Frame> {
+    fn draw(&self, scene: &SceneFile) -> Result<Frame> {
         let folder = paths::target().join("walk");
         fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
         let picture = folder.join(format!("{}-{}.png", scene.name(), self.name));
@@ -320,7 +320,7 @@ mod tests {
         for name in SAMPLE {
             let is_known = match name.strip_prefix(ONLY) {
                 Some(block) => Block::NAMES.contains(&block),
-                None => glint_scene::NAMES.contains(&name),
+                None => glint_scene_file::NAMES.contains(&name),
             };
             assert!(is_known, "{name}");
         }

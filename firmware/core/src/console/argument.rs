@@ -65,7 +65,7 @@ impl<'a> Reader<'a> {
 
     /// Returns whether all words of the line were taken.
     #[inline(never)]
-    fn is_empty(&self) -> bool {
+    pub fn is_empty(&self) -> bool {
         self.words.clone().next().is_none()
     }
 

@@ -4,9 +4,10 @@ use core::fmt;
 
 use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
+use super::forms::{FIELD, LIT, MESHES, Row, Turn, key};
 use super::object::Object;
 use super::syntax::{Kind, Parameter, Syntax};
-use super::table::{commands, part};
+use super::table::{commands, part, shows};
 use super::values::{
     Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
     Mounting, Name, Sensitivity, Size, Upload, View, Whole,
@@ -27,6 +28,12 @@ pub trait Executor<'a> {
     /// The result of a command. It may borrow from the line.
     type Output;
 
+    /// The result of a setting.
+    fn set(&mut self, setting: Setting<'a>) -> Self::Output;
+
+    /// The result of a command that shows an option.
+    fn show(&mut self, option: OptionName) -> Self::Output;
+
     /// The result of a command that this build leaves out. [`Command::parse`] refuses such a command.
     fn left_out(&mut self, feature: Feature) -> Self::Output;
 }
@@ -42,49 +49,67 @@ commands! {
         buttons Buttons(): "show buttons and switches";
         reboot Reboot(): "reset the SoC";
     }
+    options {}
 
-    /// Commands of the scene: mesh, field and wireframe.
+    /// Commands of scenes, meshes and wireframe programs.
     SceneCommands {
-        scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on";
+        scene Scene(name: Option<Name>): "list meshes and scenes, or show one; a scene sets everything that the picture depends on"
+            => key(Turn::Subject).named("model").without(&["object", "program"]);
         load Load(upload: Upload, name: Option<MeshName>) in UPLOAD: "upload a mesh (binary) under a name (default model) and show it";
         models Models() in UPLOAD: "list the meshes and the memory for uploads";
         unload Unload(name: MeshName) in UPLOAD: "remove an uploaded mesh";
-        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one";
+        program Program(upload: Option<Upload>) in WIREFRAME: "upload a wireframe program (binary) and show it; alone: show the last one"
+            => key(Turn::Subject);
         press Press(key: Key, rotate: Flag) in WIREFRAME: "press a key of the wireframe for one frame: arrows pan, or rotate; zooms move along z";
-        field Field(field: Option<Or<Off, Field>>) in FIELD: "show or set the distance field; off shows the mesh";
-        mesh Mesh(on: Option<bool>) in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
-        stereo Stereo(eyes: Option<Or<Off, Stereo>>) in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye";
+    }
+    options {
+        field Field(field: Or<Off, Field>) or show in FIELD: "show or set the distance field; off shows the mesh"
+            => key(Turn::Subject).without(&["program"]);
+        mesh Mesh(on: bool) or show in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
+        stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye"
+            => key(Turn::Option).with(LIT).without(&["orthographic"]);
+    }
+
+    /// Commands of the demo.
+    DemoCommands {
         demo Demo(action: Option<DemoAction>) in DEMO: "show the scenes of the flash's first list, or of the built-in list demo, in turn";
     }
-
-    /// Commands of objects: several meshes in a frame, each with its own position.
-    ObjectCommands {
-        object Object(action: Option<Object>) in OBJECT: "list or show the objects, add one, change its place or colour, or remove it";
-    }
-
-    /// Commands of a field's appearance, and of light and background of meshes.
-    AppearanceCommands {
-        material Material(material: Option<Material>) in FIELD: "show or set the material of a field; normal colours faces by direction";
-        light Light(light: Option<Or<Default, Light>>) in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default";
-        ambient Ambient(colour: Option<Or<Default, Rgb>>) in LIGHT: "show or set the ambient light";
-        background Background(background: Option<Or<Default, Background>>): "show or set the background; default is white for a field and black for meshes, which have one colour";
-        fog Fog(density: Option<Or<Off, U4_28>>) in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)";
-        occlusion Occlusion(on: Option<bool>) in FIELD: "turn ambient occlusion of a field on or off, or show the setting";
-        undecided Undecided(on: Option<bool>) in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";
-    }
-
-    /// Commands of the camera.
-    CameraCommands {
-        camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis";
-        view View(view: Option<View>): "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection";
+    options {
+        object Object(action: Object) or show in OBJECT: "list or show the objects, add one, change its place or colour, or remove it"
+            => key(Turn::Subject).action("add").list().without(&["field", "program"]);
+        material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours faces by direction"
+            => key(Turn::Option).with(FIELD);
+        light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
+            => key(Turn::Option).list().with(LIT);
+        ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
+            => key(Turn::Option).with(LIT);
+        background Background(background: Or<Default, Background>) or show: "show or set the background; default is white for a field and black for meshes, which have one colour"
+            => key(Turn::Option).with(LIT);
+        fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)"
+            => key(Turn::Option).with(FIELD);
+        occlusion Occlusion(on: bool) or show in FIELD: "turn ambient occlusion of a field on or off, or show the setting"
+            => key(Turn::Option).with(FIELD);
+        undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";
+        camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
+            => key(Turn::Camera).with(LIT).without(&["lookat"]);
+        view View(view: View) or show: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
+            => key(Turn::Camera).with(LIT).without(&["camera", "lookat"]);
         look Look(yaw: Turns, pitch: Turns, roll: Turns): "turn the camera in place: YAW to the right, PITCH down, ROLL about the view direction";
-        lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen";
-        fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees";
-        orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective";
+        lookat LookAt(view: LookAt): "look from an eye in the direction of a gaze, with z or another direction up on the screen"
+            => key(Turn::Camera).with(LIT);
+        fov FieldOfView(angle: FieldOfView): "set a perspective projection by its horizontal field of view, in degrees"
+            => key(Turn::Lens).with(LIT).without(&["orthographic"]);
+        orthographic Orthographic(width: U8_28): "set an orthographic projection by the picture's WIDTH in world units (0.0174 to 230); fov sets perspective"
+            => key(Turn::Lens).with(MESHES).without(FIELD);
         zoom Zoom(factor: U8_28): "enlarge the picture about its middle by FACTOR; below 1 shows more";
         fit Fit(lens: Option<Fit>) in FIT: "show the whole mesh, or all objects, with an axis up on the screen (default z) and a field of view";
+    }
+
+    /// Commands of the camera's path.
+    OrbitCommands {
         orbit Orbit(frames: Option<Whole<3_600>>): "turn the camera once about the z axis, in FRAMES frames (default 240)";
     }
+    options {}
 
     /// Commands of the motion sensor (IMU).
     ImuCommands {
@@ -93,29 +118,42 @@ commands! {
         sensitivity Sensitivity(gain: Option<Sensitivity>) in IMU: "show or set camera gain (0.125 to 8)";
         replay Replay(upload: Option<Upload>) in REPLAY: "upload a log (binary) and compute its attitudes, or download the last attitudes (binary)";
     }
+    options {}
 
     /// Commands of the hand in front of the image sensor.
     GestureCommands {
         gesture Gesture(action: Option<GestureAction>) in GESTURE: "show what the hand does; let it steer the camera, calibrate its colour, or send its mask (binary)";
     }
+    options {
+        quality Quality(quality: Quality) or show: "show or set the quality: the picture size, and the precision of a field's rays"
+            => key(Turn::Size);
+        size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720"
+            => key(Turn::Size);
+        backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
+            => key(Turn::Size);
+        shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"
+            => key(Turn::Option).with(MESHES);
+        cull Cull(on: bool) in MESH: "turn culling of back faces on or off"
+            => key(Turn::Option).with(MESHES);
+        clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band"
+            => key(Turn::Option).with(MESHES);
+        winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)"
+            => key(Turn::Option).with(MESHES);
+        edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces"
+            => key(Turn::Option).with(&["model"]).without(FIELD);
+        overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
+        prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off"
+            => key(Turn::Option).with(FIELD);
+    }
 
     /// Commands for drawing frames.
     FrameCommands {
-        quality Quality(quality: Option<Quality>): "show or set the quality: the picture size, and the precision of a field's rays";
-        size Size(size: Size): "set the picture size: 320 180, 640 360 or 1280 720";
-        backend Backend(backend: Option<Backend>): "show or set the backend that draws frames";
-        shading Shading(shading: Option<Shading>) in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)";
-        cull Cull(on: bool) in MESH: "turn culling of back faces on or off";
-        clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band";
-        winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)";
-        edges Edges(edges: Option<Or<Off, Edges>>) in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces";
-        overlay Overlay(on: Option<bool>) in OVERLAY: "turn the text over the picture on or off, or show the setting";
-        prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off";
         render Render(depth: Flag): "draw the frame again and show its statistics; depth also writes depth codes";
         frame Frame(depth: Flag): "download the last frame (binary): colour or depth codes";
         stats Stats(json: Flag): "show statistics of the last frame";
         bench Bench(benchmark: Option<Benchmark>) in BENCH: "measure all kernels in clock cycles, or one; triangle and field draw FRAMES frames (default 8)";
     }
+    options {}
 }
 
 /// A function that reads the arguments of a command. `None` means an error, which the reader stores.
@@ -157,6 +195,12 @@ impl WordArgument for CommandName {
 
     fn parse(text: &str) -> Option<&str> {
         find(text).map(|_| text)
+    }
+}
+
+impl<'a> From<Setting<'a>> for Command<'a> {
+    fn from(setting: Setting<'a>) -> Self {
+        Self::Set(setting)
     }
 }
 

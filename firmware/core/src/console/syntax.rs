@@ -11,6 +11,8 @@ pub struct Syntax {
     pub summary: &'static str,
     /// Parameters in their order. Only the last one may be optional.
     pub parameters: &'static [Parameter],
+    /// Whether the line may end before the parameters, to show what they set.
+    pub is_shown: bool,
 }
 
 /// A parameter of a command.
@@ -66,7 +68,12 @@ const USAGE_WORDS: usize = 3;
 impl Display for Syntax {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(self.name)?;
-        write_usage(f, self.parameters, " ")
+        if !self.is_shown {
+            return write_usage(f, self.parameters, " ");
+        }
+        f.write_str(" [")?;
+        write_usage(f, self.parameters, "")?;
+        f.write_str("]")
     }
 }
 
@@ -103,7 +110,13 @@ impl Syntax {
             name,
             summary,
             parameters,
+            is_shown: false,
         }
+    }
+
+    /// The syntax of a command that shows what it sets, or not.
+    pub const fn or_show(self, is_shown: bool) -> Self {
+        Self { is_shown, ..self }
     }
 
     /// Calls `visit` with each parameter that takes one word, in the order of the line. Groups are visited word by word.

@@ -309,7 +309,7 @@ fn show_scene<B: Board>(
     name: &str,
     path: &Path,
 ) -> anyhow::Result<u64> {
-    let scene = glint_scene::read(name)?;
+    let scene = glint_scene_file::read(name)?;
     let commands = [
         &*format!("scene {name}"),
         "shading flat",

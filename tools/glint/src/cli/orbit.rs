@@ -23,7 +23,7 @@ use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
 use glint_core::picture::Backend;
 use glint_model::{Object, Placement};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::PathBuf;
@@ -93,12 +93,12 @@ impl OrbitArguments {
     pub fn run(self) -> anyhow::Result<()> {
         self.transfer.check(&self.board, self.backend)?;
         match &self.scene {
-            Some(name) => self.run_scene(&glint_scene::read(name)?),
+            Some(name) => self.run_scene(&glint_scene_file::read(name)?),
             None => self.run_subject(),
         }
     }
 
-    fn run_scene(&self, scene: &Scene) -> anyhow::Result<()> {
+    fn run_scene(&self, scene: &SceneFile) -> anyhow::Result<()> {
         let out = self.open(Some(scene))?;
         scene::draw(scene, &self.size.changes()?, |frame| {
             if let Subject::Wireframe(_) = frame.subject {
@@ -157,14 +157,17 @@ impl OrbitArguments {
     }
 
     /// The output, which is none of the inputs.
-    fn open(&self, scene: Option<&Scene>) -> anyhow::Result<Output> {
+    fn open(&self, scene: Option<&SceneFile>) -> anyhow::Result<Output> {
         let names = [
             self.model.as_deref(),
             self.scene.as_deref(),
             self.field.file(),
         ];
         let names = names.into_iter().flatten();
-        let meshes = scene.into_iter().flat_map(scene::meshes);
+        let meshes = scene
+            .into_iter()
+            .flat_map(SceneFile::meshes)
+            .map(String::as_str);
         let files = names.chain(meshes).map(PathBuf::from);
         let camera = self.camera.file().map(PathBuf::from);
         Output::open(&self.out, ANIMATION, files.chain(camera))
@@ -176,7 +179,7 @@ impl OrbitArguments {
         out: Output,
         frame: &Frame,
         views: &[View],
-        scene: Option<&Scene>,
+        scene: Option<&SceneFile>,
     ) -> anyhow::Result<()> {
         let mut spool = out.spool()?;
         let mut drawn = Vec::new();
@@ -239,7 +242,7 @@ impl OrbitArguments {
         &self,
         frame: &Frame,
         views: &[View],
-        scene: Option<&Scene>,
+        scene: Option<&SceneFile>,
         take: &mut dyn FnMut(Rendered) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let bar = count_bar("drawing", "frames");
@@ -266,7 +269,7 @@ impl OrbitArguments {
         name: &BoardName,
         frame: &Frame,
         views: &[View],
-        scene: Option<&Scene>,
+        scene: Option<&SceneFile>,
         take: &mut dyn FnMut(Rendered) -> anyhow::Result<()>,
     ) -> anyhow::Result<()> {
         let mut board = self.transfer.line.board(name)?;

@@ -26,7 +26,7 @@ use glint_core::matrix::Matrix;
 use glint_core::mesh::{Mesh, MeshError};
 use glint_core::picture::{Backend, Edges, Size};
 use glint_model::{Clip, Object, Placement};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -132,7 +132,7 @@ impl RenderArguments {
     pub fn run(self) -> anyhow::Result<()> {
         self.transfer.check(&self.board, self.backend)?;
         if let Some(name) = &self.scene {
-            let scene = glint_scene::read(name)?;
+            let scene = glint_scene_file::read(name)?;
             return scene::draw(&scene, &self.size.changes()?, |frame| {
                 let view = self.camera.of_scene(frame.view)?;
                 self.write(&Frame { view, ..*frame }, Some(&scene))
@@ -200,7 +200,7 @@ impl RenderArguments {
     }
 
     /// Renders a frame, of a scene or not, and writes pictures and statistics.
-    fn write(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<()> {
+    fn write(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<()> {
         let inputs = self.inputs(scene)?;
         let open = |path, extensions| Output::open(path, extensions, &inputs);
         let out = open(&self.out, PICTURE)?;
@@ -265,7 +265,7 @@ impl RenderArguments {
     }
 
     /// The files that the command reads, with names of generators among them.
-    fn inputs(&self, scene: Option<&Scene>) -> anyhow::Result<Vec<PathBuf>> {
+    fn inputs(&self, scene: Option<&SceneFile>) -> anyhow::Result<Vec<PathBuf>> {
         let mut names = self
             .objects()?
             .into_iter()
@@ -274,7 +274,7 @@ impl RenderArguments {
         names.extend(self.model.clone());
         names.extend(self.scene.clone());
         names.extend(self.field.file().map(str::to_owned));
-        names.extend(scene.into_iter().flat_map(scene::meshes).map(str::to_owned));
+        names.extend(scene.into_iter().flat_map(SceneFile::meshes).cloned());
         let files = names.into_iter().map(PathBuf::from);
         Ok(files.chain(self.camera.file().map(PathBuf::from)).collect())
     }
@@ -309,7 +309,7 @@ impl RenderArguments {
         Ok(Clip::View { far })
     }
 
-    fn render(&self, frame: &Frame, scene: Option<&Scene>) -> anyhow::Result<Rendered> {
+    fn render(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<Rendered> {
         anyhow::ensure!(
             self.board.is_simulated() || self.capture == Capture::Frame,
             "--capture monitor: expected the emulated or the virtual board, found --board {}",
@@ -341,7 +341,7 @@ impl RenderArguments {
         mut board: SimulatedBoard<S>,
         name: &BoardName,
         frame: &Frame,
-        scene: Option<&Scene>,
+        scene: Option<&SceneFile>,
     ) -> anyhow::Result<Rendered> {
         let mut rendered = self.render_on(&mut board, name, frame, scene)?;
         if self.capture == Capture::Monitor {
@@ -355,7 +355,7 @@ impl RenderArguments {
         board: &mut dyn Board,
         name: &BoardName,
         frame: &Frame,
-        scene: Option<&Scene>,
+        scene: Option<&SceneFile>,
     ) -> anyhow::Result<Rendered> {
         let mut renderer = BoardRenderer::new(Console::new(board))
             .with_backend(self.backend)

@@ -4,7 +4,7 @@ use super::messages::say;
 use anyhow::Context;
 use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};
-use glint_scene::{NAMES, Scene, Steer, built_in, read};
+use glint_scene_file::{NAMES, SceneFile, Steer, built_in, read};
 
 /// Check, list or show scenes: what a picture shows, and what it needs of gateware and firmware (docs/scenes.md).
 #[derive(Subcommand)]
@@ -54,7 +54,7 @@ fn check(name: &str) -> anyhow::Result<()> {
     say(format_args!("{name}: valid"))
 }
 
-fn show(scene: &Scene) -> anyhow::Result<()> {
+fn show(scene: &SceneFile) -> anyhow::Result<()> {
     say(scene.title())?;
     for part in scene.scenes() {
         say(format_args!("scene     {}", part.name()))?;

@@ -15,7 +15,7 @@ use glint_core::flash::CONTENTS;
 use glint_core::orientation::Sample;
 use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wireframe::text::assemble;
-use glint_scene::{NAMES, Scene, built_in};
+use glint_scene_file::{NAMES, SceneFile, built_in};
 
 /// Returns the seeds of a target. None exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
@@ -39,7 +39,7 @@ pub fn of(target: Target) -> Vec<Vec<u8>> {
             .iter()
             .filter_map(|text| assemble(text).ok())
             .collect(),
-        Target::Scene => texts(&glint_scene::TEXTS),
+        Target::Scene => texts(&glint_scene_file::TEXTS),
         Target::Flash => contents(),
     };
     seeds
@@ -120,13 +120,13 @@ fn still_log() -> Vec<u8> {
 
 /// Contents of flash images: of each built-in scene, and of one with a mesh of its own.
 fn contents() -> Vec<Vec<u8>> {
-    let small = Scene::parse(
+    let small = SceneFile::parse(
         "small",
         "small.toml",
         "title = \"x\"\nmodel = \"sponge:0\"\ncamera = \"2.5 40 65\"\n",
     );
     let scenes = NAMES.into_iter().filter_map(built_in);
-    let image = |scene: Scene| {
+    let image = |scene: SceneFile| {
         let pieces = image::pieces(&[scene]).ok()?;
         let image = image::make(&[], &[0; 64], &pieces).ok()?;
         image.get(CONTENTS..).map(<[u8]>::to_vec)

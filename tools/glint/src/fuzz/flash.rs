@@ -1,10 +1,12 @@
 //! The fuzz target of flash images.
 
 use crate::image::check_contents;
+use glint_core::block::Block;
 use glint_core::demo::{Demo, Move};
 use glint_core::flash::{self, Contents, Kind};
-use glint_core::scene::{blocks, blocks_of, commands};
+use glint_core::picture::Backend;
 use glint_core::wire::crc32;
+use glint_scene::{AnyBoard, Scene, lines};
 
 /// Reads a firmware with its header, and contents with all items. Returns whether the contents are valid.
 pub fn run(input: &[u8]) -> bool {
@@ -32,16 +34,23 @@ pub fn run(input: &[u8]) -> bool {
     }
 }
 
-/// Reads a scene as a board does before it shows the scene.
+/// Shows a scene as a board does.
 fn run_scene(text: &str) {
-    for command in commands(text) {
-        match command {
-            Ok((_, command)) => assert!(command.mesh().is_none_or(|mesh| text.contains(mesh))),
+    let Ok(mut scene) = Scene::new(Backend::Gateware) else {
+        return;
+    };
+    for line in lines(text) {
+        match line {
+            Ok((_, line)) => {
+                assert!(line.mesh().is_none_or(|mesh| text.contains(mesh)));
+                if let Err(error) = line.apply(&mut scene, &mut AnyBoard) {
+                    rejected(&error.to_string());
+                }
+            }
             Err(error) => drop(rejected(&error.to_string())),
         }
     }
-    let bits = blocks(commands(text).flatten().map(|(_, command)| command));
-    assert!(blocks_of(bits).count() > 0);
+    assert!(Block::of_bits(scene.blocks()).count() > 0);
 }
 
 /// Shows the scenes of a list as a board does, with moves and holds, which the text determines.

@@ -14,7 +14,7 @@ use glint_core::orientation::log as image;
 use glint_core::picture::Size;
 use glint_core::wireframe::text::assemble;
 use glint_core::wireframe::{GUARD, Instruction, Key, Motion, Projection, WORD_BYTES};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 
 /// A parser of external bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -285,7 +285,7 @@ fn run_replay(entries: &[log::Entry]) {
 /// Parses a scene file. Every line of an accepted one must be a command.
 fn run_scene(input: &[u8]) -> Verdict {
     let scene = std::str::from_utf8(input).ok();
-    match scene.and_then(|text| Scene::parse("scene", "scene.toml", text).ok()) {
+    match scene.and_then(|text| SceneFile::parse("scene", "scene.toml", text).ok()) {
         Some(scene) => {
             let is_command = |line: &str| matches!(Command::parse(line), Ok(Some(_)));
             assert!(scene.lines().all(is_command), "every line is a command");

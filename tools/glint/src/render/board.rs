@@ -17,7 +17,7 @@ use glint_core::light::Background;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_model::{Frame, Object, Subject};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
@@ -28,7 +28,7 @@ pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     backend: Option<Backend>,
     route: Route,
     /// The scene that is shown instead of the subjects of frames.
-    scene: Option<Scene>,
+    scene: Option<SceneFile>,
 }
 
 impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
@@ -52,7 +52,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
 
     /// Shows a scene instead of the subjects of frames, with their cameras and sizes; `None` shows the subjects.
     #[must_use]
-    pub fn with_scene(self, scene: Option<Scene>) -> Self {
+    pub fn with_scene(self, scene: Option<SceneFile>) -> Self {
         Self { scene, ..self }
     }
 
@@ -135,12 +135,12 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// in are uploaded.
     fn show_scene(
         &mut self,
-        scene: &Scene,
+        scene: &SceneFile,
         frame: &Frame,
         route: Route,
         progress: &mut Progress,
     ) -> Result<Stats, Error> {
-        for name in scene::meshes(scene) {
+        for name in scene.meshes() {
             if !scene::is_shape(name) {
                 let mesh = scene::mesh(name)?;
                 self.upload(&mesh, Some(name), route, progress)?;

@@ -129,8 +129,8 @@ mod tests {
             let command = view_command(&view);
             assert!(command.len() < glint_core::console::LINE_MAX);
             let parsed = glint_core::console::Command::parse(&command).unwrap();
-            let view = Some(view);
-            assert_eq!(parsed, Some(glint_core::console::Command::View { view }));
+            let expected = glint_core::console::Setting::View { view };
+            assert_eq!(parsed, Some(expected.into()));
         }
     }
 }

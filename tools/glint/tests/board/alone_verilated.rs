@@ -24,7 +24,7 @@ fn picture(board: &mut SimulatedBoard) -> Vec<u16> {
 /// within a second, and a button chooses the next one.
 #[test]
 fn the_verilated_board_runs_alone_from_its_flash() {
-    let scenes = ["cubes", "wireframe"].map(|name| glint_scene::built_in(name).unwrap());
+    let scenes = ["cubes", "wireframe"].map(|name| glint_scene_file::built_in(name).unwrap());
     let pieces = image::pieces(&scenes).unwrap();
     let image = image::make(&[], &built_firmware(None).unwrap(), &pieces).unwrap();
     let mut board = board::verilated_bios().unwrap();

@@ -9,7 +9,7 @@ use glint::imu::sensor;
 use glint::picture::{Image, write_animation};
 use glint::render::{Frame, Subject, on_model};
 use glint::transfer;
-use glint_core::console::Command;
+use glint_core::console::{Command, Setting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use std::sync::{Arc, Mutex};
@@ -195,7 +195,7 @@ fn the_camera_follows_the_hand() {
     console.command("render").unwrap();
     let view: String = value("view", &console.command("view").unwrap(), "view").unwrap();
     let line = format!("view {view}");
-    let Ok(Some(Command::View { view: Some(view) })) = Command::parse(&line) else {
+    let Ok(Some(Command::Set(Setting::View { view }))) = Command::parse(&line) else {
         panic!("{line}");
     };
     let subject = Subject::mesh(Mesh::new_checked(&bytes).unwrap());

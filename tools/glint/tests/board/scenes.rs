@@ -5,7 +5,7 @@ use glint::render::{self, Parts, Renderer, Route, size_command, view_command};
 use glint::scene::{self, Changes};
 use glint_core::colour::Shading;
 use glint_core::picture::Size;
-use glint_scene::{NAMES, Scene, built_in};
+use glint_scene_file::{NAMES, SceneFile, built_in};
 
 /// Every scene in the firmware is the host's, drawn by the gateware, without what moves its camera. Its shading is flat here, because the
 /// soft core takes 131 million cycles to draw the smooth frame of `objects`.
@@ -51,7 +51,7 @@ fn scenes_are_the_models() {
 #[test]
 fn a_scene_file_is_the_models() {
     const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";
-    let scene = Scene::parse("a", "a.toml", FILE).unwrap();
+    let scene = SceneFile::parse("a", "a.toml", FILE).unwrap();
     let mut board = emulator();
     let mut renderer = renderer(&mut board)
         .with_route(Route::Memory)

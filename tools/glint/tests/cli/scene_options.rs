@@ -20,7 +20,7 @@ fn scenes_that_cannot_be_shown() {
         ],
         &[("near.toml", near.into()), ("missing.toml", missing.into())],
         "
-        near: expected a scene that boards can show, found radius 1: expected 2 to 5
+        near.toml: line 3: camera = `1 30 70`: radius 1: expected 2 to 5
         missing.obj: expected a file to read, found No such file or directory (os error 2)
         ",
     );

@@ -9,7 +9,7 @@ use glint::board::SimulatedBoard;
 use glint::console::Console;
 use glint::render::{self, BoardRenderer, Route, Stats};
 use glint::scene::{self, Changes};
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use virtual_board::{Start, VirtualBoard};
 
 use crate::report::workspace;
@@ -34,7 +34,7 @@ pub fn started(folder: &str, firmware: &[u8]) -> Result<SimulatedBoard> {
 ///
 /// # Errors
 /// The board is not built, the soft core draws the frame, or it differs from the model's.
-pub fn frame(firmware: &[u8], scene: &Scene, changes: &Changes) -> Result<Stats> {
+pub fn frame(firmware: &[u8], scene: &SceneFile, changes: &Changes) -> Result<Stats> {
     let folder = match scene.needs().smooth {
         true => "virtual-smooth",
         false => "virtual",

@@ -10,16 +10,16 @@ use glint_reference::report::experiments::quality::{Cycles, Row, errors};
 use glint_reference::report::pages::quality::{frames, is_on_front};
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
-use glint_scene::{NAMES, Scene, built_in};
+use glint_scene_file::{NAMES, SceneFile, built_in};
 use serde::de::DeserializeOwned;
 
-fn scenes() -> impl Iterator<Item = Scene> {
+fn scenes() -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(|scene| scene.scenes().is_empty())
 }
 
 /// The model's picture of a scene against the reference of the same scene with `fov` degrees instead of its own field of view.
-fn against(scene: &Scene, fov: Option<&str>) -> Measured {
+fn against(scene: &SceneFile, fov: Option<&str>) -> Measured {
     let changes = Changes {
         quality: Some(Quality::Exact),
         ..Changes::default()

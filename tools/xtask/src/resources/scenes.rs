@@ -9,7 +9,7 @@ use std::process::Command;
 use std::slice;
 
 use anyhow::{Context, Result, bail};
-use glint_scene::{Needs, Scene};
+use glint_scene_file::{Needs, SceneFile};
 
 use super::SOC;
 use super::budget::Budget;
@@ -38,7 +38,7 @@ const FIRMWARE_SHARE: f64 = 0.5;
 /// # Errors
 /// A build or a measurement fails, or is beyond the limits of its scene.
 pub fn resources(write: bool) -> Result<()> {
-    let scenes: Vec<Scene> = scenes::all().collect();
+    let scenes: Vec<SceneFile> = scenes::all().collect();
     let mut builds = vec![(ALL.to_owned(), Needs::of(&scenes).options())];
     builds.extend(
         scenes
@@ -70,7 +70,7 @@ pub fn resources(write: bool) -> Result<()> {
             firmware: firmware(&scenes, scene)?,
             is_single: scene.is_some_and(|scene| scene.scenes().is_empty()),
             frame: scene.map(frame).transpose()?,
-            budget: scene.map(Scene::budget).unwrap_or_default().to_vec(),
+            budget: scene.map(SceneFile::budget).unwrap_or_default().to_vec(),
             name,
             options,
         })
@@ -89,7 +89,7 @@ pub fn resources(write: bool) -> Result<()> {
 }
 
 /// Builds the firmware for a scene, or for all `scenes` without one, and measures the stack on the emulated board.
-fn firmware(scenes: &[Scene], scene: Option<&Scene>) -> Result<Firmware> {
+fn firmware(scenes: &[SceneFile], scene: Option<&SceneFile>) -> Result<Firmware> {
     let built = scene.map_or(scenes, slice::from_ref);
     let image = firmware::build_for(Board::Urbana, built, &[])?;
     // The emulated board has no smooth shading.
@@ -99,7 +99,7 @@ fn firmware(scenes: &[Scene], scene: Option<&Scene>) -> Result<Firmware> {
 }
 
 /// Measures the stack that the firmware uses for the self-test and the scene's picture.
-fn stack(scene: &Scene, image: &Image) -> Result<u64> {
+fn stack(scene: &SceneFile, image: &Image) -> Result<u64> {
     let name = scene.name();
     let binary = paths::target().join(format!("firmware/glint-{name}.bin"));
     let mut last = String::new();
@@ -119,7 +119,7 @@ fn stack(scene: &Scene, image: &Image) -> Result<u64> {
 }
 
 /// Draws a scene's frame on the virtual board with all blocks, which has no smooth shading: a scene with it is drawn by its own build.
-fn frame(scene: &Scene) -> Result<Frame> {
+fn frame(scene: &SceneFile) -> Result<Frame> {
     let name = scene.name();
     let needs = scene.needs();
     let board = if needs.smooth {

@@ -2,7 +2,9 @@
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::{Rgb565, Shading, Winding};
-use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX, ObjectAction};
+use glint_core::console::{
+    Command, GestureAction, ImuAction, LINE_MAX, ObjectAction, OptionName, Setting,
+};
 use glint_core::field::{Field, Menger};
 use glint_core::fixed::{Q2_23, Q8_24, Q32_32, Turns, U4_28, U8_28};
 use glint_core::follow::{Direction, Mounting};
@@ -65,16 +67,16 @@ proptest! {
             let view = view.with_projection(projection);
             let line = format!("view {view}");
             prop_assert!(line.len() <= LINE_MAX);
-            prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Command::View { view: Some(view) })));
+            prop_assert_eq!(Command::parse(&line).map_err(|error| error.to_string()), Ok(Some(Setting::View { view }.into())));
         }
     }
 }
 
 #[track_caller]
-fn assert_parses<'a>(line: &'a str, expected: Command<'a>) {
+fn assert_parses<'a>(line: &'a str, expected: impl Into<Command<'a>>) {
     assert_eq!(
         Command::parse(line).map_err(|error| error.to_string()),
-        Ok(Some(expected))
+        Ok(Some(expected.into()))
     );
 }
 
@@ -104,15 +106,8 @@ fn every_command_is_understood() {
             name: Some("menger"),
         },
     );
-    assert_parses("object", Command::Object { action: None });
-    let object = |line, action| {
-        assert_parses(
-            line,
-            Command::Object {
-                action: Some(action),
-            },
-        )
-    };
+    assert_parses("object", Command::Show(OptionName::Object));
+    let object = |line, action| assert_parses(line, Setting::Object { action: action });
     let place = |text| Place::parse(&mut Words::new(text)).expect("a place");
     object("object list", ObjectAction::List);
     object(
@@ -136,16 +131,16 @@ fn every_command_is_understood() {
     }
     object("object remove 16", ObjectAction::Remove(Some(16)));
     object("object remove all", ObjectAction::Remove(None));
-    assert_parses("field", Command::Field { field: None });
-    assert_parses("field off", Command::Field { field: Some(None) });
+    assert_parses("field", Command::Show(OptionName::Field));
+    assert_parses("field off", Setting::Field { field: None });
     assert_parses(
         "field menger:4",
-        Command::Field {
-            field: Some(Some(Field::from(Menger { depth: 4 }))),
+        Setting::Field {
+            field: Some(Field::from(Menger { depth: 4 })),
         },
     );
-    assert_parses("stereo", Command::Stereo { eyes: None });
-    assert_parses("stereo off", Command::Stereo { eyes: Some(None) });
+    assert_parses("stereo", Command::Show(OptionName::Stereo));
+    assert_parses("stereo off", Setting::Stereo { eyes: None });
     let stereo = Stereo {
         half_separation: Q32_32::lit("0.05"),
         zero_parallax: Q32_32::lit("3"),
@@ -153,39 +148,30 @@ fn every_command_is_understood() {
     };
     assert_parses(
         "stereo 0.05,3,red-cyan",
-        Command::Stereo {
-            eyes: Some(Some(stereo)),
-        },
+        Setting::Stereo { eyes: Some(stereo) },
     );
-    assert_parses("mesh", Command::Mesh { on: None });
-    assert_parses("mesh on", Command::Mesh { on: Some(true) });
-    assert_parses("material", Command::Material { material: None });
+    assert_parses("mesh", Command::Show(OptionName::Mesh));
+    assert_parses("mesh on", Setting::Mesh { on: true });
+    assert_parses("material", Command::Show(OptionName::Material));
     for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
         assert_parses(
             &format!("material {name}"),
-            Command::Material {
-                material: Some(material),
-            },
+            Setting::Material { material: material },
         );
     }
-    assert_parses("light", Command::Light { light: None });
-    assert_parses("light default", Command::Light { light: Some(None) });
+    assert_parses("light", Command::Show(OptionName::Light));
+    assert_parses("light default", Setting::Light { light: None });
     let light = Light::new([1, -2, 3].map(Into::into), [0xFF, 0x80, 0x0A]).expect("a direction");
-    assert_parses(
-        "light 1,-2,3,ff800a",
-        Command::Light {
-            light: Some(Some(light)),
-        },
-    );
-    assert_parses("ambient", Command::Ambient { colour: None });
-    assert_parses("ambient default", Command::Ambient { colour: Some(None) });
+    assert_parses("light 1,-2,3,ff800a", Setting::Light { light: Some(light) });
+    assert_parses("ambient", Command::Show(OptionName::Ambient));
+    assert_parses("ambient default", Setting::Ambient { colour: None });
     assert_parses(
         "ambient 00ff7f",
-        Command::Ambient {
-            colour: Some(Some([0, 0xFF, 0x7F])),
+        Setting::Ambient {
+            colour: Some([0, 0xFF, 0x7F]),
         },
     );
-    assert_parses("background", Command::Background { background: None });
+    assert_parses("background", Command::Show(OptionName::Background));
     for (name, background) in [
         ("default", None),
         ("white", Some(Background::White)),
@@ -194,29 +180,24 @@ fn every_command_is_understood() {
     ] {
         assert_parses(
             &format!("background {name}"),
-            Command::Background {
-                background: Some(background),
+            Setting::Background {
+                background: background,
             },
         );
     }
-    assert_parses("fog", Command::Fog { density: None });
-    assert_parses(
-        "fog off",
-        Command::Fog {
-            density: Some(None),
-        },
-    );
+    assert_parses("fog", Command::Show(OptionName::Fog));
+    assert_parses("fog off", Setting::Fog { density: None });
     assert_parses(
         "fog 0.25",
-        Command::Fog {
-            density: Some(Some(U4_28::lit("0.25"))),
+        Setting::Fog {
+            density: Some(U4_28::lit("0.25")),
         },
     );
-    assert_parses("occlusion", Command::Occlusion { on: None });
-    assert_parses("occlusion off", Command::Occlusion { on: Some(false) });
-    assert_parses("undecided on", Command::Undecided { on: Some(true) });
+    assert_parses("occlusion", Command::Show(OptionName::Occlusion));
+    assert_parses("occlusion off", Setting::Occlusion { on: false });
+    assert_parses("undecided on", Setting::Undecided { on: true });
     assert_parses("echo x-1", Command::Echo { word: "x-1" });
-    let camera = Command::Camera {
+    let camera = Setting::Camera {
         r: Q32_32::lit("3.5"),
         theta: degrees(-90),
         phi: degrees(60),
@@ -232,14 +213,14 @@ fn every_command_is_understood() {
         "0.9".parse().expect("a number"),
         "0.1".parse().expect("a number"),
     );
-    assert_parses("view", Command::View { view: None });
+    assert_parses("view", Command::Show(OptionName::View));
     assert_parses(
         &format!("view {numbers}"),
-        Command::View {
-            view: Some(view.expect("a camera")),
+        Setting::View {
+            view: view.expect("a camera"),
         },
     );
-    let look = Command::Look {
+    let look = Setting::Look {
         yaw: degrees(10),
         pitch: degrees(-20),
         roll: degrees(30),
@@ -250,29 +231,29 @@ fn every_command_is_understood() {
         View::towards(eye, gaze, up).expect("in range")
     };
     let view = towards([0, 0, 1]);
-    assert_parses("lookat 3 0 1 -3 0 -1", Command::LookAt { view });
+    assert_parses("lookat 3 0 1 -3 0 -1", Setting::LookAt { view });
     let view = towards([0, 1, 0]);
-    assert_parses("lookat 3 0 1 -3 0 -1 0 1 0", Command::LookAt { view });
+    assert_parses("lookat 3 0 1 -3 0 -1 0 1 0", Setting::LookAt { view });
     let far = Some(U8_28::lit("2.5"));
-    assert_parses("clip 2.5", Command::Clip { far });
-    assert_parses("clip off", Command::Clip { far: None });
+    assert_parses("clip 2.5", Setting::Clip { far });
+    assert_parses("clip off", Setting::Clip { far: None });
     let rule = Winding::Screen;
-    assert_parses("winding screen", Command::Winding { rule });
-    let edges = Some(Some(Edges::Hidden));
-    assert_parses("edges hidden", Command::Edges { edges });
-    assert_parses("edges off", Command::Edges { edges: Some(None) });
-    assert_parses("edges", Command::Edges { edges: None });
+    assert_parses("winding screen", Setting::Winding { rule });
+    let edges = Some(Edges::Hidden);
+    assert_parses("edges hidden", Setting::Edges { edges });
+    assert_parses("edges off", Setting::Edges { edges: None });
+    assert_parses("edges", Command::Show(OptionName::Edges));
     let angle = degrees(150);
-    assert_parses("fov 150", Command::FieldOfView { angle });
+    assert_parses("fov 150", Setting::FieldOfView { angle });
     let factor = U8_28::from_num(1.5);
-    assert_parses("zoom 1.5", Command::Zoom { factor });
-    assert_parses("fit", Command::Fit { lens: None });
+    assert_parses("zoom 1.5", Setting::Zoom { factor });
+    assert_parses("fit", Setting::Fit { lens: None });
     let lens = Some((Axis::Y, None));
-    assert_parses("fit y", Command::Fit { lens });
+    assert_parses("fit y", Setting::Fit { lens });
     let lens = Some((Axis::Y, Some(degrees(60))));
-    assert_parses("fit y 60", Command::Fit { lens });
+    assert_parses("fit y 60", Setting::Fit { lens });
     let width = U8_28::from_num(3.5);
-    assert_parses("orthographic 3.5", Command::Orthographic { width });
+    assert_parses("orthographic 3.5", Setting::Orthographic { width });
     assert_parses("imu", Command::Imu { action: None });
     let imu = |line, action| {
         assert_parses(
@@ -311,18 +292,16 @@ fn every_command_is_understood() {
     assert_parses("sensitivity 2.5", Command::Sensitivity { gain: Some(640) });
     assert_parses("orbit", Command::Orbit { frames: None });
     assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
-    assert_parses("quality", Command::Quality { quality: None });
+    assert_parses("quality", Command::Show(OptionName::Quality));
     for quality in Quality::ALL {
         assert_parses(
             &format!("quality {quality}"),
-            Command::Quality {
-                quality: Some(quality),
-            },
+            Setting::Quality { quality: quality },
         );
     }
-    assert_parses("size 320 180", Command::Size { size: Size::W320 });
-    assert_parses("size 640 360", Command::Size { size: Size::W640 });
-    assert_parses("size 1280 720", Command::Size { size: Size::W1280 });
+    assert_parses("size 320 180", Setting::Size { size: Size::W320 });
+    assert_parses("size 640 360", Setting::Size { size: Size::W640 });
+    assert_parses("size 1280 720", Setting::Size { size: Size::W1280 });
     assert_parses("frame", Command::Frame { depth: false });
     assert_parses("frame depth", Command::Frame { depth: true });
     assert_parses(
@@ -393,38 +372,38 @@ fn every_command_is_understood() {
     );
     assert_parses("render", Command::Render { depth: false });
     assert_parses("render depth", Command::Render { depth: true });
-    assert_parses("cull on", Command::Cull { on: true });
-    assert_parses("overlay", Command::Overlay { on: None });
-    assert_parses("overlay on", Command::Overlay { on: Some(true) });
-    assert_parses("prepass on", Command::Prepass { on: true });
-    assert_parses("prepass off", Command::Prepass { on: false });
-    assert_parses("cull off", Command::Cull { on: false });
+    assert_parses("cull on", Setting::Cull { on: true });
+    assert_parses("overlay", Command::Show(OptionName::Overlay));
+    assert_parses("overlay on", Setting::Overlay { on: true });
+    assert_parses("prepass on", Setting::Prepass { on: true });
+    assert_parses("prepass off", Setting::Prepass { on: false });
+    assert_parses("cull off", Setting::Cull { on: false });
     assert_parses("stats", Command::Stats { json: false });
     assert_parses("stats json", Command::Stats { json: true });
-    assert_parses("shading", Command::Shading { shading: None });
+    assert_parses("shading", Command::Show(OptionName::Shading));
     assert_parses(
         "shading flat",
-        Command::Shading {
-            shading: Some(Shading::Flat),
+        Setting::Shading {
+            shading: Shading::Flat,
         },
     );
     assert_parses(
         "shading smooth",
-        Command::Shading {
-            shading: Some(Shading::Smooth),
+        Setting::Shading {
+            shading: Shading::Smooth,
         },
     );
-    assert_parses("backend", Command::Backend { backend: None });
+    assert_parses("backend", Command::Show(OptionName::Backend));
     assert_parses(
         "backend cpu",
-        Command::Backend {
-            backend: Some(Backend::Cpu),
+        Setting::Backend {
+            backend: Backend::Cpu,
         },
     );
     assert_parses(
         "backend gateware",
-        Command::Backend {
-            backend: Some(Backend::Gateware),
+        Setting::Backend {
+            backend: Backend::Gateware,
         },
     );
     assert_parses("bench", Command::Bench { benchmark: None });

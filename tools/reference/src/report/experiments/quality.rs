@@ -8,7 +8,7 @@ use glint_core::block::Block;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_model::Frame;
-use glint_scene::{NAMES, Scene, built_in};
+use glint_scene_file::{NAMES, SceneFile, built_in};
 use serde::{Deserialize, Serialize};
 
 use crate::picture::exact::Exact;
@@ -64,7 +64,7 @@ pub struct Variant {
 
 impl Variant {
     /// The frames of a scene: each size, with a field with each precision of the rays.
-    fn all(scene: &Scene) -> Vec<Self> {
+    fn all(scene: &SceneFile) -> Vec<Self> {
         let has_field = scene.needs().blocks.contains(&Block::Raymarch);
         let rays: Vec<Option<Quality>> = match has_field {
             true => Quality::ALL.map(Some).into(),
@@ -96,7 +96,7 @@ impl Variant {
 }
 
 /// The built-in scenes with a picture of their own whose names contain `only`.
-pub fn scenes(only: &str) -> impl Iterator<Item = Scene> {
+pub fn scenes(only: &str) -> impl Iterator<Item = SceneFile> {
     let scenes = NAMES.into_iter().filter_map(built_in);
     scenes.filter(move |scene| scene.scenes().is_empty() && scene.name().contains(only))
 }
@@ -138,7 +138,7 @@ pub fn errors(only: &str, sizes: &[Size]) -> Result<Vec<Row>> {
 pub fn cycles(only: &str) -> Result<Vec<Cycles>> {
     let firmware = built_firmware(None)?;
     let commit = Provenance::find().commit;
-    let scenes: Vec<Scene> = scenes(only).collect();
+    let scenes: Vec<SceneFile> = scenes(only).collect();
     let frames = scenes.iter().map(|scene| Variant::all(scene).len() as u64);
     let bar = progress::bar(frames.sum())?;
     let rows = soc::two_at_a_time(&scenes, |scene| {

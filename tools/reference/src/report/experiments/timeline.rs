@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use glint::board::built_firmware;
 use glint::render::Stats;
 use glint::scene::Changes;
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use serde::{Deserialize, Serialize};
 
 use super::quality::scenes;
@@ -49,7 +49,7 @@ pub struct Row {
 pub fn measure(only: &str) -> Result<Vec<Row>> {
     let firmware = built_firmware(None)?;
     let provenance = Provenance::find();
-    let scenes: Vec<Scene> = scenes(only).collect();
+    let scenes: Vec<SceneFile> = scenes(only).collect();
     let bar = progress::bar(scenes.len() as u64)?;
     let rows = soc::two_at_a_time(&scenes, |scene| {
         let name = scene.name();
@@ -63,7 +63,7 @@ pub fn measure(only: &str) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-fn row(scene: &Scene, stats: &Stats, provenance: &Provenance) -> Result<Row> {
+fn row(scene: &SceneFile, stats: &Stats, provenance: &Provenance) -> Result<Row> {
     let counter = |name: &str| stats.engine.get(name);
     Ok(Row {
         scene: scene.name().to_owned(),

@@ -8,7 +8,7 @@ use glint::formats::{Format, glm, parse};
 use glint::imu::log;
 use glint_core::flash::{CONTENTS, Image, Kind as Item, Piece, encode};
 use glint_core::mesh::Mesh;
-use glint_scene::Scene;
+use glint_scene_file::SceneFile;
 use glint_vectors::Model;
 use serde::Deserialize;
 
@@ -26,7 +26,7 @@ pub fn kinds() -> Vec<Kind> {
             }))
         }),
         Kind::new("scene-file", |text: String| {
-            let scene = Scene::parse("scene", "scene.toml", &text);
+            let scene = SceneFile::parse("scene", "scene.toml", &text);
             Ok(Outcome::of(scene, |scene| {
                 scene.lines().collect::<Vec<_>>().join("; ")
             }))

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source};
-use crate::scene::Scene;
+use crate::scene::SceneFile;
 
 /// The name of standard input.
 const STDIN: &str = "-";
@@ -14,17 +14,17 @@ const STDIN: &str = "-";
 const MAX_BYTES: u64 = 1 << 20;
 
 /// The built-in scene with this name; `None` for another name.
-pub fn built_in(name: &str) -> Option<Scene> {
+pub fn built_in(name: &str) -> Option<SceneFile> {
     let (name, text) = NAMES.iter().zip(TEXTS).find(|(known, _)| **known == name)?;
     // A test parses all of them.
-    Scene::parse(name, &format!("scenes/{name}.toml"), text).ok()
+    SceneFile::parse(name, &format!("scenes/{name}.toml"), text).ok()
 }
 
 /// Reads a scene: a built-in one by its name, or a scene file by its path, which ends in `.toml`; `-` is one from standard input.
 ///
 /// # Errors
 /// No built-in scene has the name, the file cannot be read, or it is not a scene file.
-pub fn read(name: &str) -> Result<Scene, SceneError> {
+pub fn read(name: &str) -> Result<SceneFile, SceneError> {
     if let Some(scene) = built_in(name) {
         return Ok(scene);
     }
@@ -45,7 +45,7 @@ pub fn read(name: &str) -> Result<Scene, SceneError> {
     };
     let text = text.map_err(|error| source.whole(error.to_string()))?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    Scene::parse(&stem, file, &text)
+    SceneFile::parse(&stem, file, &text)
 }
 
 /// The text of a scene file.

@@ -1,15 +1,20 @@
 //! A scene.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
-use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX};
-use glint_core::picture::Size;
+use glint_core::camera::ViewError;
+use glint_core::console::{Command, GestureAction, ImuAction, LINE_MAX, Row};
+use glint_core::feature::{BASE, Feature};
+use glint_core::imu::Follow;
+use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
+use glint_scene::{AnyBoard, Line, Scene};
 
 use crate::built_in::{NAMES, TEXTS};
 use crate::error::{SceneError, Source, quote};
 use crate::file::File;
-use crate::keys::{BUDGET, COMMANDS, Key};
+use crate::keys::{BUDGET, commands};
 
 /// What moves the camera, or the segments of a wireframe program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -26,16 +31,22 @@ pub enum Steer {
 /// Limits of a build for the scene alone, and of its frames: names of [`BUDGET`] with their numbers.
 pub type Budget = Vec<(&'static str, f64)>;
 
-/// A scene.
+/// A scene, as a file states it.
 #[derive(Clone, Debug)]
-pub struct Scene {
+pub struct SceneFile {
     name: String,
     title: String,
     /// Console commands that set the picture.
     settings: Vec<String>,
+    /// What the settings make of the scene at start.
+    scene: Scene,
+    /// Names of the meshes, each once, in the order of the settings.
+    meshes: Vec<String>,
+    /// The parts of the firmware that have the commands.
+    features: BTreeSet<Feature>,
     steer: Steer,
     /// The scenes of a list of scenes, instead of settings.
-    scenes: Vec<Scene>,
+    scenes: Vec<SceneFile>,
     /// Whether depth codes are requested in addition to the colours.
     pub(crate) depth: bool,
     pub(crate) lanes: Option<u8>,
@@ -43,7 +54,7 @@ pub struct Scene {
     budget: Budget,
 }
 
-impl Scene {
+impl SceneFile {
     /// Parses the text of a scene file. `name` is the scene's name, and `file` the file's name in messages.
     ///
     /// # Errors
@@ -68,6 +79,10 @@ impl Scene {
             name: name.to_owned(),
             title: title.split_whitespace().collect::<Vec<_>>().join(" "),
             settings: Vec::new(),
+            scene: Scene::new(Backend::Gateware)
+                .map_err(|error: ViewError| file.source.whole(error.to_string()))?,
+            meshes: Vec::new(),
+            features: BTreeSet::new(),
             steer: Steer::default(),
             scenes: scenes
                 .into_iter()
@@ -84,42 +99,71 @@ impl Scene {
         }
         check_subject(&file)?;
         if !file.has("quality") && !file.has("size") {
-            scene
-                .settings
-                .push(format!("quality {}", Quality::default()));
+            let line = format!("quality {}", Quality::default());
+            scene.add(&file, "quality", "", line, &(0..0))?;
         }
-        for key in &COMMANDS {
-            let Some(value) = file.get(key.name) else {
+        for row in commands() {
+            let key = row.key();
+            let Some(value) = file.get(key) else {
                 continue;
             };
-            check_others(&file, key)?;
-            if key.name == "field" && file.has("model") {
-                scene.settings.push("mesh on".to_owned());
-            }
-            for (words, span) in file.words(key.name, value, key.is_list)? {
-                let line = if key.name == "program" {
-                    if words != "cube" {
-                        return Err(file.refuse(key.name, value, "`cube`, the built-in program"));
+            check_others(&file, row)?;
+            for (words, span) in file.words(key, value, row.forms.is_list)? {
+                let line = match row.forms.action {
+                    Some(action) => format!("{} {action} {words}", row.command),
+                    None if key != "program" => format!("{} {words}", row.command),
+                    None if words == "cube" => row.command.to_owned(),
+                    None => {
+                        return Err(file.refuse(key, value, "`cube`, the built-in program"));
                     }
-                    key.command.to_owned()
-                } else {
-                    format!("{} {words}", key.command)
                 };
-                check_line(&file, key.name, &words, &line, &span)?;
-                scene.settings.push(line);
+                if key == "field" && file.has("model") {
+                    scene.add(&file, key, &words, "mesh on".to_owned(), &span)?;
+                }
+                scene.add(&file, key, &words, line, &span)?;
             }
         }
-        let lights = scene
-            .settings
-            .iter()
-            .filter(|line| line.starts_with("light "));
-        if let (Some(value), true, false) =
-            (file.get("light"), lights.count() > 1, file.has("field"))
-        {
+        let lights = scene.scene.appearance.lights.len();
+        if let (Some(value), true, false) = (file.get("light"), lights > 1, file.has("field")) {
             return Err(file.refuse("light", value, "one light on meshes"));
         }
-        scene.steer = steer(&file)?;
+        let (steer, feature) = steer(&file)?;
+        scene.steer = steer;
+        scene.features.insert(feature);
+        scene.features.remove(&BASE);
         Ok(scene)
+    }
+
+    /// Adds a console command that sets the picture, checked as the board does.
+    fn add(
+        &mut self,
+        file: &File,
+        key: &str,
+        words: &str,
+        line: String,
+        span: &Range<usize>,
+    ) -> Result<(), SceneError> {
+        let refuse = |reason: String| {
+            file.source
+                .error(span, format!("{key} = {}: {reason}", quote(words)))
+        };
+        let is_visible = |byte: u8| byte == b' ' || byte.is_ascii_graphic();
+        if line.len() > LINE_MAX || !line.bytes().all(is_visible) {
+            return Err(refuse(format!(
+                "expected at most {LINE_MAX} visible ASCII characters"
+            )));
+        }
+        let parsed = Line::parse(&line).map_err(|reason| refuse(reason.to_string()))?;
+        let applied = parsed.apply(&mut self.scene, &mut AnyBoard);
+        applied.map_err(|error| refuse(error.to_string()))?;
+        self.features.insert(parsed.feature());
+        if let Some(mesh) = parsed.mesh()
+            && self.meshes.iter().all(|known| known != mesh)
+        {
+            self.meshes.push(mesh.to_owned());
+        }
+        self.settings.push(line);
+        Ok(())
     }
 
     /// The name of the scene.
@@ -156,23 +200,24 @@ impl Scene {
         self.settings().iter().map(String::as_str).chain(steer)
     }
 
-    /// The console commands that set the picture, parsed.
-    pub fn commands(&self) -> impl Iterator<Item = Command<'_>> {
-        let lines = self.settings().iter();
-        // The lines have been checked.
-        lines.filter_map(|line| Command::parse(line).ok().flatten())
+    /// The scene that the console commands make of the scene at start; of a list of scenes, that of the first one.
+    pub fn scene(&self) -> &Scene {
+        self.scenes.first().map_or(&self.scene, Self::scene)
     }
 
-    /// The size of the picture; that at start if the scene sets none.
+    /// Names of the meshes, each once; of a list of scenes, those of the first one.
+    pub fn meshes(&self) -> &[String] {
+        self.scenes.first().map_or(&self.meshes, Self::meshes)
+    }
+
+    /// The parts of the firmware that have the console commands.
+    pub(crate) const fn features(&self) -> &BTreeSet<Feature> {
+        &self.features
+    }
+
+    /// The size of the picture.
     pub fn size(&self) -> Size {
-        let size = |command| match command {
-            Command::Quality {
-                quality: Some(quality),
-            } => Some(quality.size()),
-            Command::Size { size } => Some(size),
-            _ => None,
-        };
-        self.commands().filter_map(size).last().unwrap_or_default()
+        self.scene().size
     }
 
     /// Frequency of the system clock in MHz; `None` for that of the board.
@@ -187,10 +232,10 @@ impl Scene {
 }
 
 /// A scene of a list of scenes: a built-in one with a picture of its own.
-fn member(file: &File, name: &str, span: &Range<usize>) -> Result<Scene, SceneError> {
+fn member(file: &File, name: &str, span: &Range<usize>) -> Result<SceneFile, SceneError> {
     let picture = |(name, text): (&str, &str)| {
         let file = &format!("scenes/{name}.toml");
-        Scene::parse_as(name, Source { file, text }, false).ok()
+        SceneFile::parse_as(name, Source { file, text }, false).ok()
     };
     let pictures = || NAMES.into_iter().zip(TEXTS);
     let found = pictures().find(|(known, _)| *known == name);
@@ -206,12 +251,12 @@ fn member(file: &File, name: &str, span: &Range<usize>) -> Result<Scene, SceneEr
 }
 
 /// Checks that a list of scenes has scenes, and no picture of its own.
-fn check_list(file: &File, scenes: &[Scene]) -> Result<(), SceneError> {
+fn check_list(file: &File, scenes: &[SceneFile]) -> Result<(), SceneError> {
     if let (true, Some(value)) = (scenes.is_empty(), file.get("scenes")) {
         return Err(file.refuse("scenes", value, "at least one scene"));
     }
-    let commands = COMMANDS.iter().map(|key| key.name);
-    match commands
+    let keys = commands().into_iter().map(Row::key);
+    match keys
         .chain(["steer"])
         .find_map(|key| file.get(key).map(|value| (key, value)))
     {
@@ -240,53 +285,19 @@ fn check_subject(file: &File) -> Result<(), SceneError> {
 }
 
 /// Checks that the keys which a key needs are in the file, and those which it excludes are not.
-fn check_others(file: &File, key: &Key) -> Result<(), SceneError> {
+fn check_others(file: &File, row: &Row) -> Result<(), SceneError> {
+    let (key, forms) = (row.key(), &row.forms);
     let at = |name| file.get(name).map(|value| value.span()).unwrap_or_default();
-    if !key.with.is_empty() && !key.with.iter().any(|name| file.has(name)) {
-        let message = format!(
-            "{}: expected only beside {}",
-            key.name,
-            key.with.join(" or ")
-        );
-        return Err(file.source.error(&at(key.name), message));
+    if !forms.with.is_empty() && !forms.with.iter().any(|name| file.has(name)) {
+        let message = format!("{key}: expected only beside {}", forms.with.join(" or "));
+        return Err(file.source.error(&at(key), message));
     }
-    if let Some(other) = key.without.iter().find(|name| file.has(name)) {
+    if let Some(other) = forms.without.iter().find(|name| file.has(name)) {
         let line = file.source.line(at(other).start);
-        let message = format!(
-            "{}: expected only without {other}, found it in line {line}",
-            key.name
-        );
-        return Err(file.source.error(&at(key.name), message));
+        let message = format!("{key}: expected only without {other}, found it in line {line}");
+        return Err(file.source.error(&at(key), message));
     }
     Ok(())
-}
-
-/// Checks a line as the board does.
-fn check_line(
-    file: &File,
-    key: &str,
-    words: &str,
-    line: &str,
-    span: &Range<usize>,
-) -> Result<(), SceneError> {
-    let refuse = |reason: String| {
-        Err(file
-            .source
-            .error(span, format!("{key} = {}: {reason}", quote(words))))
-    };
-    if line.len() > LINE_MAX
-        || !line
-            .bytes()
-            .all(|byte| byte == b' ' || byte.is_ascii_graphic())
-    {
-        return refuse(format!(
-            "expected at most {LINE_MAX} visible ASCII characters"
-        ));
-    }
-    match Command::parse(line) {
-        Ok(_) => Ok(()),
-        Err(error) => refuse(error.to_string()),
-    }
 }
 
 fn lanes(file: &File) -> Result<Option<u8>, SceneError> {
@@ -304,41 +315,44 @@ fn lanes(file: &File) -> Result<Option<u8>, SceneError> {
     Ok(Some(lanes))
 }
 
-fn steer(file: &File) -> Result<Steer, SceneError> {
+/// What moves the camera, and the part of the firmware that has the command for it.
+fn steer(file: &File) -> Result<(Steer, Feature), SceneError> {
     let (Some(value), Some(text)) = (file.get("steer"), file.text("steer")?) else {
-        return Ok(Steer::Fixed);
+        return Ok((Steer::Fixed, BASE));
     };
     let is_program = file.has("program");
-    let steer = match text {
-        "fixed" => Steer::Fixed,
-        "buttons" if is_program => Steer::Buttons,
+    match text {
+        "fixed" => return Ok((Steer::Fixed, BASE)),
+        "buttons" if is_program => return Ok((Steer::Buttons, BASE)),
         "buttons" => return Err(file.refuse("steer", value, "buttons only beside program")),
-        text => {
-            let around = match Command::parse(text) {
-                Ok(Some(Command::Orbit { .. })) => true,
-                Ok(Some(Command::Imu {
-                    action: Some(ImuAction::Follow(Some(_))),
-                })) => text.contains("orbit"),
-                Ok(Some(Command::Gesture {
-                    action: Some(GestureAction::On | GestureAction::Vga),
-                })) => true,
-                _ => {
-                    let expected = "fixed, buttons, orbit FRAMES, imu look, imu orbit, gesture on or gesture vga";
-                    return Err(file.refuse("steer", value, expected));
-                }
-            };
-            if is_program {
-                return Err(file.refuse("steer", value, "fixed or buttons beside program"));
-            }
-            if around && !file.has("camera") {
-                return Err(file.refuse(
-                    "steer",
-                    value,
-                    "the key camera beside it, whose distance it keeps",
-                ));
-            }
-            Steer::Command(text.split_ascii_whitespace().collect::<Vec<_>>().join(" "))
+        _ => {}
+    }
+    // Whether the camera goes around the origin.
+    let (around, feature) = match Command::parse(text) {
+        Ok(Some(command @ Command::Orbit { .. })) => (true, command.feature()),
+        Ok(Some(
+            command @ Command::Imu {
+                action: Some(ImuAction::Follow(Some(follow))),
+            },
+        )) => (follow == Follow::Orbit, command.feature()),
+        Ok(Some(
+            command @ Command::Gesture {
+                action: Some(GestureAction::On | GestureAction::Vga),
+            },
+        )) => (true, command.feature()),
+        Ok(_) | Err(_) => {
+            let expected =
+                "fixed, buttons, orbit FRAMES, imu look, imu orbit, gesture on or gesture vga";
+            return Err(file.refuse("steer", value, expected));
         }
     };
-    Ok(steer)
+    if is_program {
+        return Err(file.refuse("steer", value, "fixed or buttons beside program"));
+    }
+    if around && !file.has("camera") {
+        let expected = "the key camera beside it, whose distance it keeps";
+        return Err(file.refuse("steer", value, expected));
+    }
+    let command = text.split_ascii_whitespace().collect::<Vec<_>>().join(" ");
+    Ok((Steer::Command(command), feature))
 }

@@ -1,7 +1,7 @@
 //! Scene files: what a picture shows, and what it needs of gateware and firmware.
 //!
 //! A scene file is TOML. Most of its keys are console commands, and their values the commands' arguments: `size = "640 360"` is
-//! `size 640 360`. So a scene is a list of console commands ([`Scene::lines`]), which the firmware holds and the host sends, and the
+//! `size 640 360`. So a scene is a list of console commands ([`SceneFile::lines`]), which the firmware holds and the host sends, and the
 //! console's own parser checks every value. docs/scenes.md describes the keys.
 
 #![forbid(unsafe_code)]
@@ -19,4 +19,4 @@ pub use error::SceneError;
 pub use keys::{BUDGET, names as keys};
 pub use needs::{Fields, Needs};
 pub use read::{built_in, read};
-pub use scene::{Budget, Scene, Steer};
+pub use scene::{Budget, SceneFile, Steer};

@@ -8,15 +8,15 @@ use glint_core::block::Block;
 use glint_core::field::FRACTION;
 use glint_core::picture::Size;
 use glint_core::quality::{Preset, Quality, Threshold};
-use glint_core::scene::commands;
-use glint_scene::{NAMES, Needs, Scene, Steer, built_in, keys};
+use glint_scene::lines;
+use glint_scene_file::{NAMES, Needs, SceneFile, Steer, built_in, keys};
 
-fn parse(text: &str) -> Result<Scene, String> {
-    Scene::parse("a", "a.toml", text).map_err(|error| error.to_string())
+fn parse(text: &str) -> Result<SceneFile, String> {
+    SceneFile::parse("a", "a.toml", text).map_err(|error| error.to_string())
 }
 
 /// The scene of a text with a title and a camera before it.
-fn with_camera(text: &str) -> Scene {
+fn with_camera(text: &str) -> SceneFile {
     parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
 }
 
@@ -32,11 +32,11 @@ fn the_files_of_the_folder_are_built_in() {
         assert_eq!(path.extension().unwrap(), "toml", "{path:?}");
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let text = fs::read_to_string(&path).unwrap();
-        let scene = Scene::parse(&name, &path.display().to_string(), &text).unwrap();
+        let scene = SceneFile::parse(&name, &path.display().to_string(), &text).unwrap();
         assert!(scene.lines().count() > 0, "{name}");
         // As a board reads the lines.
-        let lines: String = scene.lines().map(|line| format!("{line}\n")).collect();
-        let read: Result<Vec<_>, _> = commands(&lines).collect();
+        let text: String = scene.lines().map(|line| format!("{line}\n")).collect();
+        let read: Result<Vec<_>, _> = lines(&text).collect();
         let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert!(
             read.into_iter()
@@ -108,7 +108,7 @@ fn keys_are_console_commands() {
         "orbit 60",
     ];
     assert_eq!(lines, expected);
-    assert_eq!(scene.commands().count(), expected.len() - 1);
+    assert_eq!(scene.settings().len(), expected.len() - 1);
     assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
 }
 

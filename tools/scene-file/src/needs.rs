@@ -3,16 +3,16 @@
 use std::collections::BTreeSet;
 
 use glint_core::block::Block;
+use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
-use glint_core::console::Command;
-use glint_core::feature::{BASE, CPU, DEMO, Feature, MESH, SPHERES, UPLOAD};
+use glint_core::feature::{CPU, DEMO, Feature, GESTURE, MESH, SPHERES, UPLOAD};
 use glint_core::field::{Field, Flat, Primitive, Solid};
 use glint_core::picture::Backend;
-use glint_core::scene::{blocks, blocks_of};
 use glint_core::shape::Shape;
+use glint_model::{Clip, MeshOptions};
 use litex_pac::raymarch::Kind;
 
-use crate::scene::Scene;
+use crate::scene::SceneFile;
 
 /// Lanes of a raymarcher for which no scene states them.
 const LANES: u8 = 2;
@@ -51,7 +51,7 @@ pub struct Needs {
     pub fields: Option<Fields>,
 }
 
-impl Scene {
+impl SceneFile {
     /// What the scene needs; a list of scenes needs what each of them needs.
     pub fn needs(&self) -> Needs {
         if !self.scenes().is_empty() {
@@ -63,87 +63,70 @@ impl Scene {
             needs.depths |= self.depth;
             return needs;
         }
-        let commands: Vec<Command> = self.commands().collect();
-        let bits = blocks(self.parsed());
-        let blocks: BTreeSet<Block> = blocks_of(bits).collect();
-        let (mut smooth, mut stereo, mut prepass, mut shown) = (false, false, false, None);
-        for command in &commands {
-            match command {
-                Command::Shading { shading } => smooth = *shading == Some(Shading::Smooth),
-                Command::Stereo { eyes } => stereo = matches!(eyes, Some(Some(_))),
-                Command::Prepass { on } => prepass = *on,
-                Command::Field { field } => shown = field.flatten(),
-                _ => {}
-            }
+        let scene = self.scene();
+        let mut blocks: BTreeSet<Block> = Block::of_bits(scene.blocks()).collect();
+        if self.features().contains(&GESTURE) {
+            blocks.insert(Block::Gesture);
         }
         let has = |block| blocks.contains(&block);
         let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
-        let fields = shown.filter(|_| has_fields).map(|field| Fields {
+        let fields = scene.field.filter(|_| has_fields).map(|field| Fields {
             lanes: self.lanes.unwrap_or(LANES),
             // A mesh and its field are drawn for one eye after the other.
-            stereo: stereo && !has_triangles,
-            prepass,
+            stereo: scene.stereo.is_some() && !has_triangles,
+            prepass: scene.prepass,
             ..Fields::of(&field)
         });
         Needs {
-            features: self.features(),
-            smooth: smooth && has_triangles,
+            features: self.needed_features(),
+            smooth: scene.options.shading == Shading::Smooth && has_triangles,
             depths: has_triangles || self.depth,
             fields,
             blocks,
         }
     }
 
-    /// All commands, parsed.
-    fn parsed(&self) -> impl Iterator<Item = Command<'_>> {
-        // The lines have been checked.
-        self.lines()
-            .filter_map(|line| Command::parse(line).ok().flatten())
-    }
-
     /// The parts of the firmware that execute the scene's lines and draw its picture.
-    fn features(&self) -> BTreeSet<Feature> {
-        let mut features = BTreeSet::new();
-        for command in self.parsed() {
-            features.insert(command.feature());
-            if let Some(mesh) = command.mesh() {
-                features.insert(MESH);
-                if !Shape::NAMES.contains(&mesh) {
-                    features.insert(UPLOAD);
-                }
-            }
-            match command {
-                Command::Field {
-                    field: Some(Some(field)),
-                } if field.is_round() => {
-                    features.insert(SPHERES);
-                }
-                // The soft core makes the descriptors of such meshes, or the whole picture.
-                Command::Backend {
-                    backend: Some(Backend::Cpu),
-                }
-                | Command::Clip { far: Some(_) }
-                | Command::Winding {
-                    rule: Winding::Screen,
-                }
-                | Command::Cull { on: false }
-                | Command::Orthographic { .. } => {
-                    features.insert(CPU);
-                }
-                _ => {}
-            }
+    fn needed_features(&self) -> BTreeSet<Feature> {
+        let (scene, meshes) = (self.scene(), self.meshes());
+        let mut features = self.features().clone();
+        if !meshes.is_empty() {
+            features.insert(MESH);
         }
-        features.remove(&BASE);
+        if !meshes
+            .iter()
+            .all(|mesh| Shape::NAMES.contains(&mesh.as_str()))
+        {
+            features.insert(UPLOAD);
+        }
+        if scene.field.is_some_and(|field| field.is_round()) {
+            features.insert(SPHERES);
+        }
+        let MeshOptions {
+            cull,
+            clip,
+            winding,
+            shading: _,
+        } = scene.options;
+        // The soft core makes the descriptors of such meshes, or the whole picture.
+        if scene.backend == Backend::Cpu
+            || !cull
+            || clip != Clip::Guard
+            || winding == Winding::Screen
+            || scene.view.projection() == Projection::Orthographic
+        {
+            features.insert(CPU);
+        }
         features
     }
 }
 
 impl Needs {
     /// What all of these scenes need together. Scenes with different lanes have two.
-    pub fn of(scenes: &[Scene]) -> Self {
+    pub fn of(scenes: &[SceneFile]) -> Self {
         scenes
             .iter()
-            .map(Scene::needs)
+            .map(SceneFile::needs)
             .reduce(Self::with)
             .unwrap_or_default()
     }

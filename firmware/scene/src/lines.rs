@@ -1,0 +1,121 @@
+//! Scenes as text: console commands, a line each.
+
+use core::fmt;
+
+use glint_core::console::{Command, Effect, ObjectAction, ParseError, Setting};
+use glint_core::feature::{BASE, Feature, WIREFRAME};
+
+use crate::error::SettingError;
+use crate::scene::{Board, Scene};
+
+/// Reason why a text is not a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct LineError<'a> {
+    /// Number of the line, from 1.
+    pub line: usize,
+    /// Reason why the line is refused.
+    pub reason: Reason<'a>,
+}
+
+/// Reason why a line of a scene is refused.
+#[derive(Clone, Copy, Debug)]
+pub enum Reason<'a> {
+    /// It is not a command.
+    Parse(ParseError<'a>),
+    /// The line is blank, or a command that does not set the picture.
+    Effect,
+}
+
+impl fmt::Display for LineError<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { line, reason } = self;
+        write!(f, "line {line}: {reason}")
+    }
+}
+
+impl fmt::Display for Reason<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Parse(error) => error.fmt(f),
+            Self::Effect => f.write_str("expected a command that sets the picture"),
+        }
+    }
+}
+
+/// What a line of a scene does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Line<'l> {
+    /// It sets an option.
+    Option(Setting<'l>),
+    /// It shows a mesh. A scene with the name of the mesh is not meant.
+    Mesh(&'l str),
+    /// It shows the wireframe.
+    Wireframe,
+    /// It sets or starts what moves the camera or the wireframe.
+    Motion(Command<'l>),
+}
+
+impl<'l> Line<'l> {
+    /// Reads a line.
+    ///
+    /// # Errors
+    /// The line is no command that sets the picture.
+    pub fn parse(text: &'l str) -> Result<Self, Reason<'l>> {
+        let command = Command::parse(text).map_err(Reason::Parse)?;
+        let command = command.filter(|command| command.effect() == Effect::Picture);
+        let command = command.ok_or(Reason::Effect)?;
+        Ok(if let Command::Set(setting) = command {
+            Self::Option(setting)
+        } else if let Command::Scene { name: Some(mesh) } = command {
+            Self::Mesh(mesh)
+        } else if let Command::Program { upload: None } = command {
+            Self::Wireframe
+        } else {
+            Self::Motion(command)
+        })
+    }
+
+    /// Name of the mesh that the line shows, or adds to the objects.
+    pub const fn mesh(&self) -> Option<&'l str> {
+        match self {
+            Self::Mesh(mesh)
+            | Self::Option(Setting::Object {
+                action: ObjectAction::Add { mesh, .. },
+            }) => Some(mesh),
+            Self::Option(_) | Self::Wireframe | Self::Motion(_) => None,
+        }
+    }
+
+    /// The part of the firmware that has the line's command.
+    pub const fn feature(&self) -> Feature {
+        match self {
+            Self::Option(setting) => setting.name().feature(),
+            Self::Mesh(_) => BASE,
+            Self::Wireframe => WIREFRAME,
+            Self::Motion(command) => command.feature(),
+        }
+    }
+
+    /// Changes `scene` as the line says, except by motion.
+    ///
+    /// # Errors
+    /// As [`Scene::apply`].
+    pub fn apply(&self, scene: &mut Scene, board: &mut dyn Board) -> Result<(), SettingError<'l>> {
+        match self {
+            Self::Option(setting) => scene.apply(setting, board)?,
+            Self::Mesh(mesh) => scene.show_mesh(mesh),
+            Self::Wireframe => scene.show_wireframe(),
+            Self::Motion(_) => {}
+        }
+        Ok(())
+    }
+}
+
+/// The lines of a scene with their numbers, from 1.
+pub fn lines(text: &str) -> impl Iterator<Item = Result<(usize, Line<'_>), LineError<'_>>> {
+    text.lines().zip(1..).map(|(text, line)| {
+        let parsed = Line::parse(text);
+        let parsed = parsed.map_err(|reason| LineError { line, reason })?;
+        Ok((line, parsed))
+    })
+}

@@ -1,0 +1,558 @@
+//! The scene, its options, and its frames.
+
+use core::fmt;
+
+use glint_core::appearance::Appearance;
+use glint_core::block::Block;
+use glint_core::camera::{View, ViewError};
+use glint_core::console::{ObjectAction, Setting};
+use glint_core::feature::{FIELD, FIT, MESH_IN_FIELD, OBJECT, OVERLAY, STEREO, WIREFRAME};
+use glint_core::field::Field;
+use glint_core::fixed::{Q32_32, Turns, U8_28};
+use glint_core::framing;
+use glint_core::matrix::{Axis, Matrix};
+use glint_core::mesh::{MAX_NAME, Mesh};
+use glint_core::object::{MAX_OBJECTS, Place};
+use glint_core::picture::{Backend, Edges, Size};
+use glint_core::quality::Quality;
+use glint_core::stereo::Stereo;
+use glint_core::wireframe::{Motion, Program, Step};
+use glint_model::{
+    Clip, FieldSubject, Frame, MeshOptions, Object, Placement, Subject, WireframeSubject,
+};
+use heapless::{String, Vec};
+
+use crate::error::{ObjectError, SettingError};
+
+/// Name of the mesh that is shown at start.
+pub const CUBE: &str = "cube";
+
+/// The name of a mesh.
+pub type Name = String<MAX_NAME>;
+
+/// What a scene asks of its board.
+pub trait Board {
+    /// Whether the board draws and shows pictures of this size.
+    fn has_size(&self, size: Size) -> bool;
+
+    /// Whether the board has the gateware that draws.
+    fn has_engine(&self) -> bool;
+
+    /// Whether there is a mesh with this name, which is made if need be.
+    fn has_mesh(&mut self, name: &str) -> bool;
+
+    /// The mesh with this name, if [`has_mesh`](Self::has_mesh) has said that there is one.
+    fn mesh(&self, name: &str) -> Option<Mesh<'_>>;
+}
+
+/// A board that has all that a scene can ask for. Its meshes are read when the scene is drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyBoard;
+
+impl Board for AnyBoard {
+    fn has_size(&self, _: Size) -> bool {
+        true
+    }
+
+    fn has_engine(&self) -> bool {
+        true
+    }
+
+    fn has_mesh(&mut self, _: &str) -> bool {
+        true
+    }
+
+    fn mesh(&self, _: &str) -> Option<Mesh<'_>> {
+        None
+    }
+}
+
+/// A camera on a sphere about the origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sphere {
+    /// Distance from the origin in world units.
+    pub r: Q32_32,
+    /// Azimuth, about the z axis.
+    pub theta: Turns,
+    /// Angle from the z axis.
+    pub phi: Turns,
+}
+
+impl Sphere {
+    /// The camera at start, which shows the whole model from above and in front.
+    const START: Self = Self {
+        r: Q32_32::lit("2.5"),
+        // Azimuth 40°, and 65° from the z axis.
+        theta: Turns::from_degrees(Q32_32::lit("40")),
+        phi: Turns::from_degrees(Q32_32::lit("65")),
+    };
+
+    fn view(self) -> Result<View, ViewError> {
+        View::spherical(self.r, self.theta, self.phi)
+    }
+}
+
+/// A mesh of the list of objects, with its place and colour.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlacedMesh {
+    /// Name of the mesh.
+    pub mesh: Name,
+    /// Place and colour.
+    pub place: Place,
+}
+
+/// Which of its subjects a scene shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// The mesh, the field, or both.
+    Solid,
+    /// The objects.
+    Objects,
+    /// The wireframe, after this motion.
+    Wireframe(Motion),
+}
+
+/// What a scene shows. `Display` is its name: that of a mesh, a field, or both.
+#[derive(Clone, Copy, Debug)]
+pub enum Shown<'s> {
+    /// The mesh with this name.
+    Mesh(&'s str),
+    /// The edges of this mesh.
+    Edges(&'s str, Edges),
+    /// A field.
+    Field(&'s Field),
+    /// A mesh in a field.
+    MeshInField(&'s str, &'s Field),
+    /// The objects.
+    Objects,
+    /// The wireframe.
+    Wireframe(&'s Motion),
+}
+
+impl fmt::Display for Shown<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Mesh(mesh) | Self::Edges(mesh, _) => f.write_str(mesh),
+            Self::Field(field) => field.fmt(f),
+            Self::MeshInField(mesh, field) => write!(f, "{field} with {mesh}"),
+            Self::Objects => f.write_str("objects"),
+            Self::Wireframe(_) => f.write_str("wireframe"),
+        }
+    }
+}
+
+/// The meshes and the wireframe program of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Content<'a> {
+    /// The mesh that is shown alone or in a field; `None` draws none.
+    pub mesh: Option<Mesh<'a>>,
+    /// The objects.
+    pub objects: &'a [Object<'a>],
+    /// The wireframe program.
+    pub program: Program<'a>,
+}
+
+/// Everything that a picture depends on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// Which of mesh and field, objects, and wireframe is shown.
+    pub kind: Kind,
+    /// Name of the mesh.
+    pub mesh: Name,
+    /// The objects.
+    pub objects: Vec<PlacedMesh, MAX_OBJECTS>,
+    /// The distance field, alone or with the mesh in it; `None` shows the mesh alone.
+    pub field: Option<Field>,
+    /// Whether a field is shown with the mesh in it.
+    pub with_mesh: bool,
+    /// The edges of a mesh that is shown alone; `None` for its faces alone, and as soon as anything else is shown.
+    pub edges: Option<Edges>,
+    /// Two eyes; `None` for one eye, which wireframes always have.
+    pub stereo: Option<Stereo>,
+    /// The appearance of a field, with lights and background of meshes.
+    pub appearance: Appearance,
+    /// The quality that was set last. The size may be another one.
+    pub quality: Quality,
+    /// Whether a prepass marches cones before the rays of a field.
+    pub prepass: bool,
+    /// The camera.
+    pub view: View,
+    /// The camera on a sphere that was set last.
+    pub sphere: Sphere,
+    /// Size of the picture.
+    pub size: Size,
+    /// The options of all meshes.
+    pub options: MeshOptions,
+    /// What draws the picture.
+    pub backend: Backend,
+    /// Whether text is written over the picture.
+    pub overlay: bool,
+}
+
+impl Scene {
+    /// The scene at start, drawn by `backend`.
+    ///
+    /// # Errors
+    /// [`ViewError`] for the camera at start.
+    pub fn new(backend: Backend) -> Result<Self, ViewError> {
+        let sphere = Sphere::START;
+        Ok(Self {
+            kind: Kind::Solid,
+            mesh: name(CUBE),
+            objects: Vec::new(),
+            field: None,
+            with_mesh: false,
+            edges: None,
+            stereo: None,
+            appearance: Appearance::default(),
+            quality: Quality::default(),
+            prepass: false,
+            view: sphere.view()?,
+            sphere,
+            size: Size::default(),
+            options: MeshOptions::default(),
+            backend,
+            overlay: false,
+        })
+    }
+
+    /// Sets everything except backend and overlay as at start.
+    ///
+    /// # Errors
+    /// [`ViewError`] for the camera at start.
+    pub fn reset(&mut self) -> Result<(), ViewError> {
+        *self = Self {
+            overlay: self.overlay,
+            ..Self::new(self.backend)?
+        };
+        Ok(())
+    }
+
+    /// Sets an option.
+    ///
+    /// # Errors
+    /// The scene or the board excludes the value; the scene is then unchanged.
+    // Not inlined, as the firmware has several callers.
+    #[inline(never)]
+    pub fn apply<'l>(
+        &mut self,
+        setting: &Setting<'l>,
+        board: &mut dyn Board,
+    ) -> Result<(), SettingError<'l>> {
+        match *setting {
+            Setting::Field { field } => self.show_field(field),
+            Setting::Mesh { on } => self.with_mesh = on,
+            Setting::Stereo { eyes } => {
+                if eyes.is_some() && self.wireframe().is_some() {
+                    return Err(SettingError::StereoOfWireframe);
+                }
+                self.stereo = eyes;
+            }
+            Setting::Object { ref action } => {
+                if OBJECT.is_built {
+                    self.change_objects(action, board)?;
+                }
+            }
+            Setting::Material { material } => self.appearance.material = material,
+            Setting::Light { light: Some(light) } => {
+                let added = self.appearance.lights.push(light);
+                added.map_err(|_| SettingError::Lights)?;
+            }
+            Setting::Light { light: None } => self.appearance.lights.clear(),
+            Setting::Ambient { colour } => self.appearance.ambient = colour,
+            Setting::Background { background } => self.appearance.background = background,
+            Setting::Fog { density } => self.appearance.fog = density.unwrap_or_default(),
+            Setting::Occlusion { on } => self.appearance.occlusion = on,
+            Setting::Undecided { on } => self.appearance.undecided = on,
+            Setting::Camera { r, theta, phi } => self.set_sphere(Sphere { r, theta, phi })?,
+            Setting::View { view } => self.view = view,
+            Setting::Look { yaw, pitch, roll } => {
+                self.move_view(View::look(self.view.eye(), yaw, pitch, roll)?);
+            }
+            Setting::LookAt { view } => self.move_view(view),
+            Setting::FieldOfView { angle } => self.view = self.view.with_field_of_view(angle)?,
+            Setting::Orthographic { width } => self.view = self.view.with_width(width)?,
+            Setting::Zoom { factor } => {
+                // Rounded down. A factor that is too small makes a half width out of range.
+                let half_width = self.view.half_width().checked_div(factor);
+                let half_width = half_width.unwrap_or(U8_28::lit("256"));
+                self.view = self.view.with_half_width(half_width)?;
+            }
+            Setting::Fit { lens } => {
+                if FIT.is_built {
+                    let (up, angle) = lens.unwrap_or((Axis::Z, None));
+                    let sphere = self.bounds(board).ok_or(SettingError::FitOfOthers)?;
+                    let view = sphere.framed(up, Turns::default(), angle);
+                    self.view = view.map_err(SettingError::Fit)?;
+                }
+            }
+            Setting::Quality { quality } => {
+                // The largest size of this board up to that of the quality.
+                let mut sizes = (Size::ALL.into_iter().rev())
+                    .skip_while(|size| *size != quality.size())
+                    .filter(|size| board.has_size(*size));
+                self.size = sizes.next().unwrap_or(self.size);
+                self.quality = quality;
+            }
+            Setting::Size { size } => {
+                if !board.has_size(size) {
+                    return Err(SettingError::Size(size));
+                }
+                self.size = size;
+            }
+            Setting::Backend { backend } => {
+                if backend == Backend::Gateware && !board.has_engine() {
+                    return Err(SettingError::NoEngine);
+                }
+                self.backend = backend;
+            }
+            Setting::Shading { shading } => self.options.shading = shading,
+            Setting::Cull { on } => self.options.cull = on,
+            Setting::Clip { far } => {
+                self.options.clip = far.map_or(Clip::Guard, |far| Clip::View { far });
+            }
+            Setting::Winding { rule } => self.options.winding = rule,
+            Setting::Edges { edges } => {
+                if edges.is_some() && (self.kind != Kind::Solid || self.field.is_some()) {
+                    return Err(SettingError::EdgesOfOthers);
+                }
+                self.edges = edges;
+            }
+            Setting::Overlay { on } => self.overlay = on,
+            Setting::Prepass { on } => self.prepass = on,
+        }
+        Ok(())
+    }
+
+    fn change_objects<'l>(
+        &mut self,
+        action: &ObjectAction<'l>,
+        board: &mut dyn Board,
+    ) -> Result<(), SettingError<'l>> {
+        let count = self.objects.len();
+        let index = |number: u32| {
+            let index = (number as usize).checked_sub(1);
+            let index = index.filter(|index| *index < count);
+            index.ok_or(ObjectError::Number { number, count })
+        };
+        match *action {
+            ObjectAction::List => {}
+            ObjectAction::Show if count == 0 => return Err(ObjectError::None.into()),
+            ObjectAction::Show => self.show_objects(),
+            ObjectAction::Add { mesh, place } => {
+                if !board.has_mesh(mesh) {
+                    return Err(SettingError::ObjectMesh(mesh));
+                }
+                let mesh = name(mesh);
+                let added = self.objects.push(PlacedMesh { mesh, place });
+                added.map_err(|_| ObjectError::Full)?;
+                self.show_objects();
+            }
+            ObjectAction::Change { number, next } => {
+                if let Some(object) = self.objects.get_mut(index(number)?) {
+                    let place = object.place.then(&next);
+                    object.place = place.map_err(|error| ObjectError::Matrix { number, error })?;
+                }
+            }
+            ObjectAction::Remove(number) => {
+                match number {
+                    Some(number) => drop(self.objects.remove(index(number)?)),
+                    None => self.objects.clear(),
+                }
+                if self.objects.is_empty() && self.kind == Kind::Objects {
+                    self.show_field(None);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Shows a field, or the mesh alone for `None`. A field sets the edges of a mesh off.
+    fn show_field(&mut self, field: Option<Field>) {
+        self.kind = Kind::Solid;
+        if field.is_some() {
+            self.edges = None;
+        }
+        self.field = field;
+    }
+
+    /// Shows the mesh with this name alone.
+    pub fn show_mesh(&mut self, mesh: &str) {
+        self.set_mesh(mesh);
+        self.show_field(None);
+    }
+
+    /// Sets the mesh to the one with this name, whether it is shown or not.
+    pub fn set_mesh(&mut self, mesh: &str) {
+        self.mesh = name(mesh);
+    }
+
+    /// Shows the objects. Edges of a mesh are off from now on.
+    fn show_objects(&mut self) {
+        self.kind = Kind::Objects;
+        self.edges = None;
+    }
+
+    /// Shows the wireframe as its program has it. Edges of a mesh and two eyes are off from now on.
+    pub fn show_wireframe(&mut self) {
+        self.kind = Kind::Wireframe(Motion::default());
+        self.edges = None;
+        self.stereo = None;
+    }
+
+    /// The motion of the wireframe, if it is shown.
+    pub const fn wireframe(&self) -> Option<&Motion> {
+        match &self.kind {
+            Kind::Wireframe(motion) if WIREFRAME.is_built => Some(motion),
+            Kind::Wireframe(_) | Kind::Solid | Kind::Objects => None,
+        }
+    }
+
+    /// Moves the wireframe by a step, if it is shown. Returns whether the step was possible.
+    pub fn move_wireframe(&mut self, step: Step) -> bool {
+        match &mut self.kind {
+            Kind::Wireframe(motion) => motion.apply(step),
+            Kind::Solid | Kind::Objects => false,
+        }
+    }
+
+    /// Whether the objects are shown.
+    pub fn shows_objects(&self) -> bool {
+        OBJECT.is_built && self.kind == Kind::Objects
+    }
+
+    /// Whether the field is shown, alone or with the mesh in it.
+    pub fn shows_field(&self) -> bool {
+        self.field.is_some() && self.kind == Kind::Solid
+    }
+
+    /// Sets position and basis of the camera to those of `view`, and keeps projection, half width and near plane.
+    pub fn move_view(&mut self, view: View) {
+        self.view = view.with_lens_of(&self.view);
+    }
+
+    /// Sets position and basis of the camera to those of a camera on a sphere.
+    ///
+    /// # Errors
+    /// [`ViewError`] for a camera out of range; the scene is then unchanged.
+    pub fn set_sphere(&mut self, sphere: Sphere) -> Result<(), ViewError> {
+        self.move_view(sphere.view()?);
+        self.sphere = sphere;
+        Ok(())
+    }
+
+    /// Whether text is written over the picture.
+    pub const fn has_overlay(&self) -> bool {
+        OVERLAY.is_built && self.overlay
+    }
+
+    /// What the scene shows.
+    pub fn shown(&self) -> Shown<'_> {
+        if let Some(motion) = self.wireframe() {
+            return Shown::Wireframe(motion);
+        }
+        if self.shows_objects() {
+            return Shown::Objects;
+        }
+        let field = self.field.as_ref().filter(|_| FIELD.is_built);
+        match (field, self.edges) {
+            (None, None) => Shown::Mesh(&self.mesh),
+            (None, Some(edges)) => Shown::Edges(&self.mesh, edges),
+            (Some(field), _) if self.with_mesh && MESH_IN_FIELD.is_built => {
+                Shown::MeshInField(&self.mesh, field)
+            }
+            (Some(field), _) => Shown::Field(field),
+        }
+    }
+
+    /// Name of the mesh that is shown, alone or in a field.
+    pub fn shown_mesh(&self) -> Option<&str> {
+        match self.shown() {
+            Shown::Mesh(mesh) | Shown::Edges(mesh, _) | Shown::MeshInField(mesh, _) => Some(mesh),
+            Shown::Field(_) | Shown::Objects | Shown::Wireframe(_) => None,
+        }
+    }
+
+    /// The object that the entry of the list is with its mesh.
+    pub fn object<'a>(&self, PlacedMesh { place, .. }: &PlacedMesh, mesh: Mesh<'a>) -> Object<'a> {
+        Object {
+            subject: self.options.subject(mesh),
+            placement: Placement::new(place.matrix),
+            colour: place.colour,
+        }
+    }
+
+    /// The frame of the scene.
+    pub fn frame<'a>(&'a self, content: Content<'a>) -> Frame<'a> {
+        let mesh = content.mesh.map(|mesh| self.options.subject(mesh));
+        let field = |field| FieldSubject {
+            field,
+            appearance: &self.appearance,
+            quality: self.quality,
+            prepass: self.prepass,
+        };
+        let subject = match (self.shown(), mesh) {
+            (Shown::Mesh(_), Some(mesh)) => Subject::Mesh(mesh),
+            (Shown::Edges(_, edges), Some(mesh)) => Subject::edges(mesh, edges),
+            (Shown::MeshInField(_, shown), Some(mesh)) => Subject::MeshInField(mesh, field(shown)),
+            (Shown::Field(shown) | Shown::MeshInField(_, shown), _) => Subject::Field(field(shown)),
+            (Shown::Objects, _) => Subject::Objects(content.objects),
+            (Shown::Mesh(_) | Shown::Edges(..), None) => Subject::Objects(&[]),
+            (Shown::Wireframe(motion), _) => Subject::Wireframe(WireframeSubject {
+                program: content.program,
+                pose: motion.pose(),
+            }),
+        };
+        Frame {
+            stereo: self.stereo.filter(|_| STEREO.is_built),
+            ..Frame::in_appearance(subject, self.view, self.size, &self.appearance)
+        }
+    }
+
+    /// The sphere around the mesh that is shown alone, or around the objects.
+    fn bounds(&self, board: &dyn Board) -> Option<framing::Sphere> {
+        let mut meshes: Vec<(Mesh, Matrix), MAX_OBJECTS> = Vec::new();
+        // The list has room for all objects.
+        match self.shown() {
+            Shown::Mesh(mesh) | Shown::Edges(mesh, _) => {
+                meshes.extend(board.mesh(mesh).map(|mesh| (mesh, Matrix::IDENTITY)));
+            }
+            Shown::Objects => {
+                for object in &self.objects {
+                    let mesh = board.mesh(&object.mesh);
+                    meshes.extend(mesh.map(|mesh| (mesh, object.place.matrix)));
+                }
+            }
+            Shown::Field(_) | Shown::MeshInField(..) | Shown::Wireframe(_) => {}
+        }
+        framing::Sphere::around(meshes.iter().copied())
+    }
+
+    /// The optional blocks of the gateware that draw and show the scene, a bit for each ([`Block::bit`]). A picture of the soft core needs
+    /// no engine.
+    pub fn blocks(&self) -> u32 {
+        let engines = match self.shown() {
+            Shown::Mesh(_) | Shown::Objects => Block::Triangle.bit(),
+            Shown::Edges(..) | Shown::Wireframe(_) => Block::Triangle.bit() | Block::Line.bit(),
+            Shown::Field(_) => Block::Raymarch.bit(),
+            Shown::MeshInField(..) => Block::Triangle.bit() | Block::Raymarch.bit(),
+        };
+        let drawn = match self.backend {
+            Backend::Gateware => engines,
+            Backend::Cpu => 0,
+        };
+        Block::Scanout.bit() | drawn
+    }
+
+    /// The number of the first object whose mesh has this name, from 1.
+    pub fn first_object_of(&self, mesh: &str) -> Option<u32> {
+        let mut numbered = (1..).zip(&self.objects);
+        let found = numbered.find(|(_, object)| object.mesh == mesh);
+        found.map(|(number, _)| number)
+    }
+}
+
+/// The name of a mesh, which has at most [`MAX_NAME`] bytes.
+fn name(mesh: &str) -> Name {
+    Name::try_from(mesh).unwrap_or_default()
+}

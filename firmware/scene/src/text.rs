@@ -1,0 +1,214 @@
+//! Scenes as console commands.
+
+use core::fmt::{self, Display, Write};
+
+use glint_core::choice::switch_name;
+use glint_core::console::OptionName;
+use glint_core::fixed::{Turns, U4_28};
+use glint_core::light::Hexadecimal;
+use glint_core::picture::Size;
+use glint_model::Clip;
+
+use crate::scene::{Kind, Scene, Sphere};
+
+/// Displays a value, or `off` for `None`.
+#[derive(PartialEq)]
+struct OrOff<T>(Option<T>);
+
+/// Displays a value, or `default` for `None`.
+#[derive(PartialEq)]
+struct OrDefault<T>(Option<T>);
+
+/// Displays width and height as the arguments of `size`.
+#[derive(PartialEq)]
+struct Pixels(Size);
+
+impl Display for Pixels {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} {}", self.0.width(), self.0.height())
+    }
+}
+
+/// Writes the arguments of `camera`, each the shortest decimal that reads back as the same bits.
+impl Display for Sphere {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [theta, phi] = [self.theta, self.phi].map(Turns::to_degrees);
+        write!(f, "{} {theta} {phi}", self.r)
+    }
+}
+
+impl<T: Display> Display for OrOff<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match &self.0 {
+            Some(value) => value.fmt(f),
+            None => f.write_str("off"),
+        }
+    }
+}
+
+impl<T: Display> Display for OrDefault<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match &self.0 {
+            Some(value) => value.fmt(f),
+            None => f.write_str("default"),
+        }
+    }
+}
+
+impl Scene {
+    /// Writes an option as the console shows it.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn show(&self, option: OptionName, out: &mut dyn Write) -> fmt::Result {
+        let appearance = &self.appearance;
+        match option {
+            // The lights that are drawn, also where the scene states none.
+            OptionName::Light => {
+                let mut lights = appearance.lighting().lights;
+                if appearance.lights.is_empty() && !self.shows_field() {
+                    lights.clear();
+                    // The list has room for one light.
+                    let _ = lights.push(appearance.mesh_lighting().light);
+                }
+                if lights.is_empty() {
+                    writeln!(out, "light none")?;
+                }
+                lights
+                    .iter()
+                    .try_for_each(|light| writeln!(out, "light {light}"))
+            }
+            OptionName::Ambient => {
+                let colour = if self.shows_field() {
+                    appearance.lighting().ambient
+                } else {
+                    appearance.mesh_lighting().ambient
+                };
+                writeln!(out, "ambient {}", Hexadecimal(colour))
+            }
+            OptionName::Object => {
+                let mut numbered = (1..).zip(&self.objects);
+                numbered.try_for_each(|(number, object)| {
+                    writeln!(out, "object {number} {} {}", object.mesh, object.place)
+                })
+            }
+            option => self.write_option(option, None, out),
+        }
+    }
+
+    /// Writes the console commands that make this scene from the scene `from`, which has no objects. Steps of the wireframe are left out.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write_lines(&self, from: &Self, out: &mut dyn Write) -> fmt::Result {
+        for &option in OptionName::ALL {
+            if !matches!(option, OptionName::Field | OptionName::Edges) {
+                self.write_option(option, Some(from), out)?;
+            }
+        }
+        // Objects were shown when they were added. The mesh leaves them, the field follows the mesh, and edges are those of a mesh alone.
+        let shows_mesh = self.kind == Kind::Solid && self.field.is_none();
+        if self.mesh != from.mesh || shows_mesh && !self.objects.is_empty() {
+            writeln!(out, "scene {}", self.mesh)?;
+        }
+        self.write_option(OptionName::Field, Some(from), out)?;
+        self.write_option(OptionName::Edges, Some(from), out)?;
+        match self.kind {
+            Kind::Solid => Ok(()),
+            Kind::Objects => writeln!(out, "object show"),
+            Kind::Wireframe(_) => writeln!(out, "program"),
+        }
+    }
+
+    /// Writes the commands that set an option, unless the scene `from` has the same value.
+    fn write_option(
+        &self,
+        option: OptionName,
+        from: Option<&Self>,
+        out: &mut dyn Write,
+    ) -> fmt::Result {
+        let name = option.name();
+        match option {
+            OptionName::Field => self.put(name, from, out, |scene| OrOff(scene.field)),
+            OptionName::Mesh => self.put(name, from, out, |scene| switch_name(scene.with_mesh)),
+            OptionName::Stereo => self.put(name, from, out, |scene| OrOff(scene.stereo)),
+            OptionName::Object => {
+                let mut objects = self.objects.iter();
+                objects.try_for_each(|object| {
+                    writeln!(out, "{name} add {} {}", object.mesh, object.place)
+                })
+            }
+            OptionName::Material => self.put(name, from, out, |scene| scene.appearance.material),
+            OptionName::Light => {
+                let lights = &self.appearance.lights;
+                let old = from.map_or(&[][..], |from| &from.appearance.lights);
+                let added = lights.strip_prefix(old);
+                if added.is_none() {
+                    writeln!(out, "{name} default")?;
+                }
+                let mut added = added.unwrap_or(lights).iter();
+                added.try_for_each(|light| writeln!(out, "{name} {light}"))
+            }
+            OptionName::Ambient => self.put(name, from, out, |scene| {
+                OrDefault(scene.appearance.ambient.map(Hexadecimal))
+            }),
+            OptionName::Background => self.put(name, from, out, |scene| {
+                OrDefault(scene.appearance.background)
+            }),
+            OptionName::Fog => self.put(name, from, out, |scene| {
+                OrOff(Some(scene.appearance.fog).filter(|fog| *fog != U4_28::ZERO))
+            }),
+            OptionName::Occlusion => self.put(name, from, out, |scene| {
+                switch_name(scene.appearance.occlusion)
+            }),
+            OptionName::Undecided => self.put(name, from, out, |scene| {
+                switch_name(scene.appearance.undecided)
+            }),
+            OptionName::Camera => self.put(name, from, out, |scene| scene.sphere),
+            OptionName::View => {
+                // The camera on a sphere has set another view.
+                let from = from.filter(|from| from.sphere == self.sphere);
+                self.put(name, from, out, |scene| scene.view)
+            }
+            // The view has them.
+            OptionName::Look
+            | OptionName::LookAt
+            | OptionName::FieldOfView
+            | OptionName::Orthographic
+            | OptionName::Zoom
+            | OptionName::Fit => Ok(()),
+            OptionName::Quality => self.put(name, from, out, |scene| scene.quality),
+            OptionName::Size => {
+                // The quality has set another size.
+                let from = from.filter(|from| from.quality == self.quality);
+                self.put(name, from, out, |scene| Pixels(scene.size))
+            }
+            OptionName::Backend => self.put(name, from, out, |scene| scene.backend),
+            OptionName::Shading => self.put(name, from, out, |scene| scene.options.shading),
+            OptionName::Cull => self.put(name, from, out, |scene| switch_name(scene.options.cull)),
+            OptionName::Clip => self.put(name, from, out, |scene| match scene.options.clip {
+                Clip::Guard => OrOff(None),
+                Clip::View { far } => OrOff(Some(far)),
+            }),
+            OptionName::Winding => self.put(name, from, out, |scene| scene.options.winding),
+            OptionName::Edges => self.put(name, from, out, |scene| OrOff(scene.edges)),
+            OptionName::Overlay => self.put(name, from, out, |scene| switch_name(scene.overlay)),
+            OptionName::Prepass => self.put(name, from, out, |scene| switch_name(scene.prepass)),
+        }
+    }
+
+    /// Writes the command that sets an option to its value, unless the scene `from` has the same value.
+    fn put<T: Display + PartialEq>(
+        &self,
+        name: &str,
+        from: Option<&Self>,
+        out: &mut dyn Write,
+        value: impl Fn(&Self) -> T,
+    ) -> fmt::Result {
+        let new = value(self);
+        if from.is_some_and(|from| value(from) == new) {
+            return Ok(());
+        }
+        writeln!(out, "{name} {new}")
+    }
+}

@@ -1,0 +1,301 @@
+//! Scenes change by options, need blocks, and come back from their text.
+
+use glint_core::block::Block;
+use glint_core::console::{Command, ObjectAction, OptionName, Setting};
+use glint_core::mesh::Mesh;
+use glint_core::picture::{Backend, Size};
+use glint_core::quality::Quality;
+use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
+use proptest::prelude::*;
+
+/// A scene and its board, which has no picture of more than 640×360 and no mesh of the name `none`.
+struct SmallBoard;
+
+impl Board for SmallBoard {
+    fn has_size(&self, size: Size) -> bool {
+        size != Size::W1280
+    }
+
+    fn has_engine(&self) -> bool {
+        false
+    }
+
+    fn has_mesh(&mut self, name: &str) -> bool {
+        name != "none"
+    }
+
+    fn mesh(&self, _: &str) -> Option<Mesh<'_>> {
+        None
+    }
+}
+
+fn start() -> Scene {
+    Scene::new(Backend::Gateware).expect("a camera in range")
+}
+
+/// Executes the lines of a scene. Returns the error of the first line that fails.
+fn execute(scene: &mut Scene, lines: &str, board: &mut dyn Board) -> Result<(), String> {
+    for line in glint_scene::lines(lines) {
+        let (_, line) = line.map_err(|error| error.to_string())?;
+        line.apply(scene, board)
+            .map_err(|error| error.to_string())?;
+    }
+    Ok(())
+}
+
+fn scene(lines: &str) -> Scene {
+    let mut scene = start();
+    execute(&mut scene, lines, &mut AnyBoard).expect("lines of a scene");
+    scene
+}
+
+fn lines(scene: &Scene) -> String {
+    let mut text = String::new();
+    scene
+        .write_lines(&start(), &mut text)
+        .expect("a string takes all text");
+    text
+}
+
+/// A line of each option that a scene can have, with random values. Some of them fail in some scenes.
+fn line() -> impl Strategy<Value = String> {
+    let number = |low: i32, high: i32| (low..high).prop_map(|x| format!("{}", f64::from(x) / 64.0));
+    let word = |words: &'static [&'static str]| proptest::sample::select(words);
+    prop_oneof![
+        word(&[
+            "off",
+            "menger:3",
+            "box:1,1,0.5",
+            "union:menger:2+sphere:1",
+            "cubes:2,0.4"
+        ])
+        .prop_map(|field| format!("field {field}")),
+        word(&["cube", "torus", "a"]).prop_map(|mesh| format!("scene {mesh}")),
+        word(&[
+            "program",
+            "object show",
+            "object remove all",
+            "object remove 1"
+        ])
+        .prop_map(str::to_owned),
+        (word(&["cube", "a"]), number(-640, 640), number(1, 128)).prop_map(|(mesh, x, s)| format!(
+            "object add {mesh} scale {s} rotate x {x} move {x},1,2"
+        )),
+        number(-640, 640).prop_map(|x| format!("object move 1 {x},0,1")),
+        (
+            word(&[
+                "mesh",
+                "occlusion",
+                "undecided",
+                "cull",
+                "overlay",
+                "prepass"
+            ]),
+            word(&["on", "off"])
+        )
+            .prop_map(|(option, on)| format!("{option} {on}")),
+        (number(0, 64), number(64, 640))
+            .prop_map(|(e, zero)| format!("stereo {e},{zero},red-cyan")),
+        word(&[
+            "stereo off",
+            "edges over",
+            "edges hidden",
+            "edges off",
+            "light default",
+            "ambient default",
+            "ambient 102030",
+            "background sky",
+            "background default",
+            "background 405060",
+            "fog off",
+            "clip off",
+            "winding screen",
+            "winding mesh",
+            "shading smooth",
+            "shading flat",
+            "backend cpu",
+            "backend gateware",
+            "size 320 180",
+            "size 1280 720",
+            "quality fast",
+            "quality exact"
+        ])
+        .prop_map(str::to_owned),
+        word(&["normal", "jade", "clay"]).prop_map(|material| format!("material {material}")),
+        (number(-640, 640), number(1, 640)).prop_map(|(x, y)| format!("light {x},{y},1,ff8040")),
+        number(1, 1024).prop_map(|fog| format!("fog {fog}")),
+        number(1, 1024).prop_map(|far| format!("clip {far}")),
+        (number(128, 320), number(-23040, 23040), number(0, 11520))
+            .prop_map(|(r, theta, phi)| format!("camera {r} {theta} {phi}")),
+        (number(-640, 640), number(-640, 640))
+            .prop_map(|(yaw, pitch)| format!("look {yaw} {pitch} 3")),
+        (number(-640, 640), number(-640, 640))
+            .prop_map(|(x, y)| format!("lookat {x} {y} 1 1 2 -1")),
+        number(64, 11000).prop_map(|angle| format!("fov {angle}")),
+        number(64, 6400).prop_map(|width| format!("orthographic {width}")),
+        number(32, 128).prop_map(|factor| format!("zoom {factor}")),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// The text of a scene makes the same scene of the one at start. A line that fails changes nothing.
+    #[test]
+    fn a_scene_comes_back_from_its_text(made in proptest::collection::vec(line(), 0..24)) {
+        let mut scene = start();
+        for line in made {
+            let before = scene.clone();
+            let is_overlay = line.starts_with("overlay");
+            if let Some(Command::Set(setting)) = Command::parse(&line).expect("a command").filter(|_| is_overlay) {
+                scene.apply(&setting, &mut AnyBoard).expect("the text over the picture");
+            } else if execute(&mut scene, &line, &mut AnyBoard).is_err() {
+                prop_assert_eq!(&scene, &before);
+            }
+        }
+        // No scene has the text over the picture.
+        scene.overlay = false;
+        let text = lines(&scene);
+        let mut again = start();
+        prop_assert_eq!(execute(&mut again, &text, &mut AnyBoard), Ok(()), "{}", text);
+        prop_assert_eq!(again, scene, "{}", text);
+    }
+}
+
+#[test]
+fn the_text_has_what_differs_from_the_scene_at_start() {
+    assert_eq!(lines(&start()), "");
+    assert_eq!(
+        lines(&scene(
+            "quality exact\nlight camera\nscene torus\nmesh on\nfield box:1,1,1"
+        )),
+        "mesh on\nlight camera,ffffff\nquality exact\nsize 1280 720\nscene torus\nfield box:1,1,1\n"
+    );
+    assert_eq!(
+        lines(&scene("object add a\nscene b\nedges over"))
+            .lines()
+            .last(),
+        Some("edges over")
+    );
+}
+
+#[test]
+fn scenes_need_the_blocks_of_what_they_show() {
+    let bits = |blocks: &[Block]| blocks.iter().fold(1, |bits, block| bits | block.bit());
+    for (lines, blocks) in [
+        ("size 640 360", &[Block::Triangle][..]),
+        (
+            "scene a\nmesh on\nfield menger:2",
+            &[Block::Triangle, Block::Raymarch],
+        ),
+        ("field menger:2", &[Block::Raymarch]),
+        ("program", &[Block::Triangle, Block::Line]),
+        ("edges over", &[Block::Triangle, Block::Line]),
+        ("object add a", &[Block::Triangle]),
+        ("backend cpu\nscene a", &[]),
+    ] {
+        assert_eq!(scene(lines).blocks(), bits(blocks), "{lines}");
+    }
+}
+
+/// A quality sets the largest size of the board up to its own; a size that the board lacks is refused.
+#[test]
+fn a_board_limits_the_scene() {
+    let mut scene = start();
+    let mut apply = |lines| execute(&mut scene, lines, &mut SmallBoard);
+    assert_eq!(apply("quality exact"), Ok(()));
+    for (line, expected) in [
+        (
+            "size 1280 720",
+            "size: 1280x720 not available on this board",
+        ),
+        (
+            "backend gateware",
+            "gateware: no triangle engine in this SoC",
+        ),
+        ("object add none", "object add `none`: expected a mesh"),
+        ("object show", "object: no objects"),
+        ("object move 2 1,1,1", "object 2: no objects"),
+        (
+            "program\nstereo 0.1,3",
+            "stereo: not available for the wireframe",
+        ),
+        ("edges over", "edges: not available"),
+        (
+            "field menger:2\nfit",
+            "fit: expected a mesh alone or objects",
+        ),
+        (
+            "light camera\nlight camera\nlight camera\nlight camera\nlight camera",
+            "light: expected at most 4",
+        ),
+        ("zoom 0", "half_width"),
+        ("camera 6 0 0", ""),
+    ] {
+        let error = apply(line).expect_err(line);
+        assert!(error.starts_with(expected), "{line}: {error}");
+    }
+    assert_eq!((scene.quality, scene.size), (Quality::Exact, Size::W640));
+}
+
+#[test]
+fn an_option_is_shown_as_it_is_set() {
+    let scene = scene("light 1,-2,3\nfog 0.25\nobject add a\nscene b");
+    let shown = |option: OptionName| {
+        let mut text = String::new();
+        scene
+            .show(option, &mut text)
+            .expect("a string takes all text");
+        text
+    };
+    assert_eq!(shown(OptionName::Fog), "fog 0.25\n");
+    assert_eq!(shown(OptionName::Ambient), "ambient 404040\n");
+    assert_eq!(shown(OptionName::Light), "light 1,-2,3,ffffff\n");
+    assert!(shown(OptionName::Object).starts_with("object 1 a matrix 1,0,0,"));
+    assert_eq!(scene.shown().to_string(), "b");
+}
+
+/// Objects are left and shown again; without objects the mesh is shown.
+#[test]
+fn objects_come_and_go() {
+    let mut scene = scene("object add a\nobject add b\nscene c");
+    assert_eq!((scene.kind, scene.objects.len()), (Kind::Solid, 2));
+    let mut object = |action| {
+        let set = scene.apply(&Setting::Object { action }, &mut AnyBoard);
+        set.expect("there are objects");
+        (scene.kind, scene.first_object_of("b"))
+    };
+    assert_eq!(object(ObjectAction::Show), (Kind::Objects, Some(2)));
+    assert_eq!(
+        object(ObjectAction::Remove(Some(1))),
+        (Kind::Objects, Some(1))
+    );
+    assert_eq!(object(ObjectAction::Remove(None)), (Kind::Solid, None));
+}
+
+#[test]
+fn other_lines_are_no_scene() {
+    let error = |text: &'static str| {
+        let error = glint_scene::lines(text).find_map(Result::err).unwrap();
+        (
+            error.line,
+            matches!(error.reason, Reason::Effect),
+            error.to_string(),
+        )
+    };
+    assert_eq!(
+        error("fov 60\nload 16 0"),
+        (
+            2,
+            true,
+            "line 2: expected a command that sets the picture".into()
+        )
+    );
+    assert_eq!(error("reboot").0, 1);
+    assert!(error("fov 60\n\nfov 70").1, "a blank line");
+    let (line, is_effect, text) = error("fov 60\nfov 700");
+    assert!(
+        (line, is_effect) == (2, false) && text.starts_with("line 2: fov: "),
+        "{text}"
+    );
+}

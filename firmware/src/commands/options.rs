@@ -1,0 +1,76 @@
+//! Options of the scene, and what the grammar of commands asks of the machine.
+
+use glint_core::console::{Executor, ObjectAction, OptionName, Setting};
+use glint_core::feature::Feature;
+use glint_core::mesh::Mesh;
+use glint_core::picture::Size;
+use glint_scene::Board;
+
+use super::upload;
+use crate::error::CommandError;
+use crate::job::{Outcome, Reply};
+use crate::machine::Machine;
+use crate::models::Models;
+use crate::renderer::Renderer;
+
+struct ThisBoard<'m> {
+    renderer: &'m Renderer,
+    models: &'m mut Models,
+}
+
+/// What scenes ask of this board.
+pub const fn board<'m>(renderer: &'m Renderer, models: &'m mut Models) -> impl Board + 'm {
+    ThisBoard { renderer, models }
+}
+
+impl Board for ThisBoard<'_> {
+    fn has_size(&self, size: Size) -> bool {
+        self.renderer.has_size(size)
+    }
+
+    fn has_engine(&self) -> bool {
+        self.renderer.gateware.is_some()
+    }
+
+    fn has_mesh(&mut self, name: &str) -> bool {
+        self.models.prepare(name)
+    }
+
+    fn mesh(&self, name: &str) -> Option<Mesh<'_>> {
+        self.models.known(name)
+    }
+}
+
+impl<'l> Executor<'l> for Machine {
+    type Output = Outcome<'l>;
+
+    fn set(&mut self, setting: Setting<'l>) -> Outcome<'l> {
+        if let Setting::Object { action } = setting {
+            match action {
+                ObjectAction::List => return self.show(OptionName::Object),
+                ObjectAction::Add { mesh, .. } => {
+                    upload::from_flash(self, mesh)?;
+                }
+                ObjectAction::Show | ObjectAction::Change { .. } | ObjectAction::Remove(_) => {}
+            }
+        }
+        let Self {
+            scene,
+            renderer,
+            models,
+            ..
+        } = self;
+        scene.apply(&setting, &mut board(renderer, models))?;
+        Ok(Reply::Done)
+    }
+
+    fn show(&mut self, option: OptionName) -> Outcome<'l> {
+        // Writing fails only if the line accepts no text.
+        let _ = self.scene.show(option, self.terminal.output());
+        Ok(Reply::Done)
+    }
+
+    fn left_out(&mut self, feature: Feature) -> Outcome<'l> {
+        Err(CommandError::LeftOut(feature))
+    }
+}

@@ -1,0 +1,115 @@
+//! The last picture: what it shows, how it was drawn, and whether it is out of date.
+
+use core::fmt;
+
+use glint_core::feature::CPU;
+use glint_hal::frequency::Frequency;
+use glint_hal::triangle::Counters;
+use glint_model::{FrameStats, RenderError};
+use glint_scene::Scene;
+
+use crate::gateware::{Fallback, Lack};
+use crate::mark::Mark;
+use crate::models::Models;
+
+/// Statistics of the last frame.
+#[derive(Clone, Copy)]
+pub struct Drawn {
+    /// Clock cycles of drawing the frame, without the wait for a free frame buffer.
+    pub cycles: u64,
+    /// Counts of triangles, rays and pixels.
+    pub stats: FrameStats,
+    /// Which renderer drew the frame.
+    pub by: RenderedBy,
+    /// Whether the frame's depth codes are in memory.
+    pub has_depth: bool,
+}
+
+impl Drawn {
+    /// Number of such frames a second.
+    pub fn rate(&self, frequency: Frequency) -> u64 {
+        u64::from(frequency.hertz()) / self.cycles.max(1)
+    }
+}
+
+/// The renderer of a frame.
+#[derive(Clone, Copy)]
+pub enum RenderedBy {
+    /// The CPU, with the reason if the gateware could not draw the frame.
+    Cpu(Option<Fallback>),
+    /// The gateware, with the triangle engine's counters, and the reason if the CPU made the descriptors.
+    Gateware(Counters, Option<Lack>),
+}
+
+/// Reason why a frame is not drawn.
+#[derive(Clone, Copy, Debug)]
+pub enum DrawError {
+    /// The CPU cannot draw it.
+    Render(RenderError),
+    /// The gateware cannot draw it, for this reason or as the backend is the CPU, and this build leaves out drawing by the CPU.
+    NoCpu(Option<Fallback>),
+}
+
+impl fmt::Display for DrawError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Self::Render(error) => error.fmt(f),
+            Self::NoCpu(None) => CPU.fmt(f),
+            Self::NoCpu(Some(fallback)) => write!(f, "{fallback}; {CPU}"),
+        }
+    }
+}
+
+/// What a picture shows.
+#[derive(PartialEq)]
+struct Content {
+    scene: Scene,
+    /// [`Models::revision`].
+    models: u32,
+    mark: Option<Mark>,
+}
+
+/// The last picture, and what is wanted of the next one.
+#[derive(Default)]
+pub struct Picture {
+    /// What the last picture shows; `None` if the next one is wanted anyway.
+    content: Option<Content>,
+    drawn: Option<Result<Drawn, DrawError>>,
+    /// Whether the next frame needs depth codes in memory. The gateware writes them on request only.
+    pub wants_depth: bool,
+    /// The mark of the hand's place, if it is drawn.
+    pub mark: Option<Mark>,
+}
+
+impl Picture {
+    /// Whether a new frame is needed: the last one shows another scene or other models, or lacks wanted depth codes.
+    pub fn is_outdated(&self, scene: &Scene, models: &Models) -> bool {
+        let lacks_depth = matches!(&self.drawn, Some(Ok(drawn)) if !drawn.has_depth);
+        self.wants_depth && lacks_depth
+            || self.content.as_ref().is_none_or(|content| {
+                content.mark != self.mark
+                    || content.models != models.revision()
+                    || content.scene != *scene
+            })
+    }
+
+    /// Requests a new frame, also of the same scene.
+    pub fn request(&mut self) {
+        self.content = None;
+    }
+
+    /// Statistics of the last frame, if there is one, or the error of its drawing.
+    pub const fn drawn(&self) -> Option<Result<Drawn, DrawError>> {
+        self.drawn
+    }
+
+    /// Stores the statistics of the frame of the present scene, or the error of its drawing.
+    pub fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>, scene: &Scene, models: &Models) {
+        self.drawn = Some(drawn);
+        self.content = Some(Content {
+            scene: scene.clone(),
+            models: models.revision(),
+            mark: self.mark,
+        });
+    }
+}

@@ -1,0 +1,23 @@
+//! The keys of scene files: the console's table has those that are commands.
+
+use glint_core::console::{FORMS, Row};
+
+/// The keys that are console commands, in the order in which a scene executes them.
+pub fn commands() -> Vec<&'static Row> {
+    let mut rows: Vec<_> = FORMS.iter().collect();
+    rows.sort_by_key(|row| row.forms.turn);
+    rows
+}
+
+/// The keys that are no console commands.
+pub const OTHERS: [&str; 7] = [
+    "title", "steer", "scenes", "depth", "lanes", "clock", "budget",
+];
+
+/// The members of the key `budget`.
+pub const BUDGET: [&str; 7] = ["lut", "ff", "dsp", "ramb36", "firmware", "cycles", "fps"];
+
+/// The names of all keys.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    OTHERS.into_iter().chain(FORMS.iter().map(Row::key))
+}
