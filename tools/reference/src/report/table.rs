@@ -21,16 +21,6 @@ pub fn write_csv<T: Serialize>(rows: &[T], path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Writes rows to a JSON file, as an array of objects.
-///
-/// # Errors
-/// When the file cannot be written.
-pub fn write_json<T: Serialize>(rows: &[T], path: &Path) -> Result<()> {
-    let context = || format!("cannot write {}", path.display());
-    let text = serde_json::to_string_pretty(rows).with_context(context)?;
-    std::fs::write(path, text + "\n").with_context(context)
-}
-
 /// Reads rows from a CSV file.
 ///
 /// # Errors
@@ -42,28 +32,6 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         .deserialize()
         .collect::<Result<_, _>>()
         .with_context(|| format!("{}: unexpected line", path.display()))
-}
-
-/// Reads rows from a CSV file, and writes the same rows to a JSON file beside it.
-///
-/// # Errors
-/// As [`read_csv`] and [`write_json`].
-pub fn read_table<T: Serialize + DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    let rows = read_csv(path)?;
-    write_json(&rows, &path.with_extension("json"))?;
-    Ok(rows)
-}
-
-/// As [`read_table`], but returns no rows if the file is missing. A run with `--quick` does not write every file.
-///
-/// # Errors
-/// As [`read_table`], for a file that must exist.
-pub fn read_optional_table<T: Serialize + DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    if path.exists() {
-        read_table(path)
-    } else {
-        Ok(vec![])
-    }
 }
 
 /// As [`read_csv`], but returns no rows if the file is missing. A run with `--quick` does not write every file.

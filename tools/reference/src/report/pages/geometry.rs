@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::template::{fill, made, write};
 use crate::report::experiments::geometry::{drift, precision};
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, bold, read_table};
+use crate::report::table::{Table, bold, read_csv};
 
 const DIAGRAM: Diagram = Diagram {
     title: "Matrices, normals and projection: cycles against error",
@@ -20,8 +20,8 @@ const DIAGRAM: Diagram = Diagram {
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let kernels: Vec<precision::Row> = read_table(&folder.join("geometry-precision.csv"))?;
-    let rows: Vec<drift::Row> = read_table(&folder.join("geometry-drift.csv"))?;
+    let kernels: Vec<precision::Row> = read_csv(&folder.join("geometry-precision.csv"))?;
+    let rows: Vec<drift::Row> = read_csv(&folder.join("geometry-drift.csv"))?;
     plot::write(&DIAGRAM, &points(&kernels), &folder.join("geometry.svg"))?;
     let of = |family: &str| {
         let rows = kernels.iter().filter(|row| row.family == family);

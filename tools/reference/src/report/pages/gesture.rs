@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::template::{fill, made, write};
 use crate::report::experiments::gesture::{Centre, RATE, Row, Stiff, Target};
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, bold, read_table};
+use crate::report::table::{Table, bold, read_csv};
 
 const COST: Diagram = Diagram {
     title: "Filters: cycles against tracking error",
@@ -26,10 +26,10 @@ const NOISE: Diagram = Diagram {
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let targets: Vec<Target> = read_table(&folder.join("gesture.csv"))?;
-    let centres: Vec<Centre> = read_table(&folder.join("gesture-centre.csv"))?;
-    let filters: Vec<Row> = read_table(&folder.join("gesture-filters.csv"))?;
-    let stiff: Vec<Stiff> = read_table(&folder.join("gesture-stiff.csv"))?;
+    let targets: Vec<Target> = read_csv(&folder.join("gesture.csv"))?;
+    let centres: Vec<Centre> = read_csv(&folder.join("gesture-centre.csv"))?;
+    let filters: Vec<Row> = read_csv(&folder.join("gesture-filters.csv"))?;
+    let stiff: Vec<Stiff> = read_csv(&folder.join("gesture-stiff.csv"))?;
     let cost = points(&filters, |row| {
         row.cycles.map(|cycles| cycles.max(1) as f64)
     });

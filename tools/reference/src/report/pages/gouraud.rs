@@ -11,7 +11,7 @@ use crate::report::experiments::gouraud::clocks;
 use crate::report::experiments::gouraud::engines::Cost;
 use crate::report::experiments::gouraud::scenes::Row;
 use crate::report::plot::{self, Diagram};
-use crate::report::table::{Table, read_optional_table, read_table};
+use crate::report::table::{Table, read_csv, read_optional_csv};
 use variants::{CLOCKS_SCENE, Variant};
 
 const ERROR: &str =
@@ -34,10 +34,10 @@ const LUTS: Diagram = Diagram {
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("gouraud.csv"))?;
-    let forms = read_table(&folder.join("gouraud-forms.csv"))?;
-    let clocks: Vec<clocks::Row> = read_table(&folder.join("gouraud-clocks.csv"))?;
-    let costs: Vec<Cost> = read_optional_table(&folder.join("gouraud-cost.csv"))?;
+    let rows: Vec<Row> = read_csv(&folder.join("gouraud.csv"))?;
+    let forms = read_csv(&folder.join("gouraud-forms.csv"))?;
+    let clocks: Vec<clocks::Row> = read_csv(&folder.join("gouraud-clocks.csv"))?;
+    let costs: Vec<Cost> = read_optional_csv(&folder.join("gouraud-cost.csv"))?;
     let variants = variants::read(&forms, &clocks, &costs);
     let points = variants
         .iter()

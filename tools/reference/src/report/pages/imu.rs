@@ -13,20 +13,20 @@ use crate::report::experiments::imu::stiff::StiffCase;
 use crate::report::experiments::imu::targets::Target;
 use crate::report::experiments::imu::time::ErrorsAtTime;
 use crate::report::plot::{self, Band, Diagram, Point};
-use crate::report::table::{Table, bold, read_table};
+use crate::report::table::{Table, bold, read_csv};
 
 /// Rebuilds the page and its diagrams from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let targets: Vec<Target> = read_table(&folder.join("imu.csv"))?;
-    let trials: Vec<Trial> = read_table(&folder.join("imu-methods.csv"))?;
-    let kernels: Vec<Kernel> = read_table(&folder.join("imu-cycles.csv"))?;
-    let replays: Vec<Replay> = read_table(&folder.join("imu-replay.csv"))?;
-    let filters: Vec<FilterErrors> = read_table(&folder.join("imu-filters.csv"))?;
-    let stiff: Vec<StiffCase> = read_table(&folder.join("imu-stiff.csv"))?;
-    let moments: Vec<ErrorsAtTime> = read_table(&folder.join("imu-time.csv"))?;
+    let targets: Vec<Target> = read_csv(&folder.join("imu.csv"))?;
+    let trials: Vec<Trial> = read_csv(&folder.join("imu-methods.csv"))?;
+    let kernels: Vec<Kernel> = read_csv(&folder.join("imu-cycles.csv"))?;
+    let replays: Vec<Replay> = read_csv(&folder.join("imu-replay.csv"))?;
+    let filters: Vec<FilterErrors> = read_csv(&folder.join("imu-filters.csv"))?;
+    let stiff: Vec<StiffCase> = read_csv(&folder.join("imu-stiff.csv"))?;
+    let moments: Vec<ErrorsAtTime> = read_csv(&folder.join("imu-time.csv"))?;
     for (motion, title) in [
         ("tumble", "Tumble of 700 °/s: error against cycles"),
         ("coning", "Coning of 5° at 10 Hz: error against cycles"),

@@ -12,7 +12,7 @@ use self::entries::{Choice, Entry};
 use self::resources::Blocks;
 use super::template::{fill, write};
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, write_csv, write_json};
+use crate::report::table::{Table, write_csv};
 use crate::report::workspace;
 
 const OVERVIEW: Diagram = Diagram {
@@ -21,7 +21,7 @@ const OVERVIEW: Diagram = Diagram {
     up: "median cycles of a call on the SoC",
 };
 
-/// A configuration of a kernel: a line of `index.csv`, and an object of `index.json`.
+/// A configuration of a kernel: a line of `index.csv`.
 #[derive(Serialize)]
 struct Row<'a> {
     kernel: &'a str,
@@ -45,7 +45,6 @@ pub fn rebuild(folder: &Path) -> Result<()> {
     let blocks = Blocks::read(&workspace::path("docs/resources.md"))?;
     let rows: Vec<Row> = entries.iter().flat_map(rows).collect();
     write_csv(&rows, &folder.join("index.csv"))?;
-    write_json(&rows, &folder.join("index.json"))?;
     plot::write(&OVERVIEW, &points(&entries), &folder.join("overview.svg"))?;
     let page = fill(
         include_str!("index.md"),

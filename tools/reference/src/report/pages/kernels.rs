@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::template::{fill, made, write};
 use crate::report::experiments::kernels::Row;
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, bold, optional, read_table};
+use crate::report::table::{Table, bold, optional, read_csv};
 
 const CYCLES: &str = "median cycles of a call on the SoC";
 const RELATIVE: &str = "largest relative error";
@@ -89,7 +89,7 @@ const fn family(
 /// # Errors
 /// When the table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("kernels.csv"))?;
+    let rows: Vec<Row> = read_csv(&folder.join("kernels.csv"))?;
     let mut values = Vec::new();
     for family in &FAMILIES {
         let rows: Vec<Row> = of(&rows, family.name);

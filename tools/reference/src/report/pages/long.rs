@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::template::{fill, write};
 use crate::report::experiments::long::{orbit, sensor, uptime};
 use crate::report::plot::{self, Band, Diagram, Line};
-use crate::report::table::{Table, read_optional_table};
+use crate::report::table::{Table, read_optional_csv};
 
 /// Angle random walk of the sensor in degrees per √s: the density of its noise.
 const WALK: f64 = 0.005;
@@ -20,11 +20,11 @@ const LEAST: f64 = 1e-4;
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
     let file = |study: &str| folder.join(format!("long-{study}.csv"));
-    let orbit: Vec<orbit::Row> = read_optional_table(&file("orbit"))?;
-    let uptime: Vec<uptime::Row> = read_optional_table(&file("uptime"))?;
+    let orbit: Vec<orbit::Row> = read_optional_csv(&file("orbit"))?;
+    let uptime: Vec<uptime::Row> = read_optional_csv(&file("uptime"))?;
     let mut sensor: Vec<sensor::Row> = Vec::new();
     for path in sensor::Path::ALL {
-        sensor.extend(read_optional_table::<sensor::Row>(&file(path.name()))?);
+        sensor.extend(read_optional_csv::<sensor::Row>(&file(path.name()))?);
     }
     if !sensor.is_empty() {
         draw(&sensor, folder)?;

@@ -3,13 +3,12 @@
 use std::path::Path;
 
 use anyhow::Result;
-use serde::Serialize;
 
 use super::template::{fill, made, write};
 use crate::report::experiments::quality::{Cycles, Row};
 use crate::report::plot::{self, Diagram, Point};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, bold, read_csv, read_optional_table, write_json};
+use crate::report::table::{Table, bold, read_csv, read_optional_csv};
 
 const WRONG: Diagram = Diagram {
     title: "Frames of the scenes: cycles against wrong pixels",
@@ -52,17 +51,6 @@ impl Measured<'_> {
     }
 }
 
-/// A frame as an object of `quality.json`.
-#[derive(Serialize)]
-struct Object<'a> {
-    #[serde(flatten)]
-    row: &'a Row,
-    cycles: Option<u64>,
-    /// Frames a second at 81.25 MHz.
-    rate: Option<f64>,
-    on_front: bool,
-}
-
 /// Puts errors and cycles of the same frames together, scene by scene.
 pub fn frames<'a>(rows: &'a [Row], cycles: &[Cycles]) -> Vec<Vec<Measured<'a>>> {
     let measured = rows.iter().map(|row| {
@@ -82,18 +70,17 @@ pub fn is_on_front(frame: &Measured, scene: &[Measured]) -> bool {
     !scene.iter().any(|other| other.beats(frame))
 }
 
-/// Rebuilds the page, its diagrams and its JSON file from the CSV files in `folder`.
+/// Rebuilds the page and its diagrams from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
     let rows: Vec<Row> = read_csv(&folder.join("quality.csv"))?;
-    let cycles: Vec<Cycles> = read_optional_table(&folder.join("quality-cycles.csv"))?;
+    let cycles: Vec<Cycles> = read_optional_csv(&folder.join("quality-cycles.csv"))?;
     let scenes = frames(&rows, &cycles);
     let made = rows
         .first()
         .map_or_else(String::new, |row| made(&row.commit, &row.tools));
-    write_json(&objects(&scenes), &folder.join("quality.json"))?;
     let draw = |diagram: &Diagram, error: fn(&Row) -> f64, name: &str| {
         plot::write(diagram, &points(&scenes, error), &folder.join(name))
     };
@@ -108,19 +95,6 @@ pub fn rebuild(folder: &Path) -> Result<()> {
         ],
     )?;
     write(&page, &folder.join("quality.md"))
-}
-
-fn objects<'a>(scenes: &[Vec<Measured<'a>>]) -> Vec<Object<'a>> {
-    let mut objects = Vec::new();
-    for scene in scenes {
-        objects.extend(scene.iter().map(|frame| Object {
-            row: frame.row,
-            cycles: frame.cycles,
-            rate: frame.cycles.map(|cycles| CLOCKS[0] / cycles as f64),
-            on_front: is_on_front(frame, scene),
-        }));
-    }
-    objects
 }
 
 /// Formats the errors of all frames as a Markdown table.

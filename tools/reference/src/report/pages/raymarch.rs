@@ -15,15 +15,15 @@ use crate::report::experiments::raymarch::requirements::{
     FACES, IOU, LARGE_COST, MEDIAN, NORMALS, P99, SMALL_COST,
 };
 use crate::report::experiments::raymarch::trials::Trial;
-use crate::report::table::{Table, optional, read_optional_table, read_table};
+use crate::report::table::{Table, optional, read_csv, read_optional_csv};
 
 /// Rebuilds the page and the diagrams of its studies from the CSV files in `folder`.
 ///
 /// # Errors
 /// When the table of pictures is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("raymarch.csv"))?;
-    let poses = read_optional_table(&folder.join("raymarch-rates.csv"))?;
+    let rows: Vec<Row> = read_csv(&folder.join("raymarch.csv"))?;
+    let poses = read_optional_csv(&folder.join("raymarch-rates.csv"))?;
     let (mut trials, mut sections): (Vec<Trial>, String) = Default::default();
     for study in &studies::STUDIES {
         let of_study = study.read(folder)?;

@@ -7,7 +7,7 @@ use anyhow::Result;
 use super::template::{fill, made, write};
 use crate::report::experiments::sine::{Reference, Row};
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, bold, read_table};
+use crate::report::table::{Table, bold, read_csv};
 
 const DIAGRAM: Diagram = Diagram {
     title: "Sine and cosine: cycles against largest error",
@@ -20,8 +20,8 @@ const DIAGRAM: Diagram = Diagram {
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("sine.csv"))?;
-    let reference: Vec<Reference> = read_table(&folder.join("sine-reference.csv"))?;
+    let rows: Vec<Row> = read_csv(&folder.join("sine.csv"))?;
+    let reference: Vec<Reference> = read_csv(&folder.join("sine-reference.csv"))?;
     plot::write(&DIAGRAM, &points(&rows), &folder.join("sine.svg"))?;
     write(&page(&rows, &reference)?, &folder.join("sine.md"))
 }

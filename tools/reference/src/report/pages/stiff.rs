@@ -1,4 +1,4 @@
-//! Builds the page `stiff.md` of the report, on stiff and extreme cases, and `stiff.json`.
+//! Builds the page `stiff.md` of the report, on stiff and extreme cases.
 
 use std::path::Path;
 
@@ -6,15 +6,15 @@ use anyhow::Result;
 
 use super::template::{fill, write};
 use crate::report::experiments::stiff::Row;
-use crate::report::table::{Table, read_table};
+use crate::report::table::{Table, read_csv};
 
-/// Rebuilds the page and the JSON file from the CSV files in `folder`.
+/// Rebuilds the page from the CSV files in `folder`.
 ///
 /// # Errors
 /// When a table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let mut rows: Vec<Row> = read_table(&folder.join("stiff.csv"))?;
-    rows.extend(read_table::<Row>(&folder.join("stiff-virtual.csv"))?);
+    let mut rows: Vec<Row> = read_csv(&folder.join("stiff.csv"))?;
+    rows.extend(read_csv::<Row>(&folder.join("stiff-virtual.csv"))?);
     let page = fill(
         include_str!("stiff.md"),
         &[

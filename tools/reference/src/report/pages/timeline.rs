@@ -3,20 +3,18 @@
 use std::path::Path;
 
 use anyhow::Result;
-use serde::Serialize;
 
 use super::template::{fill, made, write};
 use crate::report::experiments::timeline::{LANES, Row};
 use crate::report::plot::{self, Bar, Part};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, read_csv, write_json};
+use crate::report::table::{Table, read_csv};
 
 const TITLE: &str = "Frames of the scenes, part by part";
 const ACROSS: &str = "cycles of the frame, %";
 
 /// What limits a frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bottleneck {
     /// The soft core without a pass of the engines.
     SoftCore,
@@ -42,10 +40,8 @@ impl Bottleneck {
     }
 }
 
-/// A frame as an object of `timeline.json`. Rates are frames a second at 81.25 MHz.
-#[derive(Serialize)]
+/// A frame with its bottleneck and bounds. Rates are frames a second at 81.25 MHz.
 struct Object<'a> {
-    #[serde(flatten)]
     row: &'a Row,
     bottleneck: Bottleneck,
     rate: f64,
@@ -110,14 +106,13 @@ fn limiting(row: &Row, bottleneck: Bottleneck) -> f64 {
     }
 }
 
-/// Rebuilds the page, its diagram and its JSON file from the CSV file in `folder`.
+/// Rebuilds the page and its diagram from the CSV file in `folder`.
 ///
 /// # Errors
 /// When the table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
     let rows: Vec<Row> = read_csv(&folder.join("timeline.csv"))?;
     let objects: Vec<_> = rows.iter().map(Object::of).collect();
-    write_json(&objects, &folder.join("timeline.json"))?;
     let bars: Vec<_> = rows.iter().map(bar).collect();
     plot::write_bars(TITLE, ACROSS, &bars, &folder.join("timeline.svg"))?;
     let made = rows

@@ -8,7 +8,7 @@ use super::template::{fill, made, write};
 use crate::report::experiments::triangle::{CpuRow, Row};
 use crate::report::plot::{self, Diagram, Point};
 use crate::report::soc::CLOCKS;
-use crate::report::table::{Table, bold, optional, read_optional_table, read_table};
+use crate::report::table::{Table, bold, optional, read_csv, read_optional_csv};
 
 const DIAGRAM: Diagram = Diagram {
     title: "Frames of the triangle engine and of the soft core",
@@ -21,8 +21,8 @@ const DIAGRAM: Diagram = Diagram {
 /// # Errors
 /// When the table is missing or a file cannot be written.
 pub fn rebuild(folder: &Path) -> Result<()> {
-    let rows: Vec<Row> = read_table(&folder.join("triangle.csv"))?;
-    let cpu: Vec<CpuRow> = read_optional_table(&folder.join("triangle-cpu.csv"))?;
+    let rows: Vec<Row> = read_csv(&folder.join("triangle.csv"))?;
+    let cpu: Vec<CpuRow> = read_optional_csv(&folder.join("triangle-cpu.csv"))?;
     plot::write(&DIAGRAM, &points(&rows, &cpu), &folder.join("triangle.svg"))?;
     let made = rows
         .first()

@@ -6,7 +6,7 @@ use anyhow::Result;
 
 use crate::report::experiments::raymarch::trials::Trial;
 use crate::report::plot::{self, Diagram, Point};
-use crate::report::table::{Table, optional, read_optional_table};
+use crate::report::table::{Table, optional, read_optional_csv};
 
 /// The diagram and the text that present a study.
 pub struct Study {
@@ -160,7 +160,7 @@ impl Study {
     /// # Errors
     /// When a line does not have the columns of a trial.
     pub fn read(&self, folder: &Path) -> Result<Vec<Trial>> {
-        read_optional_table(&self.file(folder, "csv"))
+        read_optional_csv(&self.file(folder, "csv"))
     }
 
     /// Writes the diagram of the study's trials.
