@@ -22,6 +22,9 @@ const STAMP: &str = "inputs.sha256";
 /// # Errors
 /// A build or a measurement fails.
 pub fn page(name: &str, arguments: &[String]) -> Result<()> {
+    if name == "pages" {
+        bootstrap::python_environment()?;
+    }
     let asks_for_help = || arguments.iter().any(|argument| argument == "--help");
     if name == "pages" || asks_for_help() {
         return run::program("glint-reference", "report", name, arguments);

@@ -1,18 +1,18 @@
-//! `report`: measures the errors and run times of Glint's computations and writes the pages of `docs/report`.
+//! `report`: measures the errors and run times of Glint's computations and writes the tables and pages of `docs/report`.
 
 #![forbid(unsafe_code)]
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
-use clap::{Args, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use glint_core::picture::Size;
 use glint_reference::report::cycles::{Cycles, Source};
 use glint_reference::report::experiments::{
-    geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff, timeline,
-    triangle,
+    constants, geometry, gesture, gouraud, imu, kernels, long, quality, raymarch, sine, stiff,
+    timeline, triangle,
 };
-use glint_reference::report::pages::{self, PAGES};
 use glint_reference::report::table::write_csv;
 use glint_reference::report::workspace;
 use serde::Serialize;
@@ -23,6 +23,12 @@ use serde::Serialize;
 struct Arguments {
     #[command(subcommand)]
     page: Page,
+    /// Folder of CSV files, page and diagrams [default: docs/report, or target/report with --quick or --only]
+    #[arg(long, value_name = "DIR", global = true)]
+    out: Option<PathBuf>,
+    /// Write the CSV files alone, without page and diagrams
+    #[arg(long, global = true)]
+    tables: bool,
 }
 
 #[derive(Subcommand)]
@@ -33,7 +39,7 @@ enum Page {
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
-        bench: Bench,
+        cycles: Source,
     },
     /// Speed of the triangle engine on the whole SoC, compared with its requirements
     Triangle {
@@ -43,11 +49,9 @@ enum Page {
         /// Measure only one table: engine, or cpu (the frames that the soft core draws)
         #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["engine", "cpu"])]
         study: Option<String>,
-        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
+        /// Measure only scenes whose name contains TEXT
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        #[command(flatten)]
-        output: Output,
     },
     /// Distance fields: errors, frames a second and studies of the raymarcher
     Raymarch {
@@ -55,10 +59,8 @@ enum Page {
         #[arg(long)]
         quick: bool,
         /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass or normal
-        #[arg(long, value_name = "NAME", conflicts_with_all = ["quick", "json"])]
+        #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
-        #[command(flatten)]
-        output: Output,
     },
     /// Smooth shading and other forms of it: errors, clocks and FPGA resources
     Gouraud {
@@ -68,13 +70,11 @@ enum Page {
         /// Synthesise the engines of earlier commits again, too
         #[arg(long, conflicts_with = "quick")]
         earlier: bool,
-        #[command(flatten)]
-        output: Output,
     },
     /// Matrices, normals and projection with several word lengths: errors and cycles; drift of the wireframe simulator's rotation
     Geometry {
         #[command(flatten)]
-        bench: Bench,
+        cycles: Source,
     },
     /// Attitudes from gyroscope and accelerometer, compared with f64 and with the true attitude
     Imu {
@@ -82,12 +82,12 @@ enum Page {
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
-        bench: Bench,
+        cycles: Source,
     },
     /// A hand that steers the camera: errors of its centre, and errors, lag and cycles of filters
     Gesture {
         #[command(flatten)]
-        bench: Bench,
+        cycles: Source,
     },
     /// Reciprocals, roots, quotients, lengths, depth codes, colours and number formats: errors, and cycles or bits
     Kernels {
@@ -95,7 +95,7 @@ enum Page {
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
-        bench: Bench,
+        cycles: Source,
     },
     /// Qualities of pictures: errors and frames a second of each scene in each size
     Quality {
@@ -105,19 +105,15 @@ enum Page {
         /// Measure only one table: errors or cycles
         #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["errors", "cycles"])]
         study: Option<String>,
-        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
+        /// Measure only scenes whose name contains TEXT
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        #[command(flatten)]
-        output: Output,
     },
     /// Where the cycles of a frame of each scene go: soft core, passes of the engines, memory, evaluations
     Timeline {
-        /// Measure only scenes whose name contains TEXT; the default folder is then target/report
+        /// Measure only scenes whose name contains TEXT
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        #[command(flatten)]
-        output: Output,
     },
     /// Long runs of the whole firmware on the emulated board: 1,000,000 frames, counters that wrap, a day of the sensor
     Long {
@@ -135,8 +131,6 @@ enum Page {
             conflicts_with = "quick"
         )]
         hours: f64,
-        #[command(flatten)]
-        output: Output,
     },
     /// Stiff and extreme cases: runs the catalogue tools/reference/stiff, and fails where an outcome differs
     Stiff {
@@ -146,141 +140,131 @@ enum Page {
         /// Run the cases on the virtual board instead, which take minutes
         #[arg(long = "virtual")]
         on_virtual_board: bool,
-        #[command(flatten)]
-        output: Output,
     },
-    /// Rebuild all pages and diagrams from their CSV files, without measuring
-    Pages {
-        /// Folder of CSV files, pages and diagrams [default: docs/report]
-        #[arg(long, value_name = "DIR")]
-        out: Option<PathBuf>,
-    },
+    /// Rebuild all pages and diagrams from their tables, without measuring
+    Pages,
 }
 
-/// Options of a page that contains cycles of kernels on the soft core.
-#[derive(Args)]
-struct Bench {
-    #[command(flatten)]
-    output: Output,
-    #[command(flatten)]
-    cycles: Source,
+impl Page {
+    /// Whether only a part of the page's measurements is made.
+    fn is_partial(&self) -> bool {
+        match self {
+            Self::Sine { quick, .. }
+            | Self::Raymarch { quick, .. }
+            | Self::Gouraud { quick, .. }
+            | Self::Imu { quick, .. }
+            | Self::Kernels { quick, .. }
+            | Self::Long { quick, .. } => *quick,
+            Self::Triangle { quick, only, .. } | Self::Quality { quick, only, .. } => {
+                *quick || only.is_some()
+            }
+            Self::Timeline { only } | Self::Stiff { only, .. } => only.is_some(),
+            Self::Geometry { .. } | Self::Gesture { .. } | Self::Pages => false,
+        }
+    }
 }
 
-#[derive(Args)]
-struct Output {
-    /// Print the rows as JSON instead of a table
-    #[arg(long)]
-    json: bool,
-    /// Folder of CSV files, page and diagrams [default: docs/report, or target/report with --quick]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Write the CSV files alone, without page and diagrams
-    #[arg(long)]
-    tables: bool,
-}
+/// The folder of the results.
+struct Folder(PathBuf);
 
-impl Output {
-    /// Returns the folder for the results, and creates it if it is missing. `partial` selects the default folder of a quick run.
-    fn folder(&self, partial: bool) -> Result<PathBuf> {
-        let default = if partial {
-            "target/report"
-        } else {
-            "docs/report"
-        };
-        let folder = self.out.clone().unwrap_or_else(|| workspace::path(default));
-        std::fs::create_dir_all(&folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-        Ok(folder)
+impl Folder {
+    /// Writes a table as soon as it is complete, because the next one may take minutes to measure.
+    fn write<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
+        let path = self.0.join(name).with_extension("csv");
+        write_csv(rows, &path)?;
+        eprintln!("wrote {}: {} rows", path.display(), rows.len());
+        Ok(())
     }
 
-    /// Rebuilds a page from the CSV files in a folder, unless only these are wanted.
-    fn rebuild(&self, name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
-        if self.tables {
-            return Ok(());
-        }
-        written(name, folder, rebuild)
-    }
-
-    /// Prints rows as JSON or as a table. `table` formats the rows as a table.
-    fn print<T: Serialize>(&self, rows: &[T], table: fn(&[T]) -> String) -> Result<()> {
-        if self.json {
-            println!("{}", serde_json::to_string_pretty(rows)?);
-        } else {
-            print!("{}", table(rows));
-        }
+    /// Makes pages from the tables: those named, or all.
+    fn make_pages(&self, names: &[&str]) -> Result<()> {
+        let python = workspace::path(".venv/bin/python");
+        let made = Command::new(&python)
+            .arg(workspace::path("tools/reference/pages"))
+            .arg("--out")
+            .arg(&self.0)
+            .args(names)
+            .status()
+            .with_context(|| format!("{}: cannot start", python.display()))?;
+        ensure!(made.success(), "the pages cannot be made");
         Ok(())
     }
 }
 
 fn main() -> Result<()> {
-    match Arguments::parse().page {
-        Page::Sine { quick, bench } => measure_sine(quick, &bench),
-        Page::Triangle {
-            quick,
-            study,
-            only,
-            output,
-        } => measure_triangle(quick, study.as_deref(), only.as_deref(), &output),
-        Page::Raymarch {
-            quick,
-            study,
-            output,
-        } => measure_raymarch(quick, study.as_deref(), &output),
-        Page::Gouraud {
-            quick,
-            earlier,
-            output,
-        } => measure_gouraud(quick, earlier, &output),
-        Page::Geometry { bench } => measure_geometry(&bench),
-        Page::Imu { quick, bench } => measure_imu(quick, &bench),
-        Page::Gesture { bench } => measure_gesture(&bench),
-        Page::Kernels { quick, bench } => measure_kernels(quick, &bench),
-        Page::Quality {
-            quick,
-            study,
-            only,
-            output,
-        } => measure_quality(quick, study.as_deref(), only.as_deref(), &output),
-        Page::Timeline { only, output } => measure_timeline(only.as_deref(), &output),
+    let matches = Arguments::command().get_matches();
+    let arguments = Arguments::from_arg_matches(&matches)?;
+    let default = match arguments.page.is_partial() {
+        true => "target/report",
+        false => "docs/report",
+    };
+    let folder = arguments.out.unwrap_or_else(|| workspace::path(default));
+    std::fs::create_dir_all(&folder)
+        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+    let to = Folder(folder);
+    match arguments.page {
+        Page::Sine { quick, cycles } => measure_sine(quick, &cycles, &to)?,
+        Page::Triangle { quick, study, only } => {
+            measure_triangle(quick, study.as_deref(), only.as_deref(), &to)?;
+        }
+        Page::Raymarch { quick, study } => measure_raymarch(quick, study.as_deref(), &to)?,
+        Page::Gouraud { quick, earlier } => measure_gouraud(quick, earlier, &to)?,
+        Page::Geometry { cycles } => {
+            let cycles = cycles.measure("geometry")?;
+            to.write("geometry-precision", &geometry::precision::measure(&cycles))?;
+            to.write("geometry-drift", &geometry::drift::measure())?;
+        }
+        Page::Imu { quick, cycles } => measure_imu(quick, &cycles, &to)?,
+        Page::Gesture { cycles } => measure_gesture(&cycles, &to)?,
+        Page::Kernels { quick, cycles } => {
+            let cycles = cycles.measure("kernels")?;
+            let rows = kernels::measure(None, if quick { 64 } else { 1 }, &cycles)?;
+            to.write("kernels", &rows)?;
+        }
+        Page::Quality { quick, study, only } => {
+            measure_quality(quick, study.as_deref(), only.as_deref(), &to)?;
+        }
+        Page::Timeline { only } => {
+            to.write(
+                "timeline",
+                &timeline::measure(only.as_deref().unwrap_or_default())?,
+            )?;
+        }
         Page::Long {
             quick,
             study,
             hours,
-            output,
-        } => measure_long(quick, study.as_deref(), hours, &output),
+        } => {
+            measure_long(quick, study.as_deref(), hours, &to)?;
+        }
         Page::Stiff {
             only,
             on_virtual_board,
-            output,
-        } => measure_stiff(only.as_deref(), on_virtual_board, &output),
-        Page::Pages { out } => {
-            let folder = out.unwrap_or_else(|| workspace::path("docs/report"));
-            PAGES
-                .iter()
-                .try_for_each(|(name, rebuild)| written(name, &folder, *rebuild))
+        } => {
+            measure_stiff(only.as_deref(), on_virtual_board, &to)?;
+            if only.is_some() {
+                return Ok(());
+            }
         }
+        Page::Pages => {
+            to.write("constants", &constants::all())?;
+            return to.make_pages(&[]);
+        }
+    }
+    match matches.subcommand_name() {
+        Some(page) if !arguments.tables => to.make_pages(&[page]),
+        _ => Ok(()),
     }
 }
 
-/// Rebuilds a page in a folder and prints its path.
-fn written(name: &str, folder: &Path, rebuild: pages::Rebuild) -> Result<()> {
-    rebuild(folder).with_context(|| format!("the page {name}.md"))?;
-    eprintln!("wrote {name}.md to {}", folder.display());
-    Ok(())
-}
-
-fn measure_sine(quick: bool, bench: &Bench) -> Result<()> {
-    let output = &bench.output;
-    let cycles = bench.cycles.measure("sine").unwrap_or_else(|reason| {
+fn measure_sine(quick: bool, cycles: &Source, to: &Folder) -> Result<()> {
+    let cycles = cycles.measure("sine").unwrap_or_else(|reason| {
         eprintln!("no cycles: {reason:#}");
         Cycles::new()
     });
     let (rows, reference) = sine::measure(quick, &cycles)?;
-    output.print(&rows, pages::sine::table)?;
-    let folder = output.folder(quick)?;
-    write_csv(&rows, &folder.join("sine.csv"))?;
-    write_csv(&[reference], &folder.join("sine-reference.csv"))?;
-    output.rebuild("sine", &folder, pages::sine::rebuild)
+    to.write("sine", &rows)?;
+    to.write("sine-reference", &[reference])
 }
 
 /// Measures the engine and the soft core, or only the one that `study` names.
@@ -288,76 +272,46 @@ fn measure_triangle(
     quick: bool,
     study: Option<&str>,
     only: Option<&str>,
-    output: &Output,
+    to: &Folder,
 ) -> Result<()> {
-    let folder = output.folder(quick || only.is_some())?;
     if study != Some("cpu") {
-        let rows = triangle::measure(only)?;
-        output.print(&rows, pages::triangle::table)?;
-        write_csv(&rows, &folder.join("triangle.csv"))?;
+        to.write("triangle", &triangle::measure(only)?)?;
     }
     if study != Some("engine") && !quick {
-        let rows = triangle::measure_cpu(only)?;
-        output.print(&rows, pages::triangle::cpu_table)?;
-        write_csv(&rows, &folder.join("triangle-cpu.csv"))?;
+        to.write("triangle-cpu", &triangle::measure_cpu(only)?)?;
     }
-    output.rebuild("triangle", &folder, pages::triangle::rebuild)
+    Ok(())
 }
 
-/// Measures the pictures, the rates and all studies of the raymarcher, or only what `study` names. Each table is written as soon as it is
-/// complete, because the next one takes minutes to measure.
-fn measure_raymarch(quick: bool, study: Option<&str>, output: &Output) -> Result<()> {
-    let folder = output.folder(quick)?;
+/// Measures the pictures, the rates and all studies of the raymarcher, or only what `study` names.
+fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()> {
     if study.is_none_or(|study| study == "pictures") {
-        let rows = raymarch::pictures::measure(quick);
-        output.print(&rows, pages::raymarch::table)?;
-        write_csv(&rows, &folder.join("raymarch.csv"))?;
+        to.write("raymarch", &raymarch::pictures::measure(quick))?;
     }
     if study.map_or(!quick, |study| study == "rates") {
-        let rates = raymarch::rates::measure()?;
-        write_csv(&rates, &folder.join("raymarch-rates.csv"))?;
+        to.write("raymarch-rates", &raymarch::rates::measure()?)?;
     }
     if study.map_or(!quick, |study| !["pictures", "rates"].contains(&study)) {
         raymarch::studies::measure(study, |name, trials| {
-            write_csv(trials, &folder.join(format!("raymarch-{name}.csv")))
+            to.write(&format!("raymarch-{name}"), trials)
         })?;
     }
-    output.rebuild("raymarch", &folder, pages::raymarch::rebuild)
+    Ok(())
 }
 
-fn measure_gouraud(quick: bool, earlier: bool, output: &Output) -> Result<()> {
-    let folder = output.folder(quick)?;
-    let rows = gouraud::scenes::measure();
-    output.print(&rows, pages::gouraud::table)?;
-    write_csv(&rows, &folder.join("gouraud.csv"))?;
-    write_csv(
-        &gouraud::forms::measure(),
-        &folder.join("gouraud-forms.csv"),
-    )?;
-    write_csv(
-        &gouraud::clocks::measure()?,
-        &folder.join("gouraud-clocks.csv"),
-    )?;
-    if !quick {
-        let file = folder.join("gouraud-cost.csv");
-        let mut costs = gouraud::engines::today()?;
-        costs.extend(match earlier {
-            true => gouraud::engines::earlier()?,
-            false => gouraud::engines::kept(&file)?,
-        });
-        write_csv(&costs, &file)?;
+fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
+    to.write("gouraud", &gouraud::scenes::measure())?;
+    to.write("gouraud-forms", &gouraud::forms::measure())?;
+    to.write("gouraud-clocks", &gouraud::clocks::measure()?)?;
+    if quick {
+        return Ok(());
     }
-    output.rebuild("gouraud", &folder, pages::gouraud::rebuild)
-}
-
-fn measure_kernels(quick: bool, bench: &Bench) -> Result<()> {
-    let output = &bench.output;
-    let cycles = bench.cycles.measure("kernels")?;
-    let rows = kernels::measure(None, if quick { 64 } else { 1 }, &cycles)?;
-    output.print(&rows, pages::kernels::table)?;
-    let folder = output.folder(quick)?;
-    write_csv(&rows, &folder.join("kernels.csv"))?;
-    output.rebuild("kernels", &folder, pages::kernels::rebuild)
+    let mut costs = gouraud::engines::today()?;
+    costs.extend(match earlier {
+        true => gouraud::engines::earlier()?,
+        false => gouraud::engines::kept(&to.0.join("gouraud-cost.csv"))?,
+    });
+    to.write("gouraud-cost", &costs)
 }
 
 /// Measures errors and cycles, or only the table that `study` names.
@@ -365,136 +319,96 @@ fn measure_quality(
     quick: bool,
     study: Option<&str>,
     only: Option<&str>,
-    output: &Output,
+    to: &Folder,
 ) -> Result<()> {
-    let folder = output.folder(quick || only.is_some())?;
     let only = only.unwrap_or_default();
     if study != Some("cycles") {
         let sizes = if quick { &Size::ALL[..1] } else { &Size::ALL };
-        let rows = quality::errors(only, sizes)?;
-        output.print(&rows, pages::quality::table)?;
-        write_csv(&rows, &folder.join("quality.csv"))?;
+        to.write("quality", &quality::errors(only, sizes)?)?;
     }
     if study != Some("errors") && !quick {
-        let rows = quality::cycles(only)?;
-        write_csv(&rows, &folder.join("quality-cycles.csv"))?;
+        to.write("quality-cycles", &quality::cycles(only)?)?;
     }
-    output.rebuild("quality", &folder, pages::quality::rebuild)
+    Ok(())
 }
 
-fn measure_timeline(only: Option<&str>, output: &Output) -> Result<()> {
-    let rows = timeline::measure(only.unwrap_or_default())?;
-    output.print(&rows, pages::timeline::table)?;
-    let folder = output.folder(only.is_some())?;
-    write_csv(&rows, &folder.join("timeline.csv"))?;
-    output.rebuild("timeline", &folder, pages::timeline::rebuild)
-}
-
-/// Runs all studies, or only the one that `study` names. Each table is written as soon as it is complete.
-fn measure_long(quick: bool, study: Option<&str>, hours: f64, output: &Output) -> Result<()> {
-    let folder = output.folder(quick)?;
-    let file = |name: &str| folder.join(format!("long-{name}.csv"));
+/// Runs all studies, or only the one that `study` names.
+fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Result<()> {
     let is_selected = |name: &str| study.is_none_or(|study| study == name);
     let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };
     if is_selected("orbit") {
-        let rows = long::orbit::measure(turns, long::orbit::FRAMES)?;
-        output.print(&rows, pages::long::orbit_table)?;
-        write_csv(&rows, &file("orbit"))?;
+        to.write(
+            "long-orbit",
+            &long::orbit::measure(turns, long::orbit::FRAMES)?,
+        )?;
     }
     if is_selected("uptime") {
-        let rows = long::uptime::measure(quick)?;
-        output.print(&rows, pages::long::uptime_table)?;
-        write_csv(&rows, &file("uptime"))?;
+        to.write("long-uptime", &long::uptime::measure(quick)?)?;
     }
     for path in long::sensor::Path::ALL {
         if is_selected(path.name()) {
-            let rows = long::sensor::measure(path, hours)?;
-            output.print(&rows, pages::long::sensor_table)?;
-            write_csv(&rows, &file(path.name()))?;
+            to.write(
+                &format!("long-{}", path.name()),
+                &long::sensor::measure(path, hours)?,
+            )?;
         }
     }
-    output.rebuild("long", &folder, pages::long::rebuild)
+    Ok(())
 }
 
-fn measure_stiff(only: Option<&str>, on_virtual_board: bool, output: &Output) -> Result<()> {
-    let (part, table) = match on_virtual_board {
-        false => (stiff::Part::Host, "stiff.csv"),
-        true => (stiff::Part::VirtualBoard, "stiff-virtual.csv"),
+/// Runs the cases and prints those that differ from the catalogue. Only those of the host have errors.
+fn measure_stiff(only: Option<&str>, on_virtual_board: bool, to: &Folder) -> Result<()> {
+    let part = match on_virtual_board {
+        false => stiff::Part::Host,
+        true => stiff::Part::VirtualBoard,
     };
-    let rows = stiff::measure(part, only)?;
-    output.print(&rows, pages::stiff::sections)?;
-    let differing: Vec<_> = rows.iter().filter(|row| !row.holds).collect();
-    for row in &differing {
+    let cases = stiff::measure(part, only)?;
+    let differing: Vec<_> = cases.iter().filter(|case| !case.holds()).collect();
+    for case in &differing {
         eprintln!(
             "{}: expected {:?}, measured {:?}",
-            row.case, row.expected, row.measured
+            case.case, case.expected, case.outcome
         );
     }
     ensure!(
         differing.is_empty(),
         "{} of {} cases differ: mend the code, or state and explain the outcome in tools/reference/stiff",
         differing.len(),
-        rows.len()
+        cases.len()
     );
-    if only.is_some() {
-        return Ok(());
+    eprintln!("{} cases have the expected outcome", cases.len());
+    match part == stiff::Part::Host && only.is_none() {
+        true => to.write("stiff", &stiff::errors(&cases)),
+        false => Ok(()),
     }
-    let folder = output.folder(false)?;
-    write_csv(&rows, &folder.join(table))?;
-    output.rebuild("stiff", &folder, pages::stiff::rebuild)
 }
 
-fn measure_geometry(bench: &Bench) -> Result<()> {
-    let output = &bench.output;
-    let cycles = bench.cycles.measure("geometry")?;
-    let kernels = geometry::precision::measure(&cycles);
-    output.print(&kernels, |rows| pages::geometry::kernel_table(rows))?;
-    let folder = output.folder(false)?;
-    write_csv(&kernels, &folder.join("geometry-precision.csv"))?;
-    let drift = geometry::drift::measure();
-    write_csv(&drift, &folder.join("geometry-drift.csv"))?;
-    output.rebuild("geometry", &folder, pages::geometry::rebuild)
-}
-
-fn measure_imu(quick: bool, bench: &Bench) -> Result<()> {
-    let (output, source) = (&bench.output, &bench.cycles);
+fn measure_imu(quick: bool, source: &Source, to: &Folder) -> Result<()> {
     let part = if quick { 0.1 } else { 1.0 };
-    let folder = output.folder(quick)?;
-    let file = |name: &str| folder.join(name);
     let cycles = source.measure("attitude")?;
     let replays = imu::soft_core::replays(source, (100_000.0 * part) as u64)?;
-    write_csv(&imu::soft_core::kernels(&cycles)?, &file("imu-cycles.csv"))?;
-    write_csv(&replays, &file("imu-replay.csv"))?;
-    eprintln!("targets …");
+    to.write("imu-cycles", &imu::soft_core::kernels(&cycles)?)?;
+    to.write("imu-replay", &replays)?;
     let count = imu::targets::one_count(part);
-    let targets = imu::targets::measure(part, count);
-    write_csv(&targets, &file("imu.csv"))?;
-    eprintln!("methods …");
-    write_csv(&imu::methods::measure(&cycles), &file("imu-methods.csv"))?;
-    eprintln!("filters …");
-    write_csv(&imu::filters::measure(part), &file("imu-filters.csv"))?;
-    eprintln!("stiff cases …");
-    let stiff = imu::stiff::measure(part, (!quick).then_some(count));
-    write_csv(&stiff, &file("imu-stiff.csv"))?;
-    eprintln!("error over time …");
-    write_csv(&imu::time::measure(190.0 * part), &file("imu-time.csv"))?;
-    output.print(&targets, pages::imu::table)?;
-    output.rebuild("imu", &folder, pages::imu::rebuild)
+    to.write("imu", &imu::targets::measure(part, count))?;
+    to.write("imu-methods", &imu::methods::measure(&cycles))?;
+    to.write("imu-filters", &imu::filters::measure(part))?;
+    to.write(
+        "imu-stiff",
+        &imu::stiff::measure(part, (!quick).then_some(count)),
+    )?;
+    to.write("imu-time", &imu::time::measure(190.0 * part))
 }
 
-fn measure_gesture(bench: &Bench) -> Result<()> {
-    let output = &bench.output;
-    let cycles = bench.cycles.measure("gesture")?;
-    let folder = output.folder(false)?;
-    let file = |name: &str| folder.join(name);
+fn measure_gesture(cycles: &Source, to: &Folder) -> Result<()> {
+    let cycles = cycles.measure("gesture")?;
     let recordings = gesture::recordings();
-    let filters = gesture::filters(&recordings, &cycles);
-    output.print(&filters, pages::gesture::table)?;
-    write_csv(&filters, &file("gesture-filters.csv"))?;
+    to.write("gesture-filters", &gesture::filters(&recordings, &cycles))?;
     let centres = gesture::centres(50, false);
-    let targets = gesture::targets(&centres, &recordings, &cycles)?;
-    write_csv(&targets, &file("gesture.csv"))?;
-    write_csv(&centres, &file("gesture-centre.csv"))?;
-    write_csv(&gesture::stiff(), &file("gesture-stiff.csv"))?;
-    output.rebuild("gesture", &folder, pages::gesture::rebuild)
+    to.write(
+        "gesture",
+        &gesture::targets(&centres, &recordings, &cycles)?,
+    )?;
+    to.write("gesture-centre", &centres)?;
+    to.write("gesture-stiff", &gesture::stiff())
 }

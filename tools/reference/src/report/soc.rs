@@ -14,8 +14,8 @@ use virtual_board::{Start, VirtualBoard};
 
 use crate::report::workspace;
 
-/// Clock frequencies of the SoC in Hz: first the default, then a faster one.
-pub const CLOCKS: [f64; 2] = [81.25e6, 100e6];
+/// Default clock frequency of the SoC in Hz.
+pub const CLOCK: f64 = 81.25e6;
 
 /// A virtual board with the gateware in a folder below `target/gateware`, and with `firmware` in its memory.
 ///

@@ -1,6 +1,5 @@
-//! Reading and writing of rows as CSV files, and formatting of Markdown tables.
+//! Reading and writing of rows as CSV files.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -34,7 +33,7 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         .with_context(|| format!("{}: unexpected line", path.display()))
 }
 
-/// As [`read_csv`], but returns no rows if the file is missing. A run with `--quick` does not write every file.
+/// As [`read_csv`], but returns no rows if the file is missing.
 ///
 /// # Errors
 /// When a line does not have the columns of such a row.
@@ -44,46 +43,4 @@ pub fn read_optional_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
     } else {
         Ok(vec![])
     }
-}
-
-/// A Markdown table of `N` columns, built row by row.
-pub struct Table<const N: usize> {
-    text: String,
-}
-
-impl<const N: usize> Table<N> {
-    /// Makes a table without rows. If a heading ends in `:`, its column is right-aligned.
-    pub fn new(headings: [&str; N]) -> Self {
-        let mut table = Self {
-            text: String::new(),
-        };
-        table.row(headings.map(|heading| heading.trim_end_matches(':').to_owned()));
-        let rules = headings.map(|heading| match heading.ends_with(':') {
-            true => "---:",
-            false => "---",
-        });
-        let _ = writeln!(table.text, "|{}|", rules.join("|"));
-        table
-    }
-
-    /// Adds a row.
-    pub fn row(&mut self, cells: [String; N]) {
-        let _ = writeln!(self.text, "| {} |", cells.join(" | "));
-    }
-
-    /// Returns the complete table as text, with a line end after the last row.
-    pub fn finish(self) -> String {
-        self.text
-    }
-}
-
-/// Formats `text` as Markdown, in bold if `bold` is set.
-pub fn bold(text: impl std::fmt::Display, bold: bool) -> String {
-    let mark = if bold { "**" } else { "" };
-    format!("{mark}{text}{mark}")
-}
-
-/// Formats the value as text, or returns an empty text if there is no value.
-pub fn optional<T: ToString>(value: Option<T>) -> String {
-    value.map_or_else(String::new, |value| value.to_string())
 }

@@ -32,9 +32,8 @@ impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Exact(text) => f.write_str(text),
-            Self::Error(error, unit) => {
-                f.write_str(&with_unit(&format!("{}", Figures(*error)), unit))
-            }
+            Self::Error(error, "") => write!(f, "{}", Figures(*error)),
+            Self::Error(error, unit) => write!(f, "{} {unit}", Figures(*error)),
             Self::Refused(message) => write!(f, "refused: {message}"),
         }
     }
@@ -60,25 +59,6 @@ impl Expected {
             (Self::AtMost(bound), Outcome::Error(error, _)) => error <= bound,
             _ => false,
         }
-    }
-
-    /// States the expectation; an error has the unit of `outcome`.
-    pub fn stated(&self, outcome: &Outcome) -> String {
-        match (self, outcome) {
-            (Self::AtMost(bound), Outcome::Error(_, unit)) => {
-                with_unit(&format!("at most {bound}"), unit)
-            }
-            (Self::AtMost(bound), _) => format!("an error of at most {bound}"),
-            (Self::Exact(text), _) => text.clone(),
-            (Self::Refused(message), _) => format!("refused: {message}"),
-        }
-    }
-}
-
-fn with_unit(number: &str, unit: &str) -> String {
-    match unit {
-        "" => number.to_owned(),
-        unit => format!("{number} {unit}"),
     }
 }
 

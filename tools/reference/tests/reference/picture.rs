@@ -6,8 +6,7 @@ use glint_core::quality::Quality;
 use glint_model::Frame;
 use glint_reference::picture::exact::Exact;
 use glint_reference::picture::{Measured, SHOWN, measure};
-use glint_reference::report::experiments::quality::{Cycles, Row, errors};
-use glint_reference::report::pages::quality::{frames, is_on_front};
+use glint_reference::report::experiments::quality::{Row, errors};
 use glint_reference::report::table::read_csv;
 use glint_reference::report::workspace;
 use glint_scene_file::{NAMES, SceneFile, built_in};
@@ -77,43 +76,6 @@ fn committed_errors_are_todays() {
         let row = rows.iter().find(same).expect("a committed row");
         for (committed, now) in [(row.wrong, now.wrong), (row.colour, now.colour)] {
             assert!((committed - now).abs() <= 1e-6 * now, "{row:?}: {now}");
-        }
-    }
-}
-
-/// For each scene, the qualities differ in errors and cycles, are ordered, and no measured frame beats one of them.
-#[test]
-fn qualities_lie_on_the_front() {
-    let (rows, cycles): (Vec<Row>, Vec<Cycles>) =
-        (committed("quality.csv"), committed("quality-cycles.csv"));
-    let measured = frames(&rows, &cycles);
-    assert_eq!(measured.len(), scenes().count());
-    for scene in measured {
-        let levels = Quality::ALL.map(|quality| {
-            let is_it = |name: &String| name == quality.name();
-            let mut frames = scene.iter();
-            let frame = frames.find(|frame| frame.row.quality.as_ref().is_some_and(is_it));
-            *frame.expect("a frame of each quality")
-        });
-        for frame in &levels {
-            assert!(frame.cycles.is_some(), "{:?} has no cycles", frame.row);
-            assert!(is_on_front(frame, &scene), "{:?} is beaten", frame.row);
-        }
-        for pair in levels.windows(2) {
-            let (low, high) = (pair[0], pair[1]);
-            let cycles = low.cycles.zip(high.cycles);
-            assert!(
-                cycles.is_some_and(|(low, high)| low < high),
-                "{:?}, {:?}",
-                low.row,
-                high.row
-            );
-            assert!(
-                low.row.wrong > high.row.wrong && low.row.colour > high.row.colour,
-                "{:?}, {:?}",
-                low.row,
-                high.row
-            );
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The measurements of the report. Each measurement returns typed rows, and each row becomes a line of a CSV file.
 
+pub mod constants;
 pub mod geometry;
 pub mod gesture;
 pub mod gouraud;

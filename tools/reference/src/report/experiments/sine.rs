@@ -99,11 +99,6 @@ impl Row {
             tools: provenance.tools.clone(),
         }
     }
-
-    /// Returns the number of accurate fraction bits: −log2 of the largest error.
-    pub fn bits(&self) -> f64 {
-        -self.max_err.log2()
-    }
 }
 
 /// The error of the f64 reference that kernels are compared with: the line of `sine-reference.csv`.

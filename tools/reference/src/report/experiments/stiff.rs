@@ -11,27 +11,47 @@ use crate::report::workspace;
 use crate::stiff::catalogue::{Case, read};
 use crate::stiff::kind::Kind;
 use crate::stiff::kinds;
-use crate::stiff::outcome::Outcome;
+use crate::stiff::outcome::{Expected, Outcome};
 
-/// Expected and measured outcome of a case: a line of `stiff.csv`.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Row {
-    /// Title of the subject.
-    pub subject: String,
+/// Expected and measured outcome of a case.
+#[derive(Clone, Debug)]
+pub struct Measured {
     /// Name of the case.
     pub case: String,
     /// Kind of the case.
     pub kind: String,
-    /// Input as JSON.
-    pub input: String,
-    /// Why the input is hard, or why the outcome is right.
-    pub why: String,
     /// Expected outcome.
-    pub expected: String,
+    pub expected: Expected,
     /// Measured outcome.
-    pub measured: String,
+    pub outcome: Outcome,
+}
+
+impl Measured {
     /// Whether the outcome is as expected.
-    pub holds: bool,
+    pub fn holds(&self) -> bool {
+        self.expected.holds(&self.outcome)
+    }
+}
+
+/// Measured error of a case that has a bound: a line of `stiff.csv`. Every other outcome is the one that the catalogue states.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Row {
+    /// Name of the case.
+    pub case: String,
+    /// The error with its unit.
+    pub error: String,
+}
+
+/// The rows of the cases that have an error.
+pub fn errors(measured: &[Measured]) -> Vec<Row> {
+    let error = |measured: &Measured| match &measured.outcome {
+        Outcome::Error(..) => Some(Row {
+            case: measured.case.clone(),
+            error: measured.outcome.to_string(),
+        }),
+        Outcome::Exact(_) | Outcome::Refused(_) => None,
+    };
+    measured.iter().filter_map(error).collect()
 }
 
 /// The cases of the catalogue that run together.
@@ -47,7 +67,7 @@ pub enum Part {
 ///
 /// # Errors
 /// The catalogue cannot be read, or a case has an unknown kind.
-pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Row>> {
+pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Measured>> {
     let subjects = read(&workspace::path("tools/reference/stiff"))?;
     let kinds = kinds::all().into_iter().map(|kind| (kind.name, kind));
     let kinds: BTreeMap<_, _> = kinds.collect();
@@ -57,11 +77,12 @@ pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Row>> {
         .filter(|subject| subject.on_virtual_board == (part == Part::VirtualBoard))
         .flat_map(|subject| subject.cases.iter().map(move |case| (&subject.title, case)))
         .filter(|(subject, case)| wanted(subject) || wanted(&case.name))
+        .map(|(_, case)| case)
         .collect();
-    let run = |(subject, case): &(&String, &Case)| {
+    let run = |case: &&Case| {
         let kind = kinds.get(case.kind.as_str());
         let kind = kind.with_context(|| format!("{}: no kind {:?}", case.name, case.kind))?;
-        run(subject, case, kind).with_context(|| case.name.clone())
+        run(case, kind).with_context(|| case.name.clone())
     };
     match part {
         Part::Host => two_at_a_time(&cases, run),
@@ -69,8 +90,7 @@ pub fn measure(part: Part, only: Option<&str>) -> Result<Vec<Row>> {
     }
 }
 
-fn run(subject: &str, case: &Case, kind: &Kind) -> Result<Row> {
-    let expected = case.expected()?;
+fn run(case: &Case, kind: &Kind) -> Result<Measured> {
     // A case that cannot be run, or panics, must not hide the others.
     let outcome = match catch_unwind(AssertUnwindSafe(|| kind.run(case.input.clone()))) {
         Ok(outcome) => {
@@ -78,14 +98,10 @@ fn run(subject: &str, case: &Case, kind: &Kind) -> Result<Row> {
         }
         Err(_) => Outcome::exact("panicked"),
     };
-    Ok(Row {
-        subject: subject.to_owned(),
+    Ok(Measured {
         case: case.name.clone(),
         kind: case.kind.clone(),
-        input: serde_json::to_string(&case.input)?,
-        why: case.why.clone(),
-        expected: expected.stated(&outcome),
-        measured: outcome.to_string(),
-        holds: expected.holds(&outcome),
+        expected: case.expected()?,
+        outcome,
     })
 }

@@ -16,7 +16,7 @@ use glint_core::picture::{Backend, Size};
 use serde::{Deserialize, Serialize};
 
 use crate::report::provenance::Provenance;
-use crate::report::soc::{self, BackToBack, CLOCKS};
+use crate::report::soc::{self, BackToBack, CLOCK};
 
 /// The requirement on the speed at which a scene is drawn. Most kinds of requirement also have a goal beyond it.
 #[derive(Clone, Copy)]
@@ -356,7 +356,7 @@ fn row(case: &Case, expected: &Stats, alone: &Stats, together: &BackToBack) -> R
             (clocks, "clocks a triangle", most, Some(aim), clocks <= most)
         }
         Target::Frames(least, aim) => {
-            let rate = CLOCKS[0] / cycles_frame;
+            let rate = CLOCK / cycles_frame;
             (
                 rate,
                 "frames a second at 81.25 MHz",

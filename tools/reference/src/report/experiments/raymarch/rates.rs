@@ -56,8 +56,8 @@ pub struct Case {
     cameras: fn() -> Vec<(&'static str, Camera)>,
     /// Returns the rotations that are applied to each camera, in degrees. Each rotation gives a pose to measure.
     path: fn() -> Vec<Vector>,
-    /// Index in [`soc::CLOCKS`] of the clock at which the requirement holds.
-    pub clock: usize,
+    /// Clock in MHz at which the requirement holds.
+    pub clock: f64,
     /// Required frames per second.
     pub at_least: f64,
     /// The goal beyond the requirement, in frames per second.
@@ -65,11 +65,6 @@ pub struct Case {
 }
 
 impl Case {
-    /// Returns the number of eyes of a picture: 2 for stereo, otherwise 1.
-    pub const fn eyes(&self) -> u32 {
-        if self.stereo.is_some() { 2 } else { 1 }
-    }
-
     /// Whether a row was measured for this case.
     pub fn contains(&self, row: &Row) -> bool {
         self.field == row.field
@@ -89,7 +84,7 @@ const STEREO_SPONGE: Case = Case {
     build: FIELDS,
     cameras: of_the_sponge,
     path: views::path,
-    clock: 0,
+    clock: 81.25,
     at_least: 60.0,
     aim: Some(120.0),
 };
@@ -125,7 +120,7 @@ pub const CASES: [Case; 8] = [
     },
     Case {
         prepass: false,
-        clock: 1,
+        clock: 100.0,
         aim: None,
         ..LARGE_SPONGE
     },
@@ -198,6 +193,12 @@ pub struct Row {
     pub cycles_alone: u64,
     /// Mean cycles of a frame among several that are drawn back to back. They are measured for the slowest pose of a view only.
     pub cycles_frame: Option<f64>,
+    /// Clock in MHz at which the requirement holds.
+    pub clock: f64,
+    /// Required frames per second.
+    pub at_least: f64,
+    /// The goal beyond the requirement, in frames per second.
+    pub aim: Option<f64>,
     /// Commit with which the pose was measured.
     pub commit: String,
 }
@@ -293,6 +294,9 @@ fn draw(
             evaluations: rays.evaluations,
             cycles_alone: stats.cycles.context("no cycles in the reply")?,
             cycles_frame: None,
+            clock: case.clock,
+            at_least: case.at_least,
+            aim: case.aim,
             commit: commit.to_owned(),
         });
         last = Some(frame.view);

@@ -6,7 +6,7 @@ use glint_model::raymarch::FieldOptions;
 use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 
-use super::requirements::{SMALL, missed};
+use super::requirements::missed;
 use crate::camera::{Ray, Size};
 use crate::raymarch::Field;
 use crate::raymarch::metrics::{Expected, Outcome};
@@ -43,15 +43,6 @@ pub struct Trial {
     pub failed: String,
     /// Commit with which the configuration was measured.
     pub commit: String,
-}
-
-impl Trial {
-    /// Returns the evaluations per clock and lane of the verilated raymarcher, if it drew the trial.
-    pub fn rate(&self) -> Option<f64> {
-        let rays = f64::from(SMALL.0 * SMALL.1);
-        self.cycles
-            .map(|cycles| self.evaluations * rays / cycles / f64::from(Raymarcher::LANES))
-    }
 }
 
 /// The views that every trial draws, with their reference pictures, and the raymarcher that draws them.

@@ -1,0 +1,297 @@
+"""What the pages compute from the tables."""
+
+import tomllib
+
+import numpy as np
+import pandas as pd
+
+from tables import ROOT, fixed, rows, sci, shown
+
+CLOCK = 81.25e6
+
+
+def stiff(errors):
+    """The catalogue of stiff cases, those of the virtual board last, with expected and measured outcomes."""
+    files = sorted((ROOT / "tools/reference/stiff").glob("*.toml"))
+    subjects = [tomllib.loads(file.read_text()) for file in files]
+    measured = dict(errors.set_index("case").error)
+    for case in (case for subject in subjects for case in subject["case"]):
+        case["measured"] = measured.get(case["name"], "the same")
+        if "at_most" in case:
+            unit = case["measured"].partition(" ")[2]
+            case["expected"] = f"at most {shown(float(case['at_most']))} {unit}".strip()
+        else:
+            case["expected"] = case.get("exact") or f"refused: {case['refused']}"
+    return sorted(subjects, key=lambda subject: subject.get("on_virtual_board", False))
+
+
+def timeline(frames, lanes):
+    """Bottleneck of each frame, the cycles that it takes, and rates without it.
+
+    The bottleneck is the longest part; in a pass the evaluations or the memory, if they take more than half of it."""
+    passes = frames.geometry + frames.raster
+    evaluating = frames.evaluations.fillna(0) / lanes
+    is_raster = frames.raster >= frames.geometry
+    cases = [
+        ("soft core", frames.soft_core >= frames[["geometry", "raster"]].max(axis=1), frames.soft_core),
+        ("evaluations", is_raster & (2 * evaluating > frames.raster), evaluating),
+        ("memory", 2 * frames.refused > passes, frames.refused),
+        ("raster", is_raster, frames.raster),
+        ("geometry", True, frames.geometry),
+    ]
+    names, conditions, cycles = zip(*cases)
+    conditions = [np.broadcast_to(condition, len(frames)) for condition in conditions]
+    limiting = np.select(conditions, cycles)
+    percent = 100 / frames.cycles
+    start = frames.soft_core + frames.geometry
+    parts = zip(frames.soft_core * percent, frames.geometry * percent, frames.raster * percent, frames.refused * percent,
+                evaluating * percent, start * percent)
+    tracks = [
+        [
+            [("soft core", 0, core), ("geometry passes", core, geometry), ("raster passes", raster_from, raster)],
+            [("refused by memory", core, refused)],
+            [("evaluations", raster_from, evaluations)],
+        ]
+        for core, geometry, raster, refused, evaluations, raster_from in parts
+    ]
+    return frames.assign(
+        bottleneck=np.select(conditions, names, ""),
+        limiting=limiting,
+        evaluating=evaluating,
+        rate=CLOCK / frames.cycles,
+        rate_halved=CLOCK / (frames.cycles - limiting / 2),
+        rate_without=CLOCK / (frames.cycles - limiting),
+        rate_overlapped=CLOCK / np.maximum(frames.soft_core, passes),
+        label=[f"{frame.scene}\n{frame.cycles:,} cycles" for frame in frames.itertuples()],
+        tracks=tracks,
+    )
+
+
+def qualities(errors, cycles):
+    """Errors and cycles of frames, and whether a frame is on the front of its scene: no other has no more cycles and no larger errors, and less
+    of one of them. Cycles that differ by less than 0.5 % are equal, because scan-out reads memory at another time."""
+    frames = errors.merge(cycles.drop(columns="commit"), "left")
+
+    def is_beaten(frame):
+        others = frames[frames.scene == frame.scene]
+        spent = others.cycles.where((others.cycles - frame.cycles).abs() > 0.005 * others.cycles, frame.cycles)
+        differences = pd.DataFrame({"wrong": others.wrong - frame.wrong, "colour": others.colour - frame.colour, "cycles": spent - frame.cycles})
+        return ((differences <= 0).all(axis=1) & (differences < 0).any(axis=1)).any()
+
+    is_on_front = [not is_beaten(frame) for frame in frames.itertuples()]
+    return frames.assign(rate=CLOCK / frames.cycles, shipped=frames.quality.notna(), is_on_front=is_on_front)
+
+
+def frames(scenes, soft_core):
+    """Frames of the triangle engine back to back and alone, and of the soft core."""
+    size = scenes.width.astype(str) + "×" + scenes.height.astype(str)
+    ways = [("gateware, back to back", scenes.cycles_frame), ("gateware, alone", scenes.cycles_alone), ("soft core", soft_core)]
+    points = [
+        scenes.assign(family=size + ", " + way, cost=cycles, shipped=number == 0, label=scenes.scene if number == 0 else None)
+        for number, (way, cycles) in enumerate(ways)
+    ]
+    points = pd.concat(points)
+    return points[points.cost.notna()].sort_values(["width", "family"], kind="stable")
+
+
+def kernels(all_kernels, family):
+    """The kernels of a family that have an error and a cost, in groups: other libraries, Newton steps, and all others."""
+    members = all_kernels[(all_kernels.family == family) & (all_kernels.max_err > 0)]
+    members = members[members.bits.notna() | members.cycles_median.notna()]
+    names = members.config.str.partition(": ")
+    is_table = members.config.str.contains("Newton|entries")
+    group = names[0].where(names[1] != "", np.where(is_table, "tables and Newton steps", "integers"))
+    return members.assign(group=group, short=names[2].where(names[1] != "", members.config))
+
+
+def cases(rates):
+    """The measured cases of the raymarcher, with the slowest pose of each view, which alone was drawn back to back."""
+    found = []
+    columns = ["field", "stereo", "prepass", "width", "height", "lanes", "clock", "at_least", "aim"]
+    for key, poses in rates.groupby(columns, sort=False, dropna=False):
+        case = rows(pd.DataFrame([key], columns=columns))[0]
+        views = poses[poses.cycles_frame.notna()].assign(
+            poses=poses.groupby("view").view.transform("size"),
+            mean_alone=poses.groupby("view").cycles_alone.transform("mean"),
+        )
+        name = [case["field"], 2 if case["stereo"] else 1, f"{case['width']}×{case['height']}", "yes" if case["prepass"] else "", case["lanes"]]
+        rate = 1e6 * case["clock"] / views.cycles_frame.max()
+        found.append(case | {"name": " | ".join(map(str, name)), "rate": rate, "views": rows(views)})
+    return found
+
+
+def best_clocks(clocks):
+    """The clocks of each rate and scene: measured ones if there are any."""
+    return clocks.sort_values("measured", ascending=False, kind="stable").drop_duplicates(["rate", "scene"]).sort_index()
+
+
+def rule_error(clocks):
+    """Largest relative difference between computed and measured clocks."""
+    both = clocks[clocks.measured].merge(clocks[~clocks.measured], on=["rate", "scene"])
+    return (both.clocks_y / both.clocks_x - 1).abs().max()
+
+
+def variants(forms, clocks, costs):
+    """Forms of smooth shading with the rate of their pixels: errors, clocks, and LUTs and DSP48 slices in addition to an engine with flat
+    shading."""
+    sign = np.where(costs.shading == "flat", -1, 1)
+    added = costs[["LUT", "DSP48"]].mul(sign, axis=0).groupby(costs.engine).sum()
+    divisions = costs[costs.division_dsp > 0].groupby("engine")[["division_lut", "division_dsp"]].first().set_axis(["LUT", "DSP48"], axis=1)
+    eight = "eight divisions a clock, planes of the channels at once"
+    # The planes of the channels one after the other.
+    saved = added.loc["a division a clock, planes of the channels at once"] - added.loc["a division a clock, planes one after the other"]
+
+    def group(count):
+        return added.loc[eight] - saved - (8 - count) / 8 * divisions.loc[eight]
+
+    pixel, a_group, covered = "a pixel a clock", "a group a clock", "first and last covered pixel"
+    shipped = "1024 entries of 17 bits"
+    found = []
+    for form, rate, label, cells in [
+        ("linear on the screen", a_group, "affine", group(0)),
+        ("first and last lane", a_group, "lanes", group(2)),
+        (covered, a_group, "covered", group(2)),
+        (covered, "a division a clock", "covered", group(1)),
+        (shipped, a_group, "1024", group(8)),
+        (shipped, "two pixels a clock", "1024", added.loc["Glint"] + divisions.loc["Glint"]),
+        ("16 entries of 11 bits", pixel, "16", None),
+        ("64 entries of 13 bits", pixel, "64", None),
+        ("256 entries of 15 bits", pixel, "256", None),
+        (shipped, pixel, "1024", added.loc["Glint"]),
+        ("4096 entries of 19 bits", pixel, "4096", None),
+        ("64 entries and a Newton step", pixel, "Newton", None),
+    ]:
+        errors = forms[forms.form == form].assign(off=lambda rows: rows.differing * rows.pixels)
+        worst = errors.groupby("stiff").agg({"max_err": "max", "steps": "max", "off": "sum", "pixels": "sum"})
+        worst["differing"] = worst.off / worst.pixels
+        common, stiff = rows(worst.sort_index())
+        scenes = rows(best_clocks(clocks[clocks.rate == rate]))
+        first = next(scene for scene in scenes if scene["scene"] == "icosphere:6 from 2")
+        group_name = errors.family.iloc[0]
+        found.append({
+            "form": form, "rate": rate, "label": label, "group": group_name, "family": f"{group_name}, {rate}",
+            "shipped": rate == pixel and errors.shipped.all(), "common": common, "stiff": stiff, "scenes": scenes,
+            "max_err": errors.max_err.max(), "rms": errors.rms.max(), "cost": first["clocks"] / first["pixels"],
+            "lut": cells.LUT if cells is not None else None, "dsp": cells.DSP48 if cells is not None else None,
+            "is_built": rate == pixel,
+        })
+    return pd.DataFrame(found).astype({"lut": float, "dsp": float})
+
+
+def blocks():
+    """Cells of each block of the gateware, from the first table of docs/resources.md."""
+    text = (ROOT / "docs/resources.md").read_text()
+    table = next(block for block in text.split("\n\n") if block.startswith("|"))
+    found = {}
+    for line in table.splitlines()[2:]:
+        name, lut, _, _, _, ff, dsp, bram, *_ = (cell.strip() for cell in line.split("|")[1:])
+        found[name] = {"lut": lut, "ff": ff, "dsp": dsp, "bram": bram}
+    return found
+
+
+def index(read, blocks):
+    """All configurations of all kernels: error, RMS and cost, and the block of the gateware that has the configuration."""
+    parts = []
+
+    def add(name, page, frame, *, error="max_err", rms="rms", cost="cycles_median", error_unit="", cost_unit="cycles", block=None, holds="",
+            in_overview=False):
+        cells = f"`{block}`: {blocks[block]['lut']}, {blocks[block]['dsp']}" if block else ""
+        parts.append(pd.DataFrame({
+            "name": name, "page": page, "config": frame.config, "shipped": frame.shipped, "error": frame.eval(error),
+            "rms": frame.eval(rms) if rms else np.nan, "cost": frame.eval(cost).astype(float), "error_unit": error_unit, "cost_unit": cost_unit,
+            "cells": [cells if holds in config else "" for config in frame.config], "in_overview": in_overview,
+        }))
+
+    sines = read("sine").drop_duplicates("kernel", keep="last")
+    add("sine, cosine", "sine.md", sines.assign(config=sines.kernel + ", " + sines.word_length), in_overview=True)
+
+    small = read("kernels")
+    for family, name, anchor, block, holds in [
+        ("reciprocal", "1/x", "reciprocal", "vertex_stage", "of vertices"),
+        ("inverse root", "1/√x", "reciprocal-square-root", "ray_generator", "of each ray"),
+        ("root", "√x", "square-root", None, ""),
+        ("division", "a/b", "division", "vertex_stage", "of vertices"),
+        ("length", "length", "length-of-a-vector", "field_sphere", "of spheres"),
+        ("unit", "unit vector", "vector-of-length-1", None, ""),
+    ]:
+        add(name, f"kernels.md#{anchor}", small[small.family == family], block=block, holds=holds, in_overview=True)
+    for column, value, name, anchor, unit in [
+        ("family", "depth", "stored depth", "stored-depth", "of the depth"),
+        ("family", "colour", "stored colour", "stored-colour", "/255"),
+        ("kernel", "vertex", "word of a vertex", "number-formats-of-the-pipeline", "px"),
+        ("kernel", "basis", "word of the camera's axes", "number-formats-of-the-pipeline", "px"),
+        ("kernel", "inverse", "word of 1/z", "number-formats-of-the-pipeline", "px"),
+        ("kernel", "snap", "word of a position", "number-formats-of-the-pipeline", "px"),
+        ("kernel", "normal", "word of a normal", "number-formats-of-the-pipeline", "/255"),
+        ("kernel", "intensity", "word of an intensity", "number-formats-of-the-pipeline", "/255"),
+    ]:
+        add(name, f"kernels.md#{anchor}", small[small[column] == value], cost="bits", error_unit=unit, cost_unit="bits")
+
+    geometry = read("geometry-precision")
+    for family, name, anchor, unit, block in [
+        ("matrix", "product of matrices", "model-matrices", "", None),
+        ("normal", "turned normal", "normals", "", None),
+        ("projection", "projection", "projection", "/256 px", "vertex_stage"),
+    ]:
+        add(name, f"geometry.md#{anchor}", geometry[geometry.family == family], error_unit=unit, block=block)
+
+    forms = variants(read("gouraud-forms"), read("gouraud-clocks"), read("gouraud-cost"))
+    forms["config"] = forms.family + " (" + forms.label + ")"
+    add("smooth shading", "gouraud.md", forms, cost="cost", error_unit="steps of a channel", cost_unit="clocks a pixel",
+        block="triangle_engine_smooth")
+
+    for study, name, error, unit, cost, cost_unit in [
+        ("threshold", "ray: threshold of a hit", "depth_p99.fillna(0)", "world units, p99 of depths", "cycles", "cycles a picture"),
+        ("cap", "ray: step limit", "1 - iou", "of the masks", "cycles", "cycles a picture"),
+        ("fraction", "ray: fraction bits", "depth_median.fillna(0)", "world units, median of depths", "evaluations", "evaluations a ray"),
+        ("prepass", "ray: cones before the rays", "wrong_faces", "wrong faces", "cycles", "cycles a picture"),
+    ]:
+        trials = read(f"raymarch-{study}")
+        trials["config"] = trials.family + ": " + trials.config
+        add(name, "raymarch.md", trials, error=error, rms=None, cost=cost, error_unit=unit, cost_unit=cost_unit, block="raymarcher")
+
+    methods = read("imu-methods").query("motion == 'tumble' and rate == 200")
+    add("attitude, a sample", "imu.md", methods.assign(config=methods.method), error="error", rms=None, cost="cycles",
+        error_unit="° after 20 s of tumbling, 200 Hz")
+    filters = read("gesture-filters")
+    filters["config"] = (filters["filter"] + " " + filters.parameters.fillna("")).str.strip()
+    add("filter of a hand", "gesture.md", filters, error="rest", rms=None, cost="cycles", error_unit="° at rest, RMS")
+    return pd.concat(parts, ignore_index=True)
+
+
+def overview(index):
+    """Of the kernels on the soft core, the configurations that no other one of the same kernel beats in both error and cycles."""
+
+    def is_kept(choice):
+        others = index[index.name == choice.name]
+        is_beaten = ((others.cost < choice.cost) & (others.error <= choice.error)).any()
+        return choice.shipped or not (is_beaten or np.isnan(choice.cost))
+
+    shown = index[index.in_overview]
+    shown = shown[[is_kept(choice) for choice in shown.itertuples(index=False)]]
+    return shown.assign(label=shown.name.where(shown.shipped))
+
+
+def cost(value):
+    """A cost as text."""
+    return fixed(value, 0 if value is not None and (value >= 100 or value == int(value)) else 2, "not measured")
+
+
+def neighbours(choices, choice):
+    """The most exact of the choices that cost less, and the cheapest of those with a smaller error; those without a cost come last."""
+    cheaper = [other for other in choices if None not in (other["cost"], choice["cost"]) and other["cost"] < choice["cost"]]
+    exacter = [other for other in choices if other["error"] < choice["error"]]
+    return (
+        min(cheaper, key=lambda other: other["error"], default=None),
+        min(exacter, key=lambda other: (np.inf if other["cost"] is None else other["cost"], -other["error"]), default=None),
+    )
+
+
+def choices(index):
+    """What Glint uses for each kernel, with the next cheaper and the next more exact choice."""
+    for _, group in index.groupby("name", sort=False):
+        everything = rows(group)
+        for choice in rows(group[group.shipped].drop_duplicates(["error", "cost"])):
+            near = neighbours(everything, choice)
+            texts = [f"{other['config']}: {sci(other['error'], 1)}, {cost(other['cost'])}" if other else "none measured" for other in near]
+            yield choice | {"cheaper": texts[0], "more_exact": texts[1]}

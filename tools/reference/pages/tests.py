@@ -1,0 +1,71 @@
+"""Tests of what the pages compute. The tests of the crate run them."""
+
+import unittest
+
+import numpy as np
+import pandas as pd
+
+import figures
+import tables
+
+
+class Timeline(unittest.TestCase):
+    def test_the_longest_part_limits_a_frame_or_what_limits_this_part(self):
+        for core, geometry, raster, refused, evaluations, expected in [
+            (500, 300, 200, 0, np.nan, "soft core"),
+            (200, 500, 300, 0, np.nan, "geometry"),
+            (200, 300, 500, 0, np.nan, "raster"),
+            (200, 300, 500, 401, np.nan, "memory"),
+            (200, 300, 500, 400, np.nan, "raster"),
+            (500, 300, 200, 401, np.nan, "soft core"),
+            (200, 300, 500, 401, 502, "evaluations"),
+            (200, 300, 500, 0, 500, "raster"),
+        ]:
+            frame = {"scene": "lamp", "cycles": 1000, "soft_core": core, "geometry": geometry, "raster": raster, "refused": refused,
+                     "evaluations": evaluations}
+            found = figures.timeline(pd.DataFrame([frame]), 2).iloc[0]
+            self.assertEqual(found.bottleneck, expected, frame)
+        rates = found[["rate", "rate_halved", "rate_without", "rate_overlapped"]].astype(float)
+        self.assertEqual((figures.CLOCK / rates).round().tolist(), [1000, 750, 500, 800])
+
+
+class Qualities(unittest.TestCase):
+    def test_a_frame_is_on_the_front_unless_another_one_beats_it(self):
+        def front(*frames):
+            errors = pd.DataFrame([("lamp", size, wrong, 1.0, None) for size, (wrong, _) in enumerate(frames)],
+                                  columns=["scene", "width", "wrong", "colour", "quality"])
+            cycles = pd.DataFrame([("lamp", size, spent, "") for size, (_, spent) in enumerate(frames)],
+                                  columns=["scene", "width", "cycles", "commit"])
+            return figures.qualities(errors, cycles).is_on_front.tolist()
+
+        self.assertEqual(front((0.1, 1000), (0.2, 1000)), [True, False])
+        self.assertEqual(front((0.1, 1000), (0.2, 500)), [True, True])
+        self.assertEqual(front((0.1, 1004), (0.2, 1000)), [True, False], "the same cycles within 0.5 %")
+        self.assertEqual(front((0.1, 1010), (0.2, 1000)), [True, True])
+        self.assertEqual(front((0.1, 1000), (0.1, 1000)), [True, True])
+
+
+class Index(unittest.TestCase):
+    CHOICES = pd.DataFrame(
+        [("cheapest", 1e-1, 1), ("cheap", 1e-2, 5), ("own", 1e-3, 10), ("worse", 1e-2, 20), ("better", 1e-4, 30), ("best", 1e-6, 40),
+         ("unmeasured", 1e-5, np.nan)], columns=["config", "error", "cost"],
+    ).assign(name="a kernel", shipped=lambda choices: choices.config == "own", in_overview=True)
+
+    def test_neighbours_are_the_next_ones_on_each_side(self):
+        choices = tables.rows(self.CHOICES)
+        for place, expected in [(2, ["cheap", "better"]), (0, [None, "cheap"]), (5, ["better", None]), (4, ["own", "best"])]:
+            near = figures.neighbours(choices, choices[place])
+            self.assertEqual([choice and choice["config"] for choice in near], expected)
+
+    def test_the_diagram_leaves_out_what_another_choice_beats(self):
+        self.assertEqual(len(figures.overview(self.CHOICES)), 5)
+
+
+class Formats(unittest.TestCase):
+    def test_numbers(self):
+        self.assertEqual([tables.sci(1.26e-10, 1), tables.sci(5e-4), tables.sci(0.0, 2), tables.sci(None, 1, "none")], ["1.3e-10", "5e-4", "0.00e0", "none"])
+        self.assertEqual([tables.shown(1e-5), tables.shown(81.25), tables.shown(100.0), tables.shown(None)], ["0.00001", "81.25", "100", ""])
+
+
+if __name__ == "__main__":
+    unittest.main()
