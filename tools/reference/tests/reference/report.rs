@@ -2,7 +2,6 @@
 //! as this is cheap to check), and that the committed pages are those that are made from the committed tables.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -155,10 +154,7 @@ fn the_committed_pages_are_those_of_the_committed_tables() {
             .collect()
     };
     let mut made = names(&folder);
-    // Figures that no experiment measures.
-    made.insert("single.md".into());
     assert_eq!(names(&committed), made, "files have come or gone");
-    made.remove(OsStr::new("single.md"));
     made.insert("constants.csv".into());
     for name in made {
         let read = |folder: &Path| fs::read(folder.join(&name)).expect("readable");
