@@ -90,17 +90,6 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     firmware::build(Board::Virtual, &[])?;
     firmware::build(Board::Virtual, &["peers"])?;
     run::build_program("glint-reference", "report")?;
-    if arguments
-        .iter()
-        .any(|argument| argument.starts_with("fuzz"))
-    {
-        run::step(
-            "build fuzz",
-            Command::new("cargo")
-                .args(["build", "--package", "glint", "--example", "fuzz"])
-                .current_dir(paths::root()),
-        )?;
-    }
     let folder = paths::target().join("report");
     let folder = folder.join(if quick { "quick" } else { "whole" });
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
@@ -112,7 +101,6 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
         folder.display()
     );
     write_stamp(&folder, quick)?;
-    let programs = paths::target().join("debug");
     run::foreground(
         "the report",
         Command::new(paths::venv_program("snakemake"))
@@ -126,9 +114,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
             .args(["--quiet", "rules", "--config"])
             .args([
                 format!("root={}", paths::root().display()),
-                format!("report={}", programs.join("report").display()),
-                format!("fuzz={}", programs.join("examples/fuzz").display()),
-                format!("python={}", paths::venv_program("python").display()),
+                format!("report={}", paths::target().join("debug/report").display()),
                 format!("stamp={STAMP}"),
                 format!("quick={}", u8::from(quick)),
             ]),

@@ -309,7 +309,7 @@ fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
     let mut costs = gouraud::engines::today()?;
     costs.extend(match earlier {
         true => gouraud::engines::earlier()?,
-        false => gouraud::engines::kept(&to.0.join("gouraud-cost.csv"))?,
+        false => gouraud::engines::kept()?,
     });
     to.write("gouraud-cost", &costs)
 }

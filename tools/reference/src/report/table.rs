@@ -32,15 +32,3 @@ pub fn read_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
         .collect::<Result<_, _>>()
         .with_context(|| format!("{}: unexpected line", path.display()))
 }
-
-/// As [`read_csv`], but returns no rows if the file is missing.
-///
-/// # Errors
-/// When a line does not have the columns of such a row.
-pub fn read_optional_csv<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>> {
-    if path.exists() {
-        read_csv(path)
-    } else {
-        Ok(vec![])
-    }
-}

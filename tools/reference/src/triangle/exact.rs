@@ -124,13 +124,6 @@ impl ExactTriangle {
             denominator: self.doubled_area * i128::from(DEPTH_STEPS),
         }
     }
-
-    /// Returns the largest slope of the plane of depth over all directions on the screen, in depth codes per pixel.
-    pub fn depth_slope(&self) -> f64 {
-        let here = self.depth(0, 0).codes();
-        let (right, below) = (self.depth(1, 0).codes(), self.depth(0, 1).codes());
-        (right - here).hypot(below - here)
-    }
 }
 
 fn centre(column: i64, row: i64) -> (i128, i128) {
@@ -209,6 +202,5 @@ mod tests {
             ExactTriangle::new([vertex(0, 0), vertex(7, 1), vertex(2, 6)]).expect("an area");
         assert_eq!(plane.depth(3, 2).codes(), 17.0);
         assert_eq!(plane.depth(3, 2).error_of(19), 2.0);
-        assert!((plane.depth_slope() - 5f64.sqrt()).abs() < 1e-12);
     }
 }

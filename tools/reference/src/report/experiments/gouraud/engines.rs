@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 use crate::report::provenance::Provenance;
-use crate::report::table::read_optional_csv;
+use crate::report::table::read_csv;
 use crate::report::workspace;
 
 /// Name of today's engine.
@@ -106,12 +106,12 @@ pub fn earlier() -> Result<Vec<Cost>> {
     Ok(rows)
 }
 
-/// Returns the resources of the earlier engines from the file of an earlier measurement.
+/// Returns the committed resources of the earlier engines.
 ///
 /// # Errors
-/// When a line of the file does not have the columns of a [`Cost`].
-pub fn kept(file: &Path) -> Result<Vec<Cost>> {
-    let mut rows: Vec<Cost> = read_optional_csv(file)?;
+/// When a line of the table does not have the columns of a [`Cost`].
+pub fn kept() -> Result<Vec<Cost>> {
+    let mut rows: Vec<Cost> = read_csv(&workspace::path("docs/report/gouraud-cost.csv"))?;
     rows.retain(|row| row.engine != TODAY);
     Ok(rows)
 }
