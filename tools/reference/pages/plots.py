@@ -17,6 +17,8 @@ matplotlib.rcParams.update({
     "font.size": 9,
     "axes.axisbelow": True,
     "axes.grid": True,
+    # A fixed place takes no search.
+    "axes.titley": 1.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "grid.color": "#e4e4e4",

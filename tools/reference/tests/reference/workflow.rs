@@ -1,6 +1,5 @@
 //! Tests of the report's workflow, which Snakemake runs.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -13,6 +12,8 @@ use glint_reference::report::workspace;
 
 /// Cycles of the kernels that the jobs of these tests measure, as the console prints them.
 const TRANSCRIPT: &str = "bench sin_cos_q30 min 1 median 2 max 3 cycles\nok\n";
+/// Jobs of these tests. What the pages make of their tables, the tests of the pages show.
+const TABLES: [&str; 2] = ["tables/sine", "tables/raymarch-pictures"];
 
 /// A run of the workflow in a folder of its own, with jobs that need no board.
 struct Run {
@@ -37,8 +38,8 @@ impl Run {
         fs::write(self.folder.join("inputs"), text).expect("writable");
     }
 
-    /// Snakemake with some workers, for a target.
-    fn snakemake(&self, workers: u32, target: &str) -> Command {
+    /// Snakemake with some workers, for some targets.
+    fn snakemake(&self, workers: u32, targets: &[&str]) -> Command {
         let cycles = format!(
             "cycles=--transcript {}",
             self.folder.join("transcript").display()
@@ -50,7 +51,9 @@ impl Run {
             .arg("--directory")
             .arg(&self.folder)
             .args(["--cores", &workers.to_string(), "--nolock"])
-            .args(["--rerun-incomplete", target, "--config", "quick=1"])
+            .arg("--rerun-incomplete")
+            .args(targets)
+            .args(["--config", "quick=1"])
             .args(["pages=sine raymarch-pictures", &cycles])
             .args([
                 format!("root={}", workspace::path("").display()),
@@ -60,8 +63,8 @@ impl Run {
         command
     }
 
-    fn succeed(&self, workers: u32, target: &str) {
-        let output = self.snakemake(workers, target).output();
+    fn succeed(&self, workers: u32, targets: &[&str]) {
+        let output = self.snakemake(workers, targets).output();
         let output = output.expect("Snakemake starts");
         assert!(
             output.status.success(),
@@ -70,16 +73,9 @@ impl Run {
         );
     }
 
-    /// The contents of the report's files, by their names.
-    fn pages(&self) -> BTreeMap<String, Vec<u8>> {
-        let files = fs::read_dir(self.folder.join("pages")).expect("the pages are made");
-        files
-            .map(|file| {
-                let file = file.expect("readable");
-                let name = file.file_name().into_string().expect("names are text");
-                (name, fs::read(file.path()).expect("readable"))
-            })
-            .collect()
+    /// A file of a folder of the run.
+    fn read(&self, file: &str) -> String {
+        fs::read_to_string(self.folder.join(file)).expect("readable")
     }
 
     /// Time at which a table was written.
@@ -122,22 +118,31 @@ fn every_page_has_a_job() {
 #[test]
 fn one_and_two_workers_write_the_same_report() {
     let [one, two] = ["workflow-one", "workflow-two"].map(Run::new);
-    one.succeed(1, "report");
-    two.succeed(2, "report");
-    let pages = one.pages();
-    assert!(pages.contains_key("README.md") && pages.contains_key("sine.svg"));
-    assert!(pages == two.pages(), "the files differ");
-    let sine = String::from_utf8_lossy(&pages["sine.csv"]);
-    let committed = fs::read_to_string(workspace::path("docs/report/sine.csv")).expect("readable");
-    assert!(sine != committed, "the table is that of the quick run");
+    one.succeed(1, &["report"]);
+    two.succeed(2, &TABLES);
+    for (table, job) in [("sine.csv", TABLES[0]), ("raymarch.csv", TABLES[1])] {
+        let table_of_one = one.read(&format!("pages/{table}"));
+        assert!(
+            table_of_one == two.read(&format!("{job}/{table}")),
+            "{table}: the files differ"
+        );
+        let committed = fs::read_to_string(workspace::path("docs/report").join(table));
+        assert!(
+            table_of_one != committed.expect("readable"),
+            "{table}: not that of the quick run"
+        );
+    }
+    assert!(
+        one.read("pages/README.md").contains("sine") && one.read("pages/sine.svg").contains("<svg")
+    );
 }
 
 #[test]
 fn a_run_goes_on_where_another_one_was_killed() {
     let run = Run::new("workflow-killed");
-    run.succeed(1, "tables/sine");
+    run.succeed(1, &TABLES[..1]);
     let first = run.written("sine/sine.csv");
-    let mut command = run.snakemake(2, "report");
+    let mut command = run.snakemake(2, &TABLES);
     let mut killed = command.process_group(0).spawn().expect("Snakemake starts");
     let begun = run.folder.join("tables/raymarch-pictures");
     while !begun.exists() {
@@ -150,14 +155,14 @@ fn a_run_goes_on_where_another_one_was_killed() {
     assert!(kill.expect("kill starts").success());
     killed.wait().expect("Snakemake can be awaited");
 
-    run.succeed(2, "report");
-    let table = fs::read_to_string(run.folder.join("pages/raymarch.csv")).expect("readable");
+    run.succeed(2, &TABLES);
+    let table = run.read("tables/raymarch-pictures/raymarch.csv");
     assert!(table.ends_with('\n'), "the table is whole");
     assert_eq!(run.written("sine/sine.csv"), first, "the job ran again");
     run.stamp("the first inputs");
-    run.succeed(2, "report");
+    run.succeed(2, &TABLES);
     assert_eq!(run.written("sine/sine.csv"), first, "the same inputs");
     run.stamp("other inputs");
-    run.succeed(2, "tables/sine");
+    run.succeed(2, &TABLES[..1]);
     assert!(run.written("sine/sine.csv") > first, "other inputs");
 }
