@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use serde::Deserialize;
-use thiserror::Error;
 
 /// A packed type: a vector, an enumeration, an array or a structure. Cheap to clone.
 #[derive(Clone, Debug, Deserialize)]
@@ -61,91 +60,11 @@ pub(crate) struct Part<'a> {
     pub layout: &'a Layout,
 }
 
-/// Error of an access to a part of a packed value: the path names no part, or the value does not fit the part.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum LayoutError {
-    /// A name that is not a member of a structure.
-    #[error("{path}: no member `{member}` in {structure}; its members: {}", members.join(", "))]
-    Member {
-        /// The whole path.
-        path: String,
-        /// The unknown name.
-        member: String,
-        /// Name of the structure's type.
-        structure: String,
-        /// Names of the structure's members.
-        members: Vec<String>,
-    },
-    /// An index outside of an array.
-    #[error("{path}: index {index} outside of {lowest}..={highest}")]
-    Index {
-        /// The whole path.
-        path: String,
-        /// The index in the path.
-        index: String,
-        /// The lowest index.
-        lowest: usize,
-        /// The highest index.
-        highest: usize,
-    },
-    /// A path that continues with a member or an index where the type has none.
-    #[error("{path}: no `{rest}` in {found}")]
-    Leaf {
-        /// The whole path.
-        path: String,
-        /// Rest of the path, which names no part of the type `found`.
-        rest: String,
-        /// Description of the type that the path has reached before `rest`.
-        found: String,
-    },
-    /// A value that does not fit the bits of its part.
-    #[error("{path}: {value} does not fit {width} bits")]
-    Value {
-        /// The path.
-        path: String,
-        /// The value.
-        value: String,
-        /// Number of bits of the part.
-        width: usize,
-    },
-    /// A name that is not a value of an enumeration.
-    #[error("{path}: no value `{name}` in {found}; its values: {}", values.join(", "))]
-    Name {
-        /// The path.
-        path: String,
-        /// The unknown name.
-        name: String,
-        /// Description of the part's type.
-        found: String,
-        /// Names of that type's values; empty if the type is not an enumeration.
-        values: Vec<String>,
-    },
-    /// A list of values whose length differs from the length of the array that they are for.
-    #[error("{path}: {found} values for {found_in}")]
-    Length {
-        /// The path.
-        path: String,
-        /// Number of values in the list.
-        found: usize,
-        /// Description of the part's type.
-        found_in: String,
-    },
-}
-
 impl Layout {
     /// Number of bits of the type.
     #[must_use]
     pub fn width(&self) -> usize {
         self.width
-    }
-
-    /// Returns the type of the part at `path`.
-    ///
-    /// # Errors
-    /// When the path names no part.
-    pub fn part(&self, path: &str) -> Result<Self, LayoutError> {
-        self.find(path).map(|part| part.layout.clone())
     }
 
     /// Whether a value of this type is a two's complement number.
@@ -155,14 +74,19 @@ impl Layout {
 
     /// Finds a part by its path: names of members, each after a `.`, and indices in `[]`, as in `place.line` or
     /// `[1].half[2]`. The empty path is the whole type.
-    pub(crate) fn find(&self, path: &str) -> Result<Part<'_>, LayoutError> {
+    ///
+    /// # Errors
+    /// When the path names no part; the message lists the known names.
+    pub(crate) fn find(&self, path: &str) -> Result<Part<'_>, String> {
         let mut part = Part {
             low: 0,
             layout: self,
         };
         let mut rest = path;
         while !rest.is_empty() {
-            rest = part.enter(path, rest)?;
+            rest = part
+                .enter(rest)
+                .map_err(|error| format!("{path}: {error}"))?;
         }
         Ok(part)
     }
@@ -206,9 +130,8 @@ impl Layout {
 }
 
 impl Part<'_> {
-    /// Narrows this part to the member or element at the start of `rest`, and returns the remaining path. `path` is the
-    /// whole path, for errors.
-    fn enter<'p>(&mut self, path: &str, rest: &'p str) -> Result<&'p str, LayoutError> {
+    /// Narrows this part to the member or element at the start of `rest`, and returns the remaining path.
+    fn enter<'p>(&mut self, rest: &'p str) -> Result<&'p str, String> {
         match (&*self.layout.shape, rest.strip_prefix('[')) {
             (
                 Shape::Array {
@@ -219,17 +142,13 @@ impl Part<'_> {
                 Some(inside),
             ) => {
                 let (index, rest) = inside.split_once(']').unwrap_or((inside, ""));
-                let number = index.parse::<usize>().ok();
-                let number = number
-                    .and_then(|number| number.checked_sub(*lowest))
-                    .filter(|number| number < count)
-                    .ok_or_else(|| LayoutError::Index {
-                        path: path.to_owned(),
-                        index: index.to_owned(),
-                        lowest: *lowest,
-                        highest: lowest + count - 1,
-                    })?;
-                self.low += number * element.width;
+                let highest = lowest + count - 1;
+                let number = index
+                    .parse::<usize>()
+                    .ok()
+                    .filter(|number| (*lowest..=highest).contains(number))
+                    .ok_or_else(|| format!("index {index} outside of {lowest}..={highest}"))?;
+                self.low += (number - lowest) * element.width;
                 self.layout = element;
                 Ok(rest)
             }
@@ -239,11 +158,9 @@ impl Part<'_> {
                 let position = members
                     .iter()
                     .position(|(name, _)| name == member)
-                    .ok_or_else(|| LayoutError::Member {
-                        path: path.to_owned(),
-                        member: member.to_owned(),
-                        structure: name.clone(),
-                        members: members.iter().map(|(name, _)| name.clone()).collect(),
+                    .ok_or_else(|| {
+                        let members = self.layout.member_names().join(", ");
+                        format!("no member `{member}` in {name}; its members: {members}")
                     })?;
                 self.low += members[position + 1..]
                     .iter()
@@ -252,11 +169,7 @@ impl Part<'_> {
                 self.layout = &members[position].1;
                 Ok(rest)
             }
-            _ => Err(LayoutError::Leaf {
-                path: path.to_owned(),
-                rest: rest.to_owned(),
-                found: self.layout.describe(),
-            }),
+            _ => Err(format!("no `{rest}` in {}", self.layout.describe())),
         }
     }
 }

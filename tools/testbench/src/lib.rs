@@ -18,7 +18,7 @@ mod stream;
 
 pub use bits::Bits;
 pub use counters::Counters;
-pub use layout::{Layout, LayoutError};
+pub use layout::Layout;
 pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};

@@ -4,11 +4,11 @@ use std::fmt;
 
 use crate::Bits;
 use crate::bits::holds;
-use crate::layout::{Layout, LayoutError, Part};
+use crate::layout::{Layout, Part};
 
 /// A value of a packed type. A path names a part of it: for example `place.line`, `half[2]`, `[1][0]`, or `""` for the whole.
 ///
-/// Every method that takes a path panics when the type has no such part; the message is a [`LayoutError`] with the known names.
+/// Every method that takes a path panics when the type has no such part; the message lists the known names.
 #[derive(Clone)]
 pub struct Record {
     layout: Layout,
@@ -79,8 +79,8 @@ impl Record {
     /// # Panics
     /// When there is no such part, or the number does not fit.
     pub fn set(&mut self, path: &str, value: impl Into<i128>) {
-        let result = self.try_set(path, value.into());
-        result.unwrap_or_else(|error| panic!("{error}"));
+        let Part { low, layout } = self.find(path);
+        self.bits = with_number(self.bits, path, low, layout, value.into());
     }
 
     /// Sets an array to numbers, the lowest index first.
@@ -88,9 +88,20 @@ impl Record {
     /// # Panics
     /// When there is no such array, its length differs from the number of values, or a number does not fit.
     pub fn set_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
-        let values: Vec<i128> = values.into_iter().map(Into::into).collect();
-        let result = self.try_set_all(path, &values);
-        result.unwrap_or_else(|error| panic!("{error}"));
+        let Part { low, layout } = self.find(path);
+        let (mut bits, mut found) = (self.bits, 0);
+        for value in values {
+            if let Some((count, element)) = layout.elements()
+                && found < count
+            {
+                let low = low + found * element.width();
+                bits = with_number(bits, path, low, element, value.into());
+            }
+            found += 1;
+        }
+        let is_all = layout.elements().is_some_and(|(count, _)| count == found);
+        assert!(is_all, "{path}: {found} values for {}", layout.describe());
+        self.bits = bits;
     }
 
     /// Sets an enumeration to a value by its name.
@@ -98,8 +109,19 @@ impl Record {
     /// # Panics
     /// When there is no such part, or its type has no value of that name.
     pub fn set_name(&mut self, path: &str, name: &str) {
-        let result = self.try_set_name(path, name);
-        result.unwrap_or_else(|error| panic!("{error}"));
+        let Part { low, layout } = self.find(path);
+        let values = layout.values();
+        let value = values.and_then(|values| values.get(name)).copied();
+        let value = value.unwrap_or_else(|| {
+            let names: Vec<_> = values
+                .into_iter()
+                .flatten()
+                .map(|(name, _)| name.as_str())
+                .collect();
+            let (found, names) = (layout.describe(), names.join(", "));
+            panic!("{path}: no value `{name}` in {found}; its values: {names}")
+        });
+        self.bits = with_number(self.bits, path, low, layout, value.into());
     }
 
     /// Sets a part to bits, such as those of another record.
@@ -107,8 +129,13 @@ impl Record {
     /// # Panics
     /// When there is no such part, or the bits do not fit.
     pub fn set_bits(&mut self, path: &str, bits: impl Into<Bits>) {
-        let result = self.try_set_bits(path, bits.into());
-        result.unwrap_or_else(|error| panic!("{error}"));
+        let (part, bits) = (self.find(path), bits.into());
+        let (low, width) = (part.low, part.layout.width());
+        assert!(
+            bits.fits(width),
+            "{path}: {bits:?} does not fit {width} bits"
+        );
+        self.bits = self.bits.with_slice(low, width, bits);
     }
 
     /// Returns a part of at most 64 bits as an unsigned number.
@@ -169,72 +196,6 @@ impl Record {
         }
     }
 
-    /// Does the same as [`set`](Self::set), but returns errors.
-    ///
-    /// # Errors
-    /// In the cases in which `set` panics.
-    pub fn try_set(&mut self, path: &str, value: i128) -> Result<(), LayoutError> {
-        let part = self.layout.find(path)?;
-        self.bits = with_number(self.bits, path, part.low, part.layout, value)?;
-        Ok(())
-    }
-
-    /// Does the same as [`set_all`](Self::set_all), but returns errors.
-    ///
-    /// # Errors
-    /// In the cases in which `set_all` panics.
-    pub fn try_set_all(&mut self, path: &str, values: &[i128]) -> Result<(), LayoutError> {
-        let part = self.layout.find(path)?;
-        let elements = part.layout.elements();
-        let (_, element) = elements
-            .filter(|&(count, _)| count == values.len())
-            .ok_or_else(|| LayoutError::Length {
-                path: path.to_owned(),
-                found: values.len(),
-                found_in: part.layout.describe(),
-            })?;
-        let lows = (part.low..).step_by(element.width());
-        for (low, &value) in lows.zip(values) {
-            self.bits = with_number(self.bits, path, low, element, value)?;
-        }
-        Ok(())
-    }
-
-    /// Does the same as [`set_name`](Self::set_name), but returns errors.
-    ///
-    /// # Errors
-    /// In the cases in which `set_name` panics.
-    pub fn try_set_name(&mut self, path: &str, name: &str) -> Result<(), LayoutError> {
-        let part = self.layout.find(path)?;
-        let values = part.layout.values();
-        let value = values.and_then(|values| values.get(name)).copied();
-        let value = value.ok_or_else(|| LayoutError::Name {
-            path: path.to_owned(),
-            name: name.to_owned(),
-            found: part.layout.describe(),
-            values: values.map_or_else(Vec::new, |values| values.keys().cloned().collect()),
-        })?;
-        self.try_set(path, value.into())
-    }
-
-    /// Does the same as [`set_bits`](Self::set_bits), but returns errors.
-    ///
-    /// # Errors
-    /// In the cases in which `set_bits` panics.
-    pub fn try_set_bits(&mut self, path: &str, bits: Bits) -> Result<(), LayoutError> {
-        let part = self.layout.find(path)?;
-        let (low, width) = (part.low, part.layout.width());
-        if !bits.fits(width) {
-            return Err(LayoutError::Value {
-                path: path.to_owned(),
-                value: format!("{bits:?}"),
-                width,
-            });
-        }
-        self.bits = self.bits.with_slice(low, width, bits);
-        Ok(())
-    }
-
     fn find(&self, path: &str) -> Part<'_> {
         let part = self.layout.find(path);
         part.unwrap_or_else(|error| panic!("{error}"))
@@ -242,22 +203,11 @@ impl Record {
 }
 
 /// Returns `bits` with `value` in the part that starts at bit `low` and has the type `layout`. `path` is for errors only.
-fn with_number(
-    bits: Bits,
-    path: &str,
-    low: usize,
-    layout: &Layout,
-    value: i128,
-) -> Result<Bits, LayoutError> {
+fn with_number(bits: Bits, path: &str, low: usize, layout: &Layout, value: i128) -> Bits {
     let width = layout.width();
-    if !fits(value, width, layout.is_signed()) {
-        return Err(LayoutError::Value {
-            path: path.to_owned(),
-            value: value.to_string(),
-            width,
-        });
-    }
-    Ok(bits.with(low, width, value))
+    let fits = fits(value, width, layout.is_signed());
+    assert!(fits, "{path}: {value} does not fit {width} bits");
+    bits.with(low, width, value)
 }
 
 /// Whether a part of `width` bits can hold a number. A part that is not declared signed accepts signed and unsigned numbers.
@@ -280,7 +230,7 @@ impl fmt::Debug for Record {
 #[cfg(test)]
 mod tests {
     use super::Record;
-    use crate::layout::{Layout, LayoutError};
+    use crate::layout::Layout;
 
     fn layout() -> Layout {
         serde_json::from_str(
@@ -293,12 +243,9 @@ mod tests {
         .unwrap()
     }
 
-    fn error(path: &str, value: i128) -> String {
-        layout()
-            .record()
-            .try_set(path, value)
-            .unwrap_err()
-            .to_string()
+    fn error(change: impl FnOnce(&mut Record) + std::panic::UnwindSafe) -> String {
+        let panic = std::panic::catch_unwind(|| change(&mut layout().record()));
+        *panic.unwrap_err().downcast::<String>().unwrap()
     }
 
     #[test]
@@ -322,25 +269,28 @@ mod tests {
 
     #[test]
     fn errors_list_the_parts() {
+        for (path, value, expected) in [
+            (
+                "place.row",
+                1,
+                "no member `row` in place_t; its members: line, column",
+            ),
+            ("half[3]", 1, "index 3 outside of 0..=2"),
+            ("state.high", 1, "no `.high` in state_t"),
+            ("place.line", 64, "64 does not fit 6 bits"),
+            ("place.column", 1024, "1024 does not fit 11 bits"),
+        ] {
+            assert_eq!(
+                error(|record| record.set(path, value)),
+                format!("{path}: {expected}")
+            );
+        }
         assert_eq!(
-            error("place.row", 1),
-            "place.row: no member `row` in place_t; its members: line, column"
+            error(|record| record.set_name("state", "LOST")),
+            "state: no value `LOST` in state_t; its values: HIT, MISS"
         );
-        assert_eq!(error("half[3]", 1), "half[3]: index 3 outside of 0..=2");
-        assert_eq!(error("state.high", 1), "state.high: no `.high` in state_t");
         assert_eq!(
-            error("place.line", 64),
-            "place.line: 64 does not fit 6 bits"
-        );
-        assert_eq!(
-            error("place.column", 1024),
-            "place.column: 1024 does not fit 11 bits"
-        );
-        let names = layout().record().try_set_name("state", "LOST").unwrap_err();
-        assert!(matches!(names, LayoutError::Name { values, .. } if values == ["HIT", "MISS"]));
-        let long = layout().record().try_set_all("half", &[0; 4]).unwrap_err();
-        assert_eq!(
-            long.to_string(),
+            error(|record| record.set_all("half", [0; 4])),
             "half: 4 values for an array of 3, each a vector of 22 bits"
         );
     }
