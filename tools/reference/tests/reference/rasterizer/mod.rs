@@ -12,5 +12,4 @@ mod scenes;
 mod shade;
 mod smooth;
 mod special;
-mod vertices;
 mod visible;
