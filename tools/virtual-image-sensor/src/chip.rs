@@ -123,6 +123,8 @@ pub enum ChipFault {
     StuckData,
     /// The identity reads as this value.
     Identity(u16),
+    /// This register keeps its value when it is written.
+    Kept(u16),
 }
 
 /// Registers of a virtual image sensor, as their SCCB master sees them.
@@ -302,7 +304,9 @@ impl Device for Chip {
         };
         if resets && value & 0x80 != 0 {
             self.reset();
-        } else if !self.model.identity().contains(&register) {
+        } else if !self.model.identity().contains(&register)
+            && self.fault != Some(ChipFault::Kept(register))
+        {
             self.registers[usize::from(register)] = value;
         }
     }
