@@ -8,10 +8,6 @@ use glint_model::{SIZES, ScreenVertex};
 use glint_vectors::triangles::{SIZE, at, random_triangle, set_up};
 use glint_vectors::{Picture, Random};
 
-fn pixels([x, y]: [f64; 2]) -> [i64; 2] {
-    [x, y].map(|x| (x * 256.0).round() as i64)
-}
-
 /// Draws one triangle on a blank picture. Returns which pixels are covered, and the walker's counts.
 fn alone(vertices: [ScreenVertex; 3], size: (u32, u32)) -> (Vec<bool>, Coverage) {
     let mut picture = Picture::blank(size);
@@ -114,106 +110,6 @@ fn the_walker_does_not_look_through_the_box() {
             coverage.tested <= coverage.covered + extents,
             "{coverage:?} in {b:?}"
         );
-    }
-}
-
-/// Number of triangles that cover each pixel.
-fn counts(triangles: &[[ScreenVertex; 3]]) -> Vec<u32> {
-    let mut counts = vec![0; (SIZE.0 * SIZE.1) as usize];
-    for &triangle in triangles {
-        for (count, covered) in counts.iter_mut().zip(alone(triangle, SIZE).0) {
-            *count += u32::from(covered);
-        }
-    }
-    counts
-}
-
-/// Draws fans of triangles about a point, with the outer ring beyond the picture: every pixel is covered exactly once,
-/// for every winding and first vertex.
-#[test]
-fn fans_cover_every_pixel_once() {
-    let mut random = Random(4);
-    for round in 0..30 {
-        let grid = [1, 128, 256][round % 3];
-        // The centre of the fan is near the middle of the picture, sometimes on a pixel centre.
-        let centre = [256 * 160 + 128, 256 * 90 + 128].map(|x| x + random.integer(-8, 8) * grid);
-        let spokes = random.integer(3, 24);
-        let mut ray = |i: i64, low: f64, high: f64| {
-            let (sin, cos) = (std::f64::consts::TAU * i as f64 / spokes as f64).sin_cos();
-            let radius = random.real(low, high);
-            let offset = pixels([radius * cos, radius * sin]);
-            at([0, 1].map(|k| centre[k] + offset[k] / grid * grid))
-        };
-        let rim: Vec<_> = (0..spokes).map(|i| ray(i, 20.0, 80.0)).collect();
-        let ring: Vec<_> = (0..spokes).map(|i| ray(i, 1400.0, 1500.0)).collect();
-        let mut triangles = Vec::new();
-        for i in 0..rim.len() {
-            let next = (i + 1) % rim.len();
-            triangles.push([at(centre), rim[i], rim[next]]);
-            triangles.push([rim[i], ring[next], rim[next]]);
-            triangles.push([rim[i], ring[i], ring[next]]);
-        }
-        for triangle in &mut triangles {
-            triangle.rotate_left(random.integer(0, 2) as usize);
-            if random.coin() {
-                triangle.swap(0, 1);
-            }
-        }
-        assert!(
-            counts(&triangles).iter().all(|&count| count == 1),
-            "{triangles:?}"
-        );
-    }
-}
-
-/// The triangles of a grid with randomly moved inner vertices cover every pixel of its rectangle once, and no other pixel.
-#[test]
-fn shaken_grids_cover_their_rectangle_once() {
-    let mut random = Random(5);
-    for grid in [1i64, 64, 128, 256] {
-        const N: usize = 12;
-        let (x0, y0, step) = (256 * 20 + 128, 256 * 10 + 128, 256 * 13);
-        let mut place = [[at([0, 0]); N + 1]; N + 1];
-        for (j, row) in place.iter_mut().enumerate() {
-            for (i, vertex) in row.iter_mut().enumerate() {
-                let mut shake = |k: usize| {
-                    if (1..N).contains(&k) {
-                        random.integer(-800, 800) / grid * grid
-                    } else {
-                        0
-                    }
-                };
-                *vertex = at([
-                    x0 + i as i64 * step + shake(i),
-                    y0 + j as i64 * step + shake(j),
-                ]);
-            }
-        }
-        let mut triangles = Vec::new();
-        for j in 0..N {
-            for i in 0..N {
-                let [a, b, c, d] = [
-                    place[j][i],
-                    place[j][i + 1],
-                    place[j + 1][i + 1],
-                    place[j + 1][i],
-                ];
-                triangles.extend(if random.coin() {
-                    [[a, b, c], [a, d, c]]
-                } else {
-                    [[b, c, d], [b, d, a]]
-                });
-            }
-        }
-        let counts = counts(&triangles);
-        // The rectangle's sides run through pixel centres. Pixels on the left and top side are covered, pixels on the right
-        // and bottom side are not.
-        let side = N * 13;
-        for (pixel, &count) in counts.iter().enumerate() {
-            let (i, j) = (pixel % 320, pixel / 320);
-            let inside = (20..20 + side).contains(&i) && (10..10 + side).contains(&j);
-            assert_eq!(count, u32::from(inside), "pixel {i}, {j} of grid {grid}");
-        }
     }
 }
 
