@@ -2,24 +2,13 @@
 
 use glint_core::camera::{View, ViewError};
 use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
+pub(crate) use glint_vectors::math::{cross, dot, normalised};
 
 /// A point or direction in world or camera coordinates.
 pub type Vector = [f64; 3];
 
-pub(crate) fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
 pub(crate) fn subtract(a: Vector, b: Vector) -> Vector {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 pub(crate) fn add_scaled(a: Vector, b: Vector, factor: f64) -> Vector {
@@ -32,12 +21,6 @@ pub(crate) fn add_scaled(a: Vector, b: Vector, factor: f64) -> Vector {
 
 pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
-}
-
-/// Returns `a` scaled to length 1. `a` must not be zero.
-pub(crate) fn normalised(a: Vector) -> Vector {
-    let length = length(a);
-    a.map(|c| c / length)
 }
 
 /// A ray: the points origin + t·direction for all t ≥ 0. The number t is the parameter of a point.

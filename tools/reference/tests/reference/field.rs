@@ -5,6 +5,7 @@
 
 use glint_reference::camera::{Ray, Vector};
 use glint_reference::raymarch::{Face, Field, Hit, Plane, Sphere};
+use glint_vectors::math::dot;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -149,11 +150,7 @@ fn draw(random: &mut Pcg64Mcg, kind: Kind, spacing: f64) -> Ray {
 }
 
 fn length(a: Vector) -> f64 {
-    a.iter().map(|c| c * c).sum::<f64>().sqrt()
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
+    dot(a, a).sqrt()
 }
 
 /// Smallest parameter of a ray at which a hit counts.

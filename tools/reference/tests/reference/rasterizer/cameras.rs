@@ -1,38 +1,27 @@
-//! Conversion of cameras in f64 to views, and random cameras.
+//! Random cameras.
 
 use glint_core::camera::View;
-use glint_core::fixed::{Q2_23, Q32_32, U4_28, U8_28};
 use glint_reference::camera::{Camera, Vector};
+use glint_vectors::math::{cross, normalised};
 use rand::RngExt;
 use rand_pcg::Pcg64;
 
 /// Converts a camera to a view. Each number is rounded to the nearest number of its fixed-point format.
 pub fn view(camera: &Camera) -> View {
-    let basis = |row: Vector| row.map(Q2_23::from_num);
-    let made = View::new_checked(
-        camera.eye.map(Q32_32::from_num),
-        basis(camera.u),
-        basis(camera.v),
-        basis(camera.n),
-        U8_28::from_num(camera.half_width),
-        U4_28::from_num(camera.near),
-    );
-    match made {
-        Ok(view) => view,
-        Err(error) => panic!("{camera:?}: {error}"),
-    }
+    let view = camera.view();
+    view.unwrap_or_else(|error| panic!("{camera:?}: {error}"))
 }
 
 /// Returns a camera at `eye` that looks at `target`, turned by `roll` radians about its line of sight.
 pub fn looking_at(eye: Vector, target: Vector, roll: f64, half_width: f64, near: f64) -> Camera {
-    let n = unit(minus(target, eye));
+    let n = normalised(minus(target, eye));
     // An arbitrary direction that is not parallel to n.
     let aside = if n[2].abs() < 0.9 {
         [0.0, 0.0, 1.0]
     } else {
         [1.0, 0.0, 0.0]
     };
-    let u0 = unit(cross(n, aside));
+    let u0 = normalised(cross(n, aside));
     let v0 = cross(n, u0);
     let (sin, cos) = roll.sin_cos();
     let rolled = |a: f64, b: f64| [0, 1, 2].map(|i| a * u0[i] + b * v0[i]);
@@ -78,17 +67,4 @@ pub fn log_range(random: &mut Pcg64, low: f64, high: f64) -> f64 {
 
 pub fn minus(a: Vector, b: Vector) -> Vector {
     [0, 1, 2].map(|i| a[i] - b[i])
-}
-
-pub fn cross(a: Vector, b: Vector) -> Vector {
-    [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
-}
-
-pub fn dot(a: Vector, b: Vector) -> f64 {
-    (0..3).map(|i| a[i] * b[i]).sum()
-}
-
-pub fn unit(a: Vector) -> Vector {
-    let length = dot(a, a).sqrt();
-    a.map(|x| x / length)
 }

@@ -3,8 +3,9 @@
 
 use glint_reference::camera::Camera;
 use glint_reference::triangle::surface::{Tolerance, Visible, visible_surfaces};
+use glint_vectors::math::{cross, dot};
 
-use super::cameras::{cross, dot, minus, view};
+use super::cameras::{minus, view};
 use super::coverage::snap_limit;
 use super::renderer::Renderer;
 use super::scenes::{Case, ONE, random_case};
