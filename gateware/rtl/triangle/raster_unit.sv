@@ -16,8 +16,8 @@
 // until the raymarcher raises `done`, and `next` tells the raymarcher to continue with the next band. `compose` selects how the
 // luminances of two eyes become colours, see band_flush.
 //
-// With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of the lists:
-// a piece after triangles waits until their last group is taken, about 30 clocks, and so does a triangle after pieces.
+// With LINES, a descriptor may be a piece of a line (records_pkg::stored_piece_t). Triangles and pieces are drawn in the order of
+// the lists: a piece after triangles waits until their last group is taken, about 30 clocks, and so does a triangle after pieces.
 //
 // Without TRIANGLES, list_reader and triangle_raster are not built: frames have fields only. `flags.first` and `flags.second`
 // must then be low, and the unit reads no memory.

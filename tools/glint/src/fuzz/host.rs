@@ -123,7 +123,7 @@ pub fn run(input: &[u8]) -> bool {
     outcome.is_ok()
 }
 
-/// The conversation with a number. What it returns or calls back with is not more than the board has sent, or than was requested.
+/// The conversation with a number. Its results and callbacks contain at most what the board has sent or what was requested.
 fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn std::error::Error>> {
     let quiet = &mut |_, _| {};
     if kind == 0 {

@@ -160,7 +160,7 @@ pub struct Quality {
     pub rest: f64,
     /// Delay in ms behind a steady motion.
     pub lag: f64,
-    /// RMS in degrees of the difference to the true place during reaches.
+    /// RMS in degrees of the difference to the true position during reaches.
     pub tracking: f64,
     /// The largest of these differences in degrees.
     pub largest: f64,

@@ -100,7 +100,7 @@ fn a_claim_needs_a_link_to_the_report_in_its_block() {
 fn every_claim_is_linked_to_the_report() {
     let mut claims = Vec::new();
     for (path, page) in pages_of_users() {
-        // The log of changes states what a change gained when it was made.
+        // The changelog may state figures as they were at the time of a change.
         if is_report(&path) || path == Path::new("CHANGELOG.md") {
             continue;
         }

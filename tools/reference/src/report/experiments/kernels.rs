@@ -47,7 +47,7 @@ pub struct Row {
     pub tools: String,
 }
 
-/// Name of a family, and the measurement of its trials, which takes the thinning of the inputs.
+/// Name of a family, and the function that measures its trials, whose argument is the thinning of the inputs.
 type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 
 /// Measures all configurations, or those of one family. `thinning` is 1 for all inputs of a kernel, and n for every n-th. `cycles` is the

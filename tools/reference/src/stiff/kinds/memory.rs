@@ -23,7 +23,7 @@ struct Memory {
 enum Step {
     /// Keeps this number of bytes.
     Keep(usize),
-    /// Releases the region of a step before, by the number of regions kept until then.
+    /// Releases the region of an earlier step, which is given by the number of regions at that time.
     Release(usize),
     /// Moves all regions together.
     CloseGaps,

@@ -87,7 +87,7 @@ pub struct Row {
     pub path: String,
     /// Time since the motion began, in s.
     pub seconds: f64,
-    /// Turn about the vertical since the motion began that is not the sensor's, in degrees.
+    /// Error of the rotation about the vertical since the start of the motion, in degrees.
     pub heading: f64,
     /// Angle between the vertical and the firmware's, in degrees.
     pub inclination: f64,
