@@ -1,4 +1,4 @@
-//! The objects of the scene as they are drawn: meshes with places, and copies of meshes with turned normals.
+//! The objects of the scene as drawn: meshes with places, and copies of meshes with turned normals.
 
 use core::{ptr, slice};
 
@@ -15,7 +15,7 @@ use crate::arena::Arena;
 /// Number of normals that are turned between two calls of `progress` in [`Objects::update`].
 const NORMALS_A_CALL: u32 = 8;
 
-/// The objects as they are drawn. Placements, and copies of meshes with turned normals, are made when an object changes, not for each
+/// The objects as drawn. Placements, and copies of meshes with turned normals, are made when an object changes, not for each
 /// frame.
 pub struct Objects {
     /// The mesh of each object.

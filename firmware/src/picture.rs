@@ -77,7 +77,7 @@ pub struct Picture {
     drawn: Option<Result<Drawn, DrawError>>,
     /// Whether the next frame needs depth codes in memory. The gateware writes them on request only.
     pub wants_depth: bool,
-    /// The mark of the hand's place, if it is drawn.
+    /// The mark of the hand's position, if it is drawn.
     pub mark: Option<Mark>,
 }
 

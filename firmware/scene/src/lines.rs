@@ -59,7 +59,7 @@ impl<'l> Line<'l> {
     /// Reads a line.
     ///
     /// # Errors
-    /// The line is no command that sets the picture.
+    /// The line is not a command that sets the picture.
     pub fn parse(text: &'l str) -> Result<Self, Reason<'l>> {
         let command = Command::parse(text).map_err(Reason::Parse)?;
         let command = command.filter(|command| command.effect() == Effect::Picture);

@@ -211,7 +211,7 @@ fn content<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> 
 /// Executes the lines of the scene `name` on the scene at start. What moves the camera starts when the lines before it are valid.
 ///
 /// # Errors
-/// A line is no command of a scene or fails, a mesh is missing, or the gateware lacks a block.
+/// A line is not a command of a scene or fails, a mesh is missing, or the gateware lacks a block.
 fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> Outcome<'l> {
     let backend = machine.scene.backend;
     machine.scene.reset()?;

@@ -9,7 +9,7 @@ pub fn commands() -> Vec<&'static Row> {
     rows
 }
 
-/// The keys that are no console commands.
+/// The keys that are not console commands.
 pub const OTHERS: [&str; 7] = [
     "title", "steer", "scenes", "depth", "lanes", "clock", "budget",
 ];

@@ -16,7 +16,7 @@ pub enum Effect {
 }
 
 impl Command<'_> {
-    /// What the command does to the picture.
+    /// Effect of the command on the picture.
     pub const fn effect(&self) -> Effect {
         match self {
             Self::Set(setting) => setting.effect(),
