@@ -34,10 +34,4 @@ impl Block {
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
-
-    /// The blocks that these bits stand for.
-    pub fn of_bits(bits: u32) -> impl Iterator<Item = Self> {
-        let all = Self::ALL.into_iter();
-        all.filter(move |block| block.bit() & bits != 0)
-    }
 }

@@ -9,7 +9,7 @@ use crate::colour::Rgb565;
 /// Bytes of a word of memory. Every record begins at a multiple of it, or of its own size if that is smaller.
 pub const WORD: usize = 16;
 
-/// The mark of a piece of a line in the place of a descriptor.
+/// The mark of a piece of a line that is stored as a descriptor.
 pub const PIECE_MARK: u64 = 3;
 
 /// An optional attribute of a mesh's vertices. The discriminant is the number of its bit in [`MeshHeader::attributes`].

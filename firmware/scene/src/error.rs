@@ -23,7 +23,7 @@ pub enum SettingError<'l> {
     StereoOfWireframe,
     /// Edges were requested while no mesh is shown alone.
     EdgesOfOthers,
-    /// `fit` was requested while neither a mesh alone nor objects are shown.
+    /// `fit` was requested while neither a single mesh nor objects are shown.
     FitOfOthers,
     /// No camera shows the whole of the meshes.
     Fit(FramingError),

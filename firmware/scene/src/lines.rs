@@ -20,7 +20,7 @@ pub struct LineError<'a> {
 /// Reason why a line of a scene is refused.
 #[derive(Clone, Copy, Debug)]
 pub enum Reason<'a> {
-    /// It is not a command.
+    /// The line is not a command.
     Parse(ParseError<'a>),
     /// The line is blank, or a command that does not set the picture.
     Effect,
@@ -42,16 +42,16 @@ impl fmt::Display for Reason<'_> {
     }
 }
 
-/// What a line of a scene does.
+/// Effect of a line of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Line<'l> {
-    /// It sets an option.
+    /// Sets an option.
     Option(Setting<'l>),
-    /// It shows a mesh. A scene with the name of the mesh is not meant.
+    /// Shows a mesh, even if a scene has the same name.
     Mesh(&'l str),
-    /// It shows the wireframe.
+    /// Shows the wireframe.
     Wireframe,
-    /// It sets or starts what moves the camera or the wireframe.
+    /// Sets or starts the motion of the camera or the wireframe.
     Motion(Command<'l>),
 }
 
@@ -96,7 +96,7 @@ impl<'l> Line<'l> {
         }
     }
 
-    /// Changes `scene` as the line says, except by motion.
+    /// Applies the line to `scene`, unless it is a motion.
     ///
     /// # Errors
     /// As [`Scene::apply`].

@@ -30,7 +30,7 @@ pub const CUBE: &str = "cube";
 /// The name of a mesh.
 pub type Name = String<MAX_NAME>;
 
-/// What a scene asks of its board.
+/// Queries of a scene to its board.
 pub trait Board {
     /// Whether the board draws and shows pictures of this size.
     fn has_size(&self, size: Size) -> bool;
@@ -38,14 +38,14 @@ pub trait Board {
     /// Whether the board has the gateware that draws.
     fn has_engine(&self) -> bool;
 
-    /// Whether there is a mesh with this name, which is made if need be.
+    /// Whether there is a mesh with this name. The mesh is created if necessary.
     fn has_mesh(&mut self, name: &str) -> bool;
 
-    /// The mesh with this name, if [`has_mesh`](Self::has_mesh) has said that there is one.
+    /// The mesh with this name, for which [`has_mesh`](Self::has_mesh) has returned true.
     fn mesh(&self, name: &str) -> Option<Mesh<'_>>;
 }
 
-/// A board that has all that a scene can ask for. Its meshes are read when the scene is drawn.
+/// A board without limits. Its meshes are read when the scene is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyBoard;
 
@@ -101,7 +101,7 @@ pub struct PlacedMesh {
     pub place: Place,
 }
 
-/// Which of its subjects a scene shows.
+/// The subject that a scene shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// The mesh, the field, or both.
@@ -112,7 +112,7 @@ pub enum Kind {
     Wireframe(Motion),
 }
 
-/// What a scene shows. `Display` is its name: that of a mesh, a field, or both.
+/// Content of a scene. `Display` is its name: that of a mesh, a field, or both.
 #[derive(Clone, Copy, Debug)]
 pub enum Shown<'s> {
     /// The mesh with this name.
@@ -183,7 +183,7 @@ pub struct Scene {
     pub size: Size,
     /// The options of all meshes.
     pub options: MeshOptions,
-    /// What draws the picture.
+    /// Backend that draws the picture.
     pub backend: Backend,
     /// Whether text is written over the picture.
     pub overlay: bool,
@@ -216,7 +216,7 @@ impl Scene {
         })
     }
 
-    /// Sets everything except backend and overlay as at start.
+    /// Resets everything except backend and overlay to the values at start.
     ///
     /// # Errors
     /// [`ViewError`] for the camera at start.
@@ -273,7 +273,7 @@ impl Scene {
             Setting::FieldOfView { angle } => self.view = self.view.with_field_of_view(angle)?,
             Setting::Orthographic { width } => self.view = self.view.with_width(width)?,
             Setting::Zoom { factor } => {
-                // Rounded down. A factor that is too small makes a half width out of range.
+                // Rounded down. With too small a factor the half width is out of range.
                 let half_width = self.view.half_width().checked_div(factor);
                 let half_width = half_width.unwrap_or(U8_28::lit("256"));
                 self.view = self.view.with_half_width(half_width)?;
@@ -446,7 +446,7 @@ impl Scene {
         OVERLAY.is_built && self.overlay
     }
 
-    /// What the scene shows.
+    /// Content of the scene.
     pub fn shown(&self) -> Shown<'_> {
         if let Some(motion) = self.wireframe() {
             return Shown::Wireframe(motion);
@@ -473,7 +473,7 @@ impl Scene {
         }
     }
 
-    /// The object that the entry of the list is with its mesh.
+    /// The object of an entry of the list and its mesh.
     pub fn object<'a>(&self, PlacedMesh { place, .. }: &PlacedMesh, mesh: Mesh<'a>) -> Object<'a> {
         Object {
             subject: self.options.subject(mesh),

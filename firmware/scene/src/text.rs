@@ -170,7 +170,7 @@ impl Scene {
                 let from = from.filter(|from| from.sphere == self.sphere);
                 self.put(name, from, out, |scene| scene.view)
             }
-            // The view has them.
+            // The view contains them.
             OptionName::Look
             | OptionName::LookAt
             | OptionName::FieldOfView
