@@ -34,4 +34,10 @@ impl Block {
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
+
+    /// The blocks of these bits.
+    pub fn of_bits(bits: u32) -> impl Iterator<Item = Self> {
+        let all = Self::ALL.into_iter();
+        all.filter(move |block| block.bit() & bits != 0)
+    }
 }
