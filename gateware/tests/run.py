@@ -41,7 +41,7 @@ import ulx3s  # noqa: E402
 import urbana  # noqa: E402
 from glint_soc import packages  # noqa: E402
 from modules import MODULES  # noqa: E402
-from tools import NEXTPNR, YOSYS, ToolError, prepare  # noqa: E402
+from tools import ToolError  # noqa: E402
 from verilate import module as verilated_module  # noqa: E402
 from verilate.programs import run_verilator  # noqa: E402
 
@@ -87,7 +87,6 @@ def run_all(checks):
 
 def test():
     """Runs all checks and returns the number of those that failed."""
-    prepare(YOSYS)
     failures = run_all(module_checks())
     others = {
         **{f"descriptions: {name}": action for name, action in registers.CHECKS.items()},
@@ -123,7 +122,6 @@ def run_lint(module, parameters):
 def print_measured(measure, name):
     """Prints a measurement of the block `name` as a line of JSON. Returns whether the measurement failed."""
     try:
-        prepare(YOSYS, NEXTPNR)
         print(json.dumps({"name": name, **measure(name)}), flush=True)
     except ToolError as error:
         print(error)

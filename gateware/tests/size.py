@@ -1,7 +1,6 @@
 """Resources of a module, or of the SoC, on a 7-series FPGA, by Yosys: no place and route, no vendor tool."""
 
 import json
-import os
 import re
 from importlib.metadata import version
 
@@ -93,7 +92,7 @@ def _measure(top, sources, name, ignored=_MARKS | _PADS, cwd=BUILD, parameters=N
     for result in (cells, mapped, path, log):
         result.unlink(missing_ok=True)
     script = set_parameters(top, parameters or {}) + _SCRIPT.format(
-        top=top, loads=CONTROL_PIN_LOADS, folder=os.path.relpath(folder, cwd), reads=os.path.relpath(TESTS / "lutram_reads.v", cwd))
+        top=top, loads=CONTROL_PIN_LOADS, folder=folder, reads=TESTS / "lutram_reads.v")
     run_yosys(script, sources, cwd, log)
     stat = json.loads(cells.read_text())
     resources = sort_cells(stat["design"]["num_cells_by_type"], ignored)
