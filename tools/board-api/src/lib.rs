@@ -6,10 +6,12 @@
 //! | [`console`], [`transfer`] | protocols of the firmware on the line: commands, uploads, downloads |
 //! | [`simulation`] | what simulated boards have in common, and the line to one |
 //! | [`pace`] | holds a simulated board back to real time |
+//! | [`built`] | finds the files that `cargo xtask` builds |
 //!
 //! The boards themselves are in other crates.
 #![forbid(unsafe_code)]
 
+pub mod built;
 pub mod console;
 pub mod line;
 pub mod pace;

@@ -1,9 +1,9 @@
 //! Prints the speed of the emulated board: `cargo run --release -p emulated-board --example speed [FIRMWARE]`.
 
-use std::path::Path;
 use std::time::Instant;
 
 use emulated_board::EmulatedBoard;
+use glint_board_api::built;
 
 /// Time-out of a command in cycles.
 const LIMIT: u64 = 1_000_000_000;
@@ -11,8 +11,10 @@ const LIMIT: u64 = 1_000_000_000;
 const PROMPT: &str = "glint> ";
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/firmware/glint.bin");
-    let path = std::env::args_os().nth(1).map_or(built, Into::into);
+    let path = match std::env::args_os().nth(1) {
+        Some(path) => path.into(),
+        None => built::find("firmware/glint.bin", "cargo xtask firmware")?,
+    };
     let mut board = EmulatedBoard::fast(&std::fs::read(path)?)?;
     println!("{}", board.read_until(PROMPT, LIMIT)?);
     for line in ["info", "model icosphere:6", "render", "bench"] {

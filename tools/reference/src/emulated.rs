@@ -21,7 +21,7 @@ static FIRMWARE: LazyLock<Result<Vec<u8>, String>> =
 pub fn firmware() -> Result<&'static [u8]> {
     match &*FIRMWARE {
         Ok(firmware) => Ok(firmware),
-        Err(error) => bail!("{error}: run `cargo xtask firmware`"),
+        Err(error) => bail!("{error}"),
     }
 }
 

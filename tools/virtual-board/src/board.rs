@@ -1,8 +1,10 @@
 //! The virtual board: clock, pins, devices, and the back door to DDR3.
 
+use std::env;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use glint_board_api::built;
 use litex_pac::memories::MAIN_RAM;
 use litex_pac::scanout::Scanout;
 use virtual_flash::{Flash, Pins};
@@ -55,7 +57,7 @@ pub struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// Sets the library to load [default: that in the folder which the environment variable `GLINT_VIRTUAL_BOARD` names, or without
-    /// the variable the one that `cargo xtask gateware` built in this checkout].
+    /// the variable the one of `cargo xtask gateware`, which [`built::find`] finds].
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.library = Some(path.into());
@@ -81,13 +83,17 @@ impl<'a> Builder<'a> {
     /// # Errors
     /// The library is missing or has another version, the firmware exceeds main RAM, or waveforms cannot be written.
     pub fn build(self) -> Result<VirtualBoard, Error> {
-        let (name, option) = match self.trace {
-            None => ("libglint_soc.so", ""),
-            Some(_) => ("libglint_soc_trace.so", " --waveforms"),
+        let (name, command) = match self.trace {
+            None => ("libglint_soc.so", "cargo xtask gateware"),
+            Some(_) => ("libglint_soc_trace.so", "cargo xtask gateware --waveforms"),
         };
-        let path = self.library.unwrap_or_else(|| built_libraries().join(name));
+        let path = match (self.library, env::var_os("GLINT_VIRTUAL_BOARD")) {
+            (Some(path), _) => path,
+            (None, Some(folder)) => Path::new(&folder).join(name),
+            (None, None) => built::find(&format!("gateware/virtual/{name}"), command)?,
+        };
         if !path.is_file() {
-            return Err(Error::LibraryMissing { path, option });
+            return Err(Error::LibraryMissing { path, command });
         }
         let mut soc = Soc::load(&path)?;
         if let Some(path) = self.trace
@@ -119,12 +125,6 @@ impl<'a> Builder<'a> {
         }
         Ok(board)
     }
-}
-
-/// Returns the folder of the libraries that are loaded by default.
-fn built_libraries() -> PathBuf {
-    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual");
-    std::env::var_os("GLINT_VIRTUAL_BOARD").map_or_else(built, PathBuf::from)
 }
 
 /// A virtual board: the SoC, and the devices on its pins.

@@ -2,18 +2,22 @@
 
 use std::path::PathBuf;
 
+use glint_board_api::built::NotBuilt;
 use glint_testbench::LoadError;
 
 /// An error of a virtual board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
+    /// The library has not been built.
+    #[error(transparent)]
+    NotBuilt(#[from] NotBuilt),
     /// The library does not exist.
-    #[error("the virtual board's library {} is missing; run `cargo xtask gateware{option}`", .path.display())]
+    #[error("the virtual board's library {} is missing; run `{command}`", .path.display())]
     LibraryMissing {
         /// Path of the library.
         path: PathBuf,
-        /// Option of `cargo xtask gateware` with which the command builds the library.
-        option: &'static str,
+        /// The command that builds the library.
+        command: &'static str,
     },
     /// The library cannot be used.
     #[error("the virtual board's library {0}; run `cargo xtask gateware`")]

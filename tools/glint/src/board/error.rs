@@ -1,5 +1,7 @@
 //! Errors of boards that are opened or started.
 
+use glint_board_api::built::NotBuilt;
+
 /// An error while a board is opened or started.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
@@ -40,17 +42,12 @@ pub enum OpenError {
         /// The ports of this host.
         found: String,
     },
-    /// The BIOS of the virtual board, which the emulated board starts with, cannot be read.
-    #[error("the BIOS {path} cannot be read ({source}); run `cargo xtask gateware`")]
-    Bios {
-        /// Path of the file.
-        path: String,
-        /// Error of the operating system.
-        source: std::io::Error,
-    },
-    /// The firmware file of a simulated board cannot be read.
-    #[error("the firmware {path} cannot be read ({source}); run `cargo xtask firmware`")]
-    Firmware {
+    /// The BIOS or the firmware of a simulated board has not been built.
+    #[error(transparent)]
+    NotBuilt(#[from] NotBuilt),
+    /// The BIOS or the firmware of a simulated board cannot be read.
+    #[error("{path}: cannot be read: {source}")]
+    Read {
         /// Path of the file.
         path: String,
         /// Error of the operating system.

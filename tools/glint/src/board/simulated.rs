@@ -2,7 +2,8 @@
 
 use super::error::OpenError;
 use emulated_board::EmulatedBoard;
-use std::path::{Path, PathBuf};
+use glint_board_api::built;
+use std::path::Path;
 use virtual_board::{Start, VirtualBoard};
 
 /// A simulated board with a serial line and direct access to its memory; by default the verilated one.
@@ -39,23 +40,24 @@ pub fn emulated(firmware: &[u8]) -> Result<SimulatedBoard<EmulatedBoard>, OpenEr
 /// # Errors
 /// The gateware is not built.
 pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
-    let built = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/gateware/virtual");
-    let path = built.join("software/bios/bios.bin");
-    let bios = std::fs::read(&path).map_err(|source| OpenError::Bios {
-        path: path.display().to_string(),
-        source,
-    })?;
+    let bios = "gateware/virtual/software/bios/bios.bin";
+    let bios = read(&built::find(bios, "cargo xtask gateware")?)?;
     Ok(SimulatedBoard::new(EmulatedBoard::full(&bios)))
 }
 
-/// Reads the firmware file at `path`, or without a path the file that `cargo xtask firmware` has built in this checkout.
+/// Reads the firmware file at `path`, or without a path the file of `cargo xtask firmware`, which [`built::find`] finds.
 ///
 /// # Errors
-/// [`OpenError::Firmware`] for a file that cannot be read.
+/// The firmware is not built, or the file cannot be read.
 pub fn built_firmware(path: Option<&Path>) -> Result<Vec<u8>, OpenError> {
-    let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/firmware/glint.bin");
-    let path: PathBuf = path.map_or_else(built, Path::to_owned);
-    std::fs::read(&path).map_err(|source| OpenError::Firmware {
+    match path {
+        Some(path) => read(path),
+        None => read(&built::find("firmware/glint.bin", "cargo xtask firmware")?),
+    }
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, OpenError> {
+    std::fs::read(path).map_err(|source| OpenError::Read {
         path: path.display().to_string(),
         source,
     })

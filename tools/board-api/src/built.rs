@@ -1,0 +1,69 @@
+//! Files that `cargo xtask` builds, as programs find them at run time.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+/// Environment variable with the path of the clone whose builds programs use.
+pub const HOME: &str = "GLINT_HOME";
+
+/// No build of a file was found.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "{file}: found in none of {searched}; run `{command}` in a clone of Glint, and set {HOME} to the path of the clone"
+)]
+pub struct NotBuilt {
+    /// The file.
+    pub file: PathBuf,
+    /// The folders that were searched.
+    pub searched: String,
+    /// The command that builds the file.
+    pub command: &'static str,
+}
+
+/// Finds a file of the folder `target` of a clone, which `command` builds. The clone is the one that the variable `GLINT_HOME` names. If the
+/// variable is not set, it is the first folder with the file among those above the running program, then the current folder and those above
+/// it.
+///
+/// # Errors
+/// No folder has the file.
+pub fn find(file: &str, command: &'static str) -> Result<PathBuf, NotBuilt> {
+    let file = Path::new("target").join(file);
+    if let Some(home) = env::var_os(HOME) {
+        return find_in(&[Path::new(&home)], file, command);
+    }
+    let starts = [env::current_exe(), env::current_dir()];
+    let folders = starts.iter().flatten().flat_map(|start| start.ancestors());
+    find_in(&folders.collect::<Vec<_>>(), file, command)
+}
+
+fn find_in(folders: &[&Path], file: PathBuf, command: &'static str) -> Result<PathBuf, NotBuilt> {
+    let mut paths = folders.iter().map(|folder| folder.join(&file));
+    paths.find(|path| path.exists()).ok_or_else(|| {
+        let searched = folders.iter().map(|folder| folder.display().to_string());
+        NotBuilt {
+            searched: searched.collect::<Vec<_>>().join(", "),
+            file,
+            command,
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_folder_with_the_file_counts() {
+        let [here, nowhere] = [env!("CARGO_MANIFEST_DIR"), "/nowhere"].map(Path::new);
+        let find =
+            |folders: &[&Path]| find_in(folders, "Cargo.toml".into(), "cargo xtask firmware");
+        assert_eq!(find(&[nowhere, here]).unwrap(), here.join("Cargo.toml"));
+        assert_eq!(
+            find(&[nowhere, Path::new("/else")])
+                .unwrap_err()
+                .to_string(),
+            "Cargo.toml: found in none of /nowhere, /else; run `cargo xtask firmware` in a clone of Glint, and set GLINT_HOME to the \
+             path of the clone"
+        );
+    }
+}
