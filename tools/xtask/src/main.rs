@@ -89,7 +89,7 @@ enum Task {
         #[arg(long, value_name = "MHZ")]
         clock: Option<String>,
     },
-    /// Check the sources: no circular dependencies between modules, no `#[path]`, no file above 500 lines
+    /// Check the sources: no circular dependencies between modules, no `#[path]`
     Modules,
     /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
     Resources {

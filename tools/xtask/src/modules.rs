@@ -1,92 +1,49 @@
 //! `cargo xtask modules`: the structure of the sources.
 //!
-//! The command checks three rules: no circle of modules in a crate, no `#[path]`, no hand-written source file above
-//! [`files::MOST_LINES`] lines.
+//! The command checks two rules: no circle of modules in a crate, and no `#[path]`.
 //!
-//! **Circles.** An arrow from module A to module B counts when A names an item that B defines. B is the module that defines the
-//! item, not one that re-exports it. These do not count:
-//! - a re-export (`pub use child::X`) of an item from below;
-//! - the name of a module alone (`mod child;`, `use crate::child;`);
-//! - code under `#[cfg(test)]`.
+//! An arrow from module A to module B counts when A names an item that B defines. B is the module that defines the item, not one that
+//! re-exports it. These do not count: a re-export (`pub use child::X`) of an item from below, the name of a module alone, code under
+//! `#[cfg(test)]`, method calls. A module is a file; an inline module belongs to the file around it. Each target of a package is a crate of
+//! its own. The check reads tokens: a path counts wherever it stands, also in the arguments of a macro.
 //!
-//! A module is a file: an inline module belongs to the file around it. Libraries, binaries, tests and examples are checked, each as
-//! a crate of its own. A method call makes no arrow; the path to a type does. `use path::*` makes arrows for the used names.
-//!
-//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile. This check uses
-//! `syn`, which is compiled for the derive macros in any case: the names that it finds are enough here.
+//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile.
 
-mod arrows;
-mod circles;
-mod files;
-mod tree;
-
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::slice;
+use std::str::FromStr;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
+use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use serde::Deserialize;
 
 use crate::paths;
-use arrows::Arrows;
-use tree::Crate;
 
-/// Checks the three rules for the whole workspace.
+/// Checks the rules for the whole workspace.
 ///
 /// # Errors
 /// A rule is violated, or a source cannot be read. The error lists every violation on a line of its own.
 pub fn check() -> Result<()> {
-    let mut faults = Vec::new();
-    let mut path_attributes = BTreeSet::new();
+    let mut faults = BTreeSet::new();
     for target in targets()? {
-        let tree = Crate::load(&target.src_path, &|path| fs::read_to_string(path).ok())
+        let sources = Crate::load(&target.src_path, &|path| fs::read_to_string(path).ok())
             .with_context(|| format!("reading the modules of {}", target.name))?;
-        for circle in circles(&tree) {
-            faults.push(format!("{} ({}): {circle}", target.name, target.kind[0]));
-        }
-        path_attributes.extend(tree.path_attributes);
+        faults.extend(sources.path_attributes.iter().cloned());
+        let arrows = sources.circles();
+        faults.extend(
+            arrows
+                .iter()
+                .map(|arrow| format!("{}: in a circle: {arrow}", target.name)),
+        );
     }
-    let count = faults.len();
-    let root = format!("{}/", paths::root().display());
-    faults.extend(path_attributes.iter().map(|attribute| {
-        let attribute = attribute.strip_prefix(&root).unwrap_or(attribute);
-        format!("{attribute}: `#[path]`")
-    }));
-    let too_long = files::too_long(&paths::root())?;
-    let summary = format!(
-        "{count} circles of modules, {} `#[path]` attributes, {} files of more than {} lines",
-        path_attributes.len(),
-        too_long.len(),
-        files::MOST_LINES
-    );
-    faults.extend(too_long);
     if !faults.is_empty() {
-        bail!("{summary}:\n{}", faults.join("\n"));
+        let faults: Vec<_> = faults.into_iter().collect();
+        bail!("circles of modules, or `#[path]`:\n{}", faults.join("\n"));
     }
     Ok(())
-}
-
-/// Returns the circles of one crate as chains such as `a → b (B) → a (A)`: module `a` uses the item `B` of module `b`, which uses
-/// the item `A` of module `a`.
-fn circles(tree: &Crate) -> Vec<String> {
-    let arrows = arrows::arrows(tree);
-    circles::circles(&arrows)
-        .iter()
-        .map(|circle| chain(tree, &arrows, circle))
-        .collect()
-}
-
-fn chain(tree: &Crate, arrows: &Arrows, circle: &[usize]) -> String {
-    let mut text = tree.modules[circle[0]].name.clone();
-    for (place, from) in circle.iter().enumerate() {
-        let to = circle[(place + 1) % circle.len()];
-        let names: Vec<&str> = arrows[&(*from, to)].iter().map(String::as_str).collect();
-        let shown = names[..names.len().min(3)].join(", ");
-        let more = if names.len() > 3 { ", …" } else { "" };
-        text += &format!(" → {} ({shown}{more})", tree.modules[to].name);
-    }
-    text
 }
 
 /// The part of the output of `cargo metadata` that the check uses.
@@ -104,7 +61,6 @@ struct Package {
 #[derive(Deserialize)]
 struct Target {
     name: String,
-    kind: Vec<String>,
     src_path: PathBuf,
 }
 
@@ -134,6 +90,364 @@ fn targets() -> Result<Vec<Target>> {
         .into_iter()
         .flat_map(|package| package.targets)
         .collect())
+}
+
+/// Segments of a path, such as `crate`, `a` and `B` of `crate::a::B`. The path of a module starts with `crate`.
+type Segments = Vec<String>;
+
+/// An item: the module that defines it, and its name there. That of a macro ends with `!`.
+type Item = (Segments, String);
+
+/// Imports that are being looked up: their modules and paths.
+type Seen = BTreeSet<(Segments, Segments)>;
+
+/// Reads the text of a source file; `None` if no such file exists.
+type ReadSource<'a> = &'a dyn Fn(&Path) -> Option<String>;
+
+/// The modules of one crate by their paths.
+#[derive(Default)]
+struct Crate {
+    modules: BTreeMap<Segments, Module>,
+    /// Modules with `#[path]`.
+    path_attributes: Vec<String>,
+}
+
+/// What a file defines, imports and names. Levels count the inline modules around a path.
+#[derive(Default)]
+struct Module {
+    children: Vec<String>,
+    defined: BTreeSet<String>,
+    imports: Vec<Import>,
+    paths: Vec<(usize, Segments)>,
+    /// Names of modules with `#[path]`.
+    path_attributes: Vec<String>,
+}
+
+/// A leaf of a `use` declaration.
+struct Import {
+    level: usize,
+    path: Segments,
+    /// Name in the importing module; `None` for a glob.
+    name: Option<String>,
+    is_public: bool,
+}
+
+impl Crate {
+    /// Loads the crate whose root is the file `root`.
+    fn load(root: &Path, read: ReadSource) -> Result<Self> {
+        let mut sources = Self::default();
+        let folder = root.parent().unwrap_or(Path::new(""));
+        sources.add(vec!["crate".to_owned()], &[root.to_owned()], folder, read)?;
+        Ok(sources)
+    }
+
+    /// Adds the module in the first of `files` that exists, whose child modules are below `folder`.
+    fn add(
+        &mut self,
+        name: Segments,
+        files: &[PathBuf],
+        folder: &Path,
+        read: ReadSource,
+    ) -> Result<()> {
+        let found = files.iter().find_map(|file| Some((file, read(file)?)));
+        let (file, text) =
+            found.with_context(|| format!("{}: no such file", files[0].display()))?;
+        let tokens =
+            TokenStream::from_str(&text).map_err(|error| anyhow!("{}: {error}", file.display()))?;
+        let mut module = Module::default();
+        module.scan(tokens, 0, true);
+        let marked = module.path_attributes.iter();
+        self.path_attributes
+            .extend(marked.map(|child| format!("{}: `#[path]` of {child}", file.display())));
+        for child in &module.children {
+            let folder = folder.join(child);
+            let files = [folder.with_extension("rs"), folder.join("mod.rs")];
+            self.add(
+                [&name[..], slice::from_ref(child)].concat(),
+                &files,
+                &folder,
+                read,
+            )?;
+        }
+        self.modules.insert(name, module);
+        Ok(())
+    }
+
+    /// The item that `path` names in `module` below `level` inline modules. `None` for names of other crates and of modules. `seen` has the
+    /// imports that led here, because imports may import each other.
+    fn item(
+        &self,
+        module: &[String],
+        mut level: usize,
+        path: &[String],
+        seen: &mut Seen,
+    ) -> Option<Item> {
+        let mut at = module.to_vec();
+        let mut rest = path;
+        while let Some((first, after)) = rest.split_first() {
+            match first.as_str() {
+                "crate" => (at, level) = (vec!["crate".to_owned()], 0),
+                "self" => {}
+                "super" if level > 0 => level -= 1,
+                "super" => drop(at.pop()),
+                name => return self.named(&at, name, after, seen),
+            }
+            rest = after;
+        }
+        None
+    }
+
+    /// As [`Self::item`], for a path that starts with a name in the scope of `module`.
+    fn named(
+        &self,
+        module: &[String],
+        name: &str,
+        rest: &[String],
+        seen: &mut Seen,
+    ) -> Option<Item> {
+        let scope = self.modules.get(module)?;
+        let child = [module, &[name.to_owned()]].concat();
+        if self.modules.contains_key(&child) && !rest.is_empty() {
+            return self.item(&child, 0, rest, seen);
+        }
+        if scope.defined.contains(name) {
+            return Some((module.to_vec(), name.to_owned()));
+        }
+        // A macro is visible in the modules that follow it, or exported, and few share a name.
+        if name.ends_with('!') {
+            let mut modules = self.modules.iter();
+            let (definer, _) = modules.find(|(_, module)| module.defined.contains(name))?;
+            return Some((definer.clone(), name.to_owned()));
+        }
+        let imports = scope.imports.iter();
+        let (globs, named): (Vec<_>, Vec<_>) = imports.partition(|import| import.name.is_none());
+        let named = named
+            .into_iter()
+            .filter(|import| import.name.as_deref() == Some(name));
+        let named = named.map(|import| (import, rest.to_vec()));
+        let globs = globs
+            .into_iter()
+            .map(|import| (import, [&[name.to_owned()], rest].concat()));
+        named.chain(globs).find_map(|(import, rest)| {
+            let looked_up = (module.to_vec(), import.path.clone());
+            if !seen.insert(looked_up.clone()) {
+                return None;
+            }
+            let path = [&import.path[..], &rest].concat();
+            let item = self.item(module, import.level, &path, seen);
+            seen.remove(&looked_up);
+            item
+        })
+    }
+
+    /// The arrows of the crate, each with a name that makes it.
+    fn arrows(&self) -> BTreeMap<(Segments, Segments), String> {
+        let mut arrows = BTreeMap::new();
+        for (name, module) in &self.modules {
+            let mut add = |level, path: &[String], is_reexport| {
+                if let Some((definer, item)) = self.item(name, level, path, &mut Seen::new())
+                    && definer != *name
+                    && !(is_reexport && definer.starts_with(name))
+                {
+                    arrows.entry((name.clone(), definer)).or_insert(item);
+                }
+            };
+            for (level, path) in &module.paths {
+                add(*level, path, false);
+            }
+            for import in module.imports.iter().filter(|import| import.name.is_some()) {
+                add(import.level, &import.path, import.is_public);
+            }
+        }
+        arrows
+    }
+
+    /// The arrows on circles, and between them.
+    fn circles(&self) -> Vec<String> {
+        let mut arrows = self.arrows();
+        loop {
+            let [starts, ends] = [0, 1].map(|end| {
+                let ends = arrows.keys().map(|(from, to)| [from, to][end].clone());
+                ends.collect::<BTreeSet<_>>()
+            });
+            let before = arrows.len();
+            arrows.retain(|(from, to), _| ends.contains(from) && starts.contains(to));
+            if arrows.len() == before {
+                break;
+            }
+        }
+        let shown = arrows.iter();
+        shown
+            .map(|((from, to), name)| format!("{} → {} ({name})", from.join("::"), to.join("::")))
+            .collect()
+    }
+}
+
+impl Module {
+    /// Reads tokens below `level` inline modules. With `has_items` they are those of a module, and the names after `fn`, `struct` and so on
+    /// are its items.
+    fn scan(&mut self, tokens: TokenStream, level: usize, has_items: bool) {
+        let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+        let (mut at, mut is_public) = (0, false);
+        while at < tokens.len() {
+            let start = at;
+            let before = start.checked_sub(1).map(|before| &tokens[before]);
+            at += 1;
+            match &tokens[start] {
+                // An attribute.
+                TokenTree::Group(group) if before.is_some_and(|token| is_punct(token, '#')) => {
+                    let text = group.stream().to_string().replace(' ', "");
+                    if text == "cfg(test)" || text.starts_with("cfg(all(test,") {
+                        at += item_length(&tokens[at..]);
+                    } else if text.starts_with("path=") {
+                        let length = item_length(&tokens[at..]);
+                        let mut item = tokens[at..at + length].iter().filter_map(text_of);
+                        self.path_attributes.extend(item.next_back());
+                        at += length;
+                    } else {
+                        self.scan(group.stream(), level, false);
+                    }
+                }
+                TokenTree::Group(group) => {
+                    self.scan(group.stream(), level, false);
+                    // The group of `pub(crate)` does not end the visibility.
+                    is_public &= group.delimiter() == Delimiter::Parenthesis;
+                }
+                TokenTree::Ident(word) if word == "pub" => is_public = true,
+                TokenTree::Ident(word) if word == "use" => {
+                    let end = |token: &TokenTree| is_punct(token, ';');
+                    let length = tokens[at..].iter().position(end).unwrap_or_default();
+                    self.uses(&tokens[at..at + length], &[], level, is_public);
+                    (at, is_public) = (at + length, false);
+                }
+                TokenTree::Ident(word) if word == "mod" && has_items => {
+                    let Some(name) = tokens.get(at).and_then(text_of) else {
+                        continue;
+                    };
+                    if let Some(TokenTree::Group(group)) = tokens.get(at + 1) {
+                        self.defined.insert(name);
+                        self.scan(group.stream(), level + 1, true);
+                    } else {
+                        self.children.push(name);
+                    }
+                    (at, is_public) = (at + 2, false);
+                }
+                TokenTree::Ident(word) => {
+                    is_public = false;
+                    const ITEMS: [&str; 8] = [
+                        "fn", "struct", "enum", "union", "trait", "type", "const", "static",
+                    ];
+                    if has_items && ITEMS.iter().any(|item| word == item) {
+                        self.defined.extend(tokens.get(at).and_then(text_of));
+                        continue;
+                    }
+                    let mut path = vec![text(word)];
+                    while let Some([a, b, TokenTree::Ident(next)]) = tokens.get(at..at + 3)
+                        && is_punct(a, ':')
+                        && is_punct(b, ':')
+                    {
+                        path.push(text(next));
+                        at += 3;
+                    }
+                    let next = tokens.get(at);
+                    if next.is_some_and(|token| is_punct(token, '!')) {
+                        path.last_mut().expect("it has a name").push('!');
+                    }
+                    // Of single names, those of variables are left out.
+                    let is_call = matches!(next, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
+                    let is_item = path.len() > 1
+                        || is_call
+                        || path[0].ends_with('!')
+                        || path[0].starts_with(char::is_uppercase);
+                    let is_method = matches!(&tokens[..start], [.., a, b] if !is_punct(a, '.') && is_punct(b, '.'));
+                    // `::name` is another crate, or belongs to the type before.
+                    let is_absolute = matches!(&tokens[..start], [.., a, b] if is_punct(a, ':') && is_punct(b, ':'));
+                    if is_item && !is_method && !is_absolute {
+                        self.paths.push((level, path));
+                    }
+                }
+                TokenTree::Punct(_)
+                    if has_items
+                        && before
+                            .and_then(text_of)
+                            .is_some_and(|word| word == "macro_rules") =>
+                {
+                    let name = tokens.get(at).and_then(text_of);
+                    self.defined.extend(name.map(|name| name + "!"));
+                }
+                TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+            }
+        }
+    }
+
+    /// Reads the tree of a `use` declaration below `prefix`.
+    fn uses(&mut self, tokens: &[TokenTree], prefix: &[String], level: usize, is_public: bool) {
+        for leaf in tokens.split(|token| is_punct(token, ',')) {
+            let mut path = prefix.to_vec();
+            let mut name = None;
+            for (at, token) in leaf.iter().enumerate() {
+                match token {
+                    TokenTree::Ident(word) if word == "as" => {
+                        name = leaf.get(at + 1).and_then(text_of);
+                        break;
+                    }
+                    TokenTree::Ident(word) if word == "self" && !path.is_empty() => {
+                        name = path.last().cloned()
+                    }
+                    TokenTree::Ident(word) => {
+                        path.push(text(word));
+                        name = Some(text(word));
+                    }
+                    TokenTree::Group(group) => {
+                        let inside: Vec<_> = group.stream().into_iter().collect();
+                        self.uses(&inside, &path, level, is_public);
+                        path.clear();
+                    }
+                    TokenTree::Punct(punct) if punct.as_char() == '*' => name = None,
+                    // `use ::name` is another crate.
+                    TokenTree::Punct(_) if at == 0 => break,
+                    TokenTree::Punct(_) | TokenTree::Literal(_) => {}
+                }
+            }
+            if !leaf.is_empty() && !path.is_empty() {
+                self.imports.push(Import {
+                    level,
+                    path,
+                    name,
+                    is_public,
+                });
+            }
+        }
+    }
+}
+
+/// Number of tokens to the end of an item, which is its `;` or its block.
+fn item_length(tokens: &[TokenTree]) -> usize {
+    let is_end = |token: &TokenTree| match token {
+        TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
+        token => is_punct(token, ';'),
+    };
+    tokens
+        .iter()
+        .position(is_end)
+        .map_or(tokens.len(), |end| end + 1)
+}
+
+fn is_punct(token: &TokenTree, character: char) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == character)
+}
+
+fn text_of(token: &TokenTree) -> Option<String> {
+    match token {
+        TokenTree::Ident(ident) => Some(text(ident)),
+        TokenTree::Group(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => None,
+    }
+}
+
+/// The text of an identifier, without the `r#` of a raw one.
+fn text(ident: &Ident) -> String {
+    let text = ident.to_string();
+    text.strip_prefix("r#").map(str::to_owned).unwrap_or(text)
 }
 
 #[cfg(test)]
