@@ -175,7 +175,7 @@ pub fn python_environment() -> Result<()> {
     run::step(
         "python packages",
         Command::new(paths::venv_program("pip"))
-            .args(["install", "--disable-pip-version-check"])
+            .args(["install", "--disable-pip-version-check", "--no-compile"])
             .args(REQUIREMENTS.iter().flat_map(|file| ["--requirement", file]))
             .current_dir(paths::root()),
     )

@@ -203,8 +203,7 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
             .env("CCACHE_NOHASHDIR", "1")
-            .env("PYTHONPATH", gateware)
-            .env("PYTHONDONTWRITEBYTECODE", "1"),
+            .env("PYTHONPATH", gateware),
     )
     .context("the gateware generator: `cargo xtask bootstrap` installs its packages")?;
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
@@ -235,8 +234,7 @@ fn verilate(folder: &Path, library: Library) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            .env("PYTHONPATH", paths::root().join("gateware"))
-            .env("PYTHONDONTWRITEBYTECODE", "1"),
+            .env("PYTHONPATH", paths::root().join("gateware")),
     )
 }
 
@@ -273,8 +271,7 @@ fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
             .args(["-m", "ecp5", step])
             .arg(folder)
             .current_dir(folder)
-            .env("PYTHONPATH", paths::root().join("gateware"))
-            .env("PYTHONDONTWRITEBYTECODE", "1"),
+            .env("PYTHONPATH", paths::root().join("gateware")),
     )
 }
 

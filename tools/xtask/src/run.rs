@@ -38,12 +38,14 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains nothing.
+/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains nothing. Nor
+/// has it debug information, a tenth of the time: a panic names its line without.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
     command
         .args(arguments)
         .env("CARGO_INCREMENTAL", "0")
+        .env("CARGO_PROFILE_DEV_DEBUG", "none")
         .current_dir(paths::root());
     command
 }

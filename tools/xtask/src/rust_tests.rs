@@ -17,6 +17,12 @@ use crate::{paths, run};
 /// Number of programs that run at a time.
 const AT_A_TIME: usize = 3;
 
+/// Option of cargo that optimises the references little. To optimise them as for the report takes longer than their tests then save.
+const QUICK_BUILD: [&str; 2] = [
+    "--config",
+    "profile.dev.package.glint-reference.opt-level=1",
+];
+
 /// The programs that take longest, by package and target, the longest first. They run before all others, so that none of them is left
 /// alone at the end.
 const LONGEST: [(&str, &str); 6] = [
@@ -89,6 +95,7 @@ impl Programs {
                 "--message-format",
                 "json-render-diagnostics",
             ])
+            .args(QUICK_BUILD)
             .args(selection),
             |line| programs.extend(test_program(line)),
         )?;
@@ -134,7 +141,8 @@ impl Programs {
 /// An example fails.
 pub fn run_examples() -> Result<u32> {
     let results = Mutex::new(Results::default());
-    let command = run::cargo(&["test", "--doc"]);
+    let mut command = run::cargo(&["test", "--doc"]);
+    command.args(QUICK_BUILD);
     run_tests("examples in the documentation", command, &[], &results);
     let results = results.into_inner().expect("tests do not panic");
     match results.failed.first() {

@@ -48,27 +48,13 @@ pub fn test() -> Result<()> {
         results.add(scenes::generate(true).map(|()| 1));
         results.add(modules::check().map(|()| 1));
         results.add(cargo("formatting", &["fmt", "--all", "--check"]));
-        results.add(cargo(
-            "clippy",
-            &["clippy", "--all-targets", "--", "-D", "warnings"],
-        ));
-        results.add(cargo(
-            "clippy of the firmware",
-            &[
-                "clippy",
-                "--package",
-                "glint-firmware",
-                "--target",
-                firmware::TARGET,
-                "--features",
-                "peers",
-                "--",
-                "-D",
-                "warnings",
-            ],
-        ));
+        results.add(linted("clippy", &["check", "--all-targets"]));
+        let firmware = ["--package", "glint-firmware", "--features", "peers"];
+        let firmware = [&["check", "--target", firmware::TARGET], &firmware[..]].concat();
+        results.add(linted("clippy of the firmware", &firmware));
         results.add(firmware::check_peers().map(|_| 1));
-        results.add(documentation());
+        let documentation = ["doc", "--no-deps", "--document-private-items"];
+        results.add(linted("rustdoc", &documentation));
         let tests = Programs::build(&[])?;
         gateware_builds.recv().expect("the builds do not panic")?;
         results.add(pac::generate(true).map(|()| 1));
@@ -141,11 +127,15 @@ fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
     Ok(1)
 }
 
-fn documentation() -> Result<u32> {
+/// Runs a cargo command as a check, with clippy as the compiler and warnings as errors. `cargo clippy` does the same, but then `cargo doc`
+/// would compile every crate again, because its compiler were another.
+fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
     run::step(
-        "rustdoc",
-        run::cargo(&["doc", "--no-deps", "--document-private-items"])
-            .env("RUSTDOCFLAGS", "-D warnings"),
+        name,
+        run::cargo(arguments)
+            .env("RUSTC_WORKSPACE_WRAPPER", "clippy-driver")
+            .env("CLIPPY_ARGS", "-Dwarnings")
+            .env("RUSTDOCFLAGS", "-Dwarnings"),
     )?;
     Ok(1)
 }
