@@ -2,8 +2,12 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+mod architecture;
 mod bootstrap;
 mod demo;
+#[cfg(test)]
+mod documents;
 mod firmware;
 mod gateware;
 mod generated;

@@ -7,11 +7,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
+use crate::paths::root;
 use page::Page;
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// The pages in a folder, by their paths from the root.
 fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {

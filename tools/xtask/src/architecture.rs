@@ -2,14 +2,11 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+
+use crate::paths::root;
 
 /// Text of a cell for a file that a block does not have, such as the model of a block that computes nothing.
 const ABSENT: &str = "–";
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
-}
 
 /// Cells of a row of a table, without code marks.
 fn cells(row: &str) -> Vec<String> {
