@@ -21,7 +21,7 @@ mod renderer;
 mod watchdog;
 
 pub use eyes::RightEye;
-pub use fallback::{Fallback, Lack};
+pub use fallback::{Fallback, Unsupported};
 pub use geometry::Cpu;
 pub use rendered::Rendered;
 pub use renderer::{GatewareRenderer, Output};

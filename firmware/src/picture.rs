@@ -8,7 +8,7 @@ use glint_hal::triangle::Counters;
 use glint_model::{FrameStats, RenderError};
 use glint_scene::Scene;
 
-use crate::gateware::{Fallback, Lack};
+use crate::gateware::{Fallback, Unsupported};
 use crate::mark::Mark;
 use crate::models::Models;
 
@@ -38,7 +38,7 @@ pub enum RenderedBy {
     /// The CPU, with the reason if the gateware could not draw the frame.
     Cpu(Option<Fallback>),
     /// The gateware, with the triangle engine's counters, and the reason if the CPU made the descriptors.
-    Gateware(Counters, Option<Lack>),
+    Gateware(Counters, Option<Unsupported>),
 }
 
 /// Reason why a frame is not drawn.

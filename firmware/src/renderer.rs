@@ -62,12 +62,12 @@ impl Renderer {
                 cycles,
                 stats,
                 counters,
-                lack,
+                unsupported,
                 ..
             }) => Ok(Drawn {
                 cycles,
                 stats,
-                by: RenderedBy::Gateware(counters, lack),
+                by: RenderedBy::Gateware(counters, unsupported),
                 has_depth: picture.wants_depth,
             }),
             Err(fallback) if CPU.is_built => self

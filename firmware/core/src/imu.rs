@@ -218,7 +218,7 @@ impl<E: Copy> Imu<E> {
     /// Passes a sample to the calibration in progress. This is a separate function, because its code is long and rarely runs.
     #[cold]
     #[inline(never)]
-    fn go_on_calibrating(&mut self, sample: &Sample) {
+    fn continue_calibration(&mut self, sample: &Sample) {
         let Calibrating::Going(calibration, count) = &mut self.calibrating else {
             return;
         };
@@ -272,7 +272,7 @@ impl<E: Copy> Sink<E> for Imu<E> {
         self.tracker.on_sample(&sample);
         self.moved = true;
         if let Calibrating::Going(..) = self.calibrating {
-            self.go_on_calibrating(&sample);
+            self.continue_calibration(&sample);
         }
     }
 

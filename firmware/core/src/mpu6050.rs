@@ -298,7 +298,7 @@ impl<B: I2c> Mpu6050<B> {
 ///
 /// A master acknowledges the bytes that it receives, so it does not notice a chip that vanishes within them: the released bus
 /// reads as ones. EXT_SENS_DATA_00 shows that the chip was there until the end of its sample.
-type Look = [u8; 1 + Measurement::BYTES + 1];
+type Burst = [u8; 1 + Measurement::BYTES + 1];
 
 /// Value of a byte that no device sends.
 const RELEASED: u8 = 0xff;
@@ -309,11 +309,11 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     ///
     /// # Errors
     /// Errors of the bus.
-    pub fn begin_looks(&mut self, period: u32) -> Result<(), Error<B::Error>> {
+    pub fn begin_polling(&mut self, period: u32) -> Result<(), Error<B::Error>> {
         Ok(self.bus.begin(PeriodicRead {
             address: self.address,
             register: INT_STATUS,
-            length: size_of::<Look>() as u8,
+            length: size_of::<Burst>() as u8,
             period,
             batch: BATCH,
         })?)
@@ -324,8 +324,8 @@ impl<B: PeriodicI2c> Mpu6050<B> {
     ///
     /// # Errors
     /// Errors of the bus, or the chip vanished within the sample.
-    pub async fn look(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
-        let mut bytes = Look::default();
+    pub async fn poll(&mut self) -> Result<(u64, Option<Measurement>), Error<B::Error>> {
+        let mut bytes = Burst::default();
         let time = self.bus.next(&mut bytes).await?;
         let [status, data @ .., end] = bytes;
         if end == RELEASED {

@@ -21,4 +21,4 @@ pub use rate::{LONGEST_CURVE, MOST_STRETCH};
 pub use sample::Sample;
 pub use scale::{LSB_PER_DPS, Scale};
 pub use tilt::{DOUBTFUL, FRESH, LSB_PER_G, TIME_CONSTANT, Tilt};
-pub use tracker::{Counts, Outcome, Tracker};
+pub use tracker::{Counts, SampleEffect, Tracker};

@@ -19,7 +19,7 @@ pub mod text;
 
 pub use cube::CUBE;
 pub use edges::unique_edges;
-pub use error::{Expected, Found, Place, ProgramError, Violation};
+pub use error::{Expected, Found, Location, ProgramError, Violation};
 pub use format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
 pub use instruction::Instruction;
 pub use keys::{DEBOUNCE_MS, Debouncer, Key, Requests};

@@ -14,7 +14,7 @@ use crate::error::RenderError;
 use crate::frame_buffer::FrameBuffer;
 use crate::raymarch::{FieldStats, Ray, RayResult, render_field};
 use crate::triangle::setup::Setup;
-use crate::triangle::{DrawnTriangle, Part, Projected, Stats, draw_parts, set_up_parts};
+use crate::triangle::{DrawnTriangle, PreparedMesh, Projected, Stats, draw_parts, set_up_parts};
 use crate::wireframe::{WireframeStats, render_wireframe};
 
 pub use constants::{FieldConstants, FrameConstants};
@@ -58,9 +58,13 @@ impl Frame<'_> {
     }
 
     /// The mesh with this number, with its options and frame constants; `None` after the last mesh.
-    fn part<'s>(&'s self, constants: &'s FrameConstants, number: usize) -> Option<Part<'s>> {
+    fn part<'s>(
+        &'s self,
+        constants: &'s FrameConstants,
+        number: usize,
+    ) -> Option<PreparedMesh<'s>> {
         let (subject, options) = self.subject.numbered_mesh(number, constants.light())?;
-        Some(Part {
+        Some(PreparedMesh {
             mesh: subject.mesh,
             frame: constants.numbered_mesh(self, number).ok()??,
             options,

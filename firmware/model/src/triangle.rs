@@ -31,7 +31,8 @@ pub use mesh_setup::MeshSetup;
 pub use object::Placement;
 pub use primitive::{Options, Placed};
 pub use render::{
-    DrawnTriangle, Part, Stats, draw_parts, project_chunk, render, set_up_parts, trace, trace_frame,
+    DrawnTriangle, PreparedMesh, Stats, draw_parts, project_chunk, render, set_up_parts, trace,
+    trace_frame,
 };
 pub use vertex::{Projected, ScreenVertex};
 pub use volume::Clip;

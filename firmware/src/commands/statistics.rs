@@ -40,9 +40,9 @@ pub fn print(machine: &mut Machine, json: bool) -> Result<(), CommandError<'stat
             }
             (Backend::Cpu, None)
         }
-        RenderedBy::Gateware(counters, lack) => {
-            if let Some(lack) = lack {
-                fallback(lack);
+        RenderedBy::Gateware(counters, unsupported) => {
+            if let Some(unsupported) = unsupported {
+                fallback(unsupported);
             }
             (Backend::Gateware, Some(counters))
         }

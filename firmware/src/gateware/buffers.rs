@@ -11,7 +11,7 @@ use glint_model::{Stats, WireframeStats};
 
 /// Numbers of items for which the memory of one frame has room. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
-pub struct Room {
+pub struct Capacity {
     /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a
     /// set. A descriptor with smooth shading is twice as long, so there is room for half as many of them.
     descriptors: usize,
@@ -19,7 +19,7 @@ pub struct Room {
     list_words: usize,
 }
 
-impl Room {
+impl Capacity {
     /// The room for each of two frames in `words` 32-bit words; `None` if it is too small. A frame has two sets of lists, each an
     /// eighth of the memory or up to half as large.
     pub fn of(words: usize) -> Option<Self> {
@@ -61,7 +61,7 @@ pub struct Buffers {
 
 impl Buffers {
     /// Splits the memory of a frame off `memory`; `None` if `memory` is too small.
-    pub fn split_off(memory: &mut &'static mut [u32], room: Room) -> Option<Self> {
+    pub fn split_off(memory: &mut &'static mut [u32], room: Capacity) -> Option<Self> {
         let mut piece = |length| {
             let (piece, rest) = mem::take(memory).split_at_mut_checked(length)?;
             *memory = rest;

@@ -26,7 +26,7 @@ pub enum Fallback {
     /// The gateware has no line engine for a wireframe.
     NoLineEngine,
     /// The soft core cannot make the descriptors of the frame, because this firmware is built without that.
-    Descriptors(Lack),
+    Descriptors(Unsupported),
 }
 
 impl Fallback {
@@ -79,7 +79,7 @@ impl fmt::Display for Fallback {
                 f.write_str("triangle engine: no smooth shading in orthographic projection")
             }
             Self::NoRaymarcher => f.write_str("distance fields: this gateware has no raymarcher"),
-            Self::Descriptors(lack) => lack.fmt(f),
+            Self::Descriptors(unsupported) => unsupported.fmt(f),
             Self::NoLineEngine => f.write_str("wireframe: this gateware has no line engine"),
         }
     }
@@ -87,7 +87,7 @@ impl fmt::Display for Fallback {
 
 /// An option of a mesh that geometry passes lack. The CPU makes the descriptors of its frame, and the gateware draws them.
 #[derive(Clone, Copy, Debug)]
-pub enum Lack {
+pub enum Unsupported {
     /// Clipping to the view volume.
     Volume,
     /// The winding by the screen.
@@ -101,7 +101,7 @@ pub enum Lack {
     },
 }
 
-impl fmt::Display for Lack {
+impl fmt::Display for Unsupported {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("geometry passes: ")?;
         match self {

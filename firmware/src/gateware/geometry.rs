@@ -20,7 +20,7 @@ use glint_model::{
 use litex_pac::cpu;
 
 use super::buffers::Buffers;
-use super::fallback::{Fallback, Lack};
+use super::fallback::{Fallback, Unsupported};
 use crate::memory::Scratch;
 
 /// Number of triangles that the CPU makes between two calls of [`Cpu::progress`].
@@ -62,7 +62,7 @@ pub struct GeometryPasses {
     /// The pass of the next mesh, whose registers have been written.
     prepared: Option<Prepared>,
     /// The reason why the CPU makes the descriptors of all meshes, without geometry passes.
-    lack: Option<Lack>,
+    unsupported: Option<Unsupported>,
 }
 
 impl GeometryPasses {
@@ -75,13 +75,13 @@ impl GeometryPasses {
             drawn_clipped: 0,
             own: MeshSetup::default(),
             prepared: None,
-            lack: None,
+            unsupported: None,
         }
     }
 
     /// The reason why the CPU makes the descriptors of the frame, if it does.
-    pub const fn lack(&self) -> Option<Lack> {
-        self.lack
+    pub const fn unsupported(&self) -> Option<Unsupported> {
+        self.unsupported
     }
 
     /// Whether no further pass is prepared.
@@ -95,11 +95,11 @@ impl GeometryPasses {
         if !MESH.is_built {
             return Ok(());
         }
-        self.lack = lack(job.frame);
-        match self.lack {
+        self.unsupported = unsupported(job.frame);
+        match self.unsupported {
             None => {}
             Some(_) if CPU.is_built => return Ok(()),
-            Some(lack) => return Err(Fallback::Descriptors(lack)),
+            Some(unsupported) => return Err(Fallback::Descriptors(unsupported)),
         }
         self.prepare_mesh(job, 0)
     }
@@ -131,7 +131,7 @@ impl GeometryPasses {
         if !MESH.is_built {
             return Ok(false);
         }
-        if CPU.is_built && self.lack.is_some() {
+        if CPU.is_built && self.unsupported.is_some() {
             self.set_up(job, cpu)?;
             return Ok(false);
         }
@@ -304,19 +304,19 @@ const fn joins_clipped(frame: &Frame) -> bool {
 }
 
 /// The first option of a frame's meshes that geometry passes do not support.
-fn lack(frame: &Frame) -> Option<Lack> {
+fn unsupported(frame: &Frame) -> Option<Unsupported> {
     let lacking = frame.subject.meshes().find_map(|subject| {
         let sees_dark_sides = subject.shading == Shading::Smooth && !subject.cull;
         if subject.clip != Clip::Guard {
-            Some(Lack::Volume)
+            Some(Unsupported::Volume)
         } else if subject.winding != Winding::Mesh {
-            Some(Lack::Winding)
+            Some(Unsupported::Winding)
         } else {
             let is_lit = sees_dark_sides && frame.mesh_lighting().ambient != [0; 3];
-            is_lit.then_some(Lack::DarkSides)
+            is_lit.then_some(Unsupported::DarkSides)
         }
     });
     let mut objects = frame.subject.objects().unwrap_or_default().iter();
     let mut normals = || objects.position(|object| object.placement.normals().is_some());
-    lacking.or_else(|| normals().map(|index| Lack::Normals { object: index + 1 }))
+    lacking.or_else(|| normals().map(|index| Unsupported::Normals { object: index + 1 }))
 }

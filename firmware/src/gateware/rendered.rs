@@ -3,7 +3,7 @@
 use glint_hal::triangle::Counters;
 use glint_model::FrameStats;
 
-use super::fallback::Lack;
+use super::fallback::Unsupported;
 
 /// A frame drawn by the gateware.
 pub struct Rendered {
@@ -16,7 +16,7 @@ pub struct Rendered {
     /// Increments of the triangle engine's counters during the frame.
     pub counters: Counters,
     /// The reason why the CPU made the descriptors of the frame, if it did.
-    pub lack: Option<Lack>,
+    pub unsupported: Option<Unsupported>,
 }
 
 impl Rendered {
@@ -27,7 +27,7 @@ impl Rendered {
             waited: self.waited + other.waited,
             stats: self.stats + other.stats,
             counters: self.counters.plus(&other.counters),
-            lack: self.lack.or(other.lack),
+            unsupported: self.unsupported.or(other.unsupported),
         }
     }
 }

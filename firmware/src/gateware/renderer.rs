@@ -16,7 +16,7 @@ use glint_model::edges::EdgeStats;
 use glint_model::{Frame, FrameConstants, FrameStats, Stats, Subject, WireframeStats};
 use litex_pac::cpu;
 
-use super::buffers::{Buffers, Projected, Room, address};
+use super::buffers::{Buffers, Capacity, Projected, address};
 use super::fallback::Fallback;
 use super::geometry::{Cpu, GeometryPasses, Job};
 use super::rendered::Rendered;
@@ -97,7 +97,7 @@ impl GatewareRenderer {
         first_frame_buffer: u32,
         frequency: Frequency,
     ) -> Option<Self> {
-        let room = Room::of(memory.len())?;
+        let capacity = Capacity::of(memory.len())?;
         let shading = shading(&engine);
         Some(Self {
             draws_triangles: engine.draws_triangles(),
@@ -106,8 +106,8 @@ impl GatewareRenderer {
             engine,
             raymarcher,
             buffers: [
-                Buffers::split_off(&mut memory, room)?,
-                Buffers::split_off(&mut memory, room)?,
+                Buffers::split_off(&mut memory, capacity)?,
+                Buffers::split_off(&mut memory, capacity)?,
             ],
             projected: Projected::default(),
             edges: EdgeStats::default(),
@@ -266,7 +266,7 @@ impl GatewareRenderer {
         frame: &Frame,
         output: &mut Output,
     ) -> Result<(), Fallback> {
-        self.stage = next.map_err(|error| self.give_up(output, error))?;
+        self.stage = next.map_err(|error| self.cancel(output, error))?;
         if self.stage == Stage::Raster {
             self.start_raster(frame, output, self.sets(0));
         } else {
@@ -345,7 +345,7 @@ impl GatewareRenderer {
                 edges: matches!(frame.subject, Subject::Edges(..)).then_some(self.edges),
             },
             counters,
-            lack: mesh.and_then(|_| self.geometry.lack()),
+            unsupported: mesh.and_then(|_| self.geometry.unsupported()),
         }
     }
 
@@ -459,13 +459,13 @@ impl GatewareRenderer {
     /// Cancels the frame and fails if the triangle engine has made no progress for too long.
     fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
-            return Err(self.give_up(output, EngineError::Timeout.into()));
+            return Err(self.cancel(output, EngineError::Timeout.into()));
         }
         Ok(())
     }
 
     /// Cancels the running passes, and returns `error` as the reason to draw the frame by the CPU.
-    fn give_up(&mut self, output: &Output, error: Fallback) -> Fallback {
+    fn cancel(&mut self, output: &Output, error: Fallback) -> Fallback {
         self.engine.cancel();
         self.stage = Stage::Idle;
         self.invalidate(output.colour);

@@ -74,9 +74,9 @@ impl Bus {
     /// The word at `address`, a multiple of 4, if it is in a memory.
     pub fn memory_word(&self, address: u32) -> Option<u32> {
         let bytes = match place(address) {
-            Place::Rom(offset) => self.rom.get(offset..)?.first_chunk(),
-            Place::Sram(offset) => self.sram.get(offset..)?.first_chunk(),
-            Place::Flash(offset) => return Some(self.flash.word(offset)),
+            Target::Rom(offset) => self.rom.get(offset..)?.first_chunk(),
+            Target::Sram(offset) => self.sram.get(offset..)?.first_chunk(),
+            Target::Flash(offset) => return Some(self.flash.word(offset)),
             _ => return self.ram.word(address),
         };
         bytes.copied().map(u32::from_le_bytes)
@@ -89,7 +89,7 @@ impl Bus {
             return Access::memory(word);
         }
         match place(address) {
-            Place::Register(offset) => Access {
+            Target::Register(offset) => Access {
                 value: self.devices.read(offset, now, &mut self.ram),
                 cycles: 0,
                 device: true,
@@ -102,7 +102,7 @@ impl Bus {
     /// Loads the word at `address`, a multiple of 4, where no memory is, as an instruction. The instruction cache has all addresses.
     pub fn fetch(&mut self, address: u32, now: u64) -> Access {
         match place(address) {
-            Place::Unused => self.time_out(LINE),
+            Target::Unused => self.time_out(LINE),
             _ => self.load(address, now),
         }
     }
@@ -111,14 +111,14 @@ impl Bus {
     pub fn store(&mut self, address: u32, value: u32, size: usize, now: u64) -> Access {
         match place(address) {
             // A write to these has no effect.
-            Place::Rom(_) | Place::Flash(_) => Access::memory(0),
-            Place::Sram(offset) => {
+            Target::Rom(_) | Target::Flash(_) => Access::memory(0),
+            Target::Sram(offset) => {
                 if let Some(bytes) = self.sram.get_mut(offset..offset + size) {
                     bytes.copy_from_slice(&value.to_le_bytes()[..size]);
                 }
                 Access::memory(0)
             }
-            Place::Register(offset) => {
+            Target::Register(offset) => {
                 // The CPU repeats a byte or a half word in all lanes, and a register takes all of them.
                 let value = match size {
                     1 => (value & 0xff) * 0x0101_0101,
@@ -132,7 +132,7 @@ impl Bus {
                     device: true,
                 }
             }
-            Place::Unused => self.time_out(1),
+            Target::Unused => self.time_out(1),
         }
     }
 
@@ -148,7 +148,7 @@ impl Bus {
 }
 
 /// Target of an address outside main memory, with the offset from the start of the target.
-enum Place {
+enum Target {
     Rom(usize),
     Sram(usize),
     Flash(usize),
@@ -158,23 +158,23 @@ enum Place {
 
 /// Whether `address` is that of a register of a device.
 pub fn is_register(address: u32) -> bool {
-    matches!(place(address), Place::Register(_))
+    matches!(place(address), Target::Register(_))
 }
 
-fn place(address: u32) -> Place {
+fn place(address: u32) -> Target {
     let within = |memory: Memory| {
         let offset = address.wrapping_sub(memory.base);
         (offset < memory.size).then_some(offset)
     };
     if let Some(offset) = within(ROM) {
-        Place::Rom(offset as usize)
+        Target::Rom(offset as usize)
     } else if let Some(offset) = within(SRAM) {
-        Place::Sram(offset as usize)
+        Target::Sram(offset as usize)
     } else if let Some(offset) = within(FLASH) {
-        Place::Flash(offset as usize)
+        Target::Flash(offset as usize)
     } else if let Some(offset) = within(REGISTERS) {
-        Place::Register(offset)
+        Target::Register(offset)
     } else {
-        Place::Unused
+        Target::Unused
     }
 }

@@ -1,7 +1,7 @@
 //! The gesture engine of the emulated board, by its registers and an image sensor at its port.
 
 use emulated_board::virtual_image_sensor::{
-    Fault as SensorFault, ImageSensor, Model, Place, Scene, Source, Timing,
+    Fault as SensorFault, Hand, ImageSensor, Model, Scene, Source, Timing,
 };
 use emulated_board::{Device, GestureEngine, MainMemory};
 use glint_core::colour::Rgb565;
@@ -35,7 +35,7 @@ const FRAME: u64 = 40_000;
 /// A hand that moves from frame to frame.
 fn scene() -> Scene {
     Scene::new(SIZE, |time| {
-        vec![Place {
+        vec![Hand {
             centre: [20.0 + 20_000.0 * (time % 0.001), 24.0],
             area: 300.0,
         }]

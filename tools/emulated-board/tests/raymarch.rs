@@ -18,7 +18,7 @@ use glint_engines::triangle::{MeshPass, size_code};
 use glint_hal::raymarch::Raymarcher;
 use glint_hal::triangle::{EngineError, Lists, Raster, Set, TriangleEngine as Driver};
 use glint_model::raymarch::{Ray, RayResult, State, render_field};
-use glint_model::triangle::{Part, draw_parts};
+use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{
     FieldConstants, FieldSubject, Frame, MeshSubject, Options, Projected, Shading, Subject,
 };
@@ -313,7 +313,7 @@ fn a_mesh_in_a_field() {
     let drawn = bench.engine.counters().pixels_drawn - before;
     let stored: Vec<u32> = {
         let mut alone = Picture::blank((320, 180));
-        let part = Part {
+        let part = PreparedMesh {
             mesh: mesh.mesh,
             frame: *constants.mesh().unwrap(),
             options: Options::default(),

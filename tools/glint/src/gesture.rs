@@ -5,7 +5,7 @@ use crate::console::{self, Console};
 use crate::transfer::{self, Progress, TransferError};
 use std::io::{self, Write};
 use virtual_board::virtual_image_sensor::{
-    ChipFault, Fault, ImageSensor, Model, Place, Polarity, Scene, Source, Timing,
+    ChipFault, Fault, Hand, ImageSensor, Model, Polarity, Scene, Source, Timing,
 };
 
 /// A fault of the virtual image sensor.
@@ -92,7 +92,7 @@ pub fn moving_hand(size: [usize; 2]) -> Scene {
     let [width, height] = size.map(|length| length as f64);
     let mut scene = Scene::new(size, move |time| {
         let (sin, cos) = (std::f64::consts::FRAC_PI_2 * time).sin_cos();
-        vec![Place {
+        vec![Hand {
             centre: [width * (0.5 + 0.2 * sin), height * (0.5 - 0.2 * cos)],
             area: width * height / 16.0,
         }]

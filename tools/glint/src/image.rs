@@ -1,6 +1,6 @@
 //! Images for a board's SPI flash: made of a bitstream, a firmware and scenes, and checked whole.
 
-use crate::error::{FormatError, InputError, Place, quote};
+use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
 use crate::scene;
 use glint_core::flash::{Contents, EncodeError, FlashError, Image, Item, Kind, Piece, encode};
@@ -26,7 +26,7 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
         return Ok(file);
     };
     let damaged = |rest: &[u8], expected: &str| {
-        let place = Place::Byte(file.len() - rest.len());
+        let place = Location::Byte(file.len() - rest.len());
         FormatError::new(place, expected, quote(rest.get(..8).unwrap_or(rest)))
     };
     // Design, part, date and time.
@@ -149,7 +149,7 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
                 let names = item.text().map_err(format_error)?.lines();
                 for (number, name) in names.enumerate() {
                     if contents.find(Kind::Scene, name).is_none() {
-                        let (place, found) = (Place::Line(number + 1), quote(name.as_bytes()));
+                        let (place, found) = (Location::Line(number + 1), quote(name.as_bytes()));
                         let error = FormatError::new(place, "a scene of the image", found);
                         return Err(in_item(&item, error));
                     }
@@ -163,7 +163,7 @@ pub fn check_contents(contents: &Contents) -> Result<(), FormatError> {
 /// Checks the commands of a scene, and that its meshes exist.
 fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
     let quoted = |line: usize| quote(text.lines().nth(line - 1).unwrap_or("").as_bytes());
-    let error = |line, expected| FormatError::new(Place::Line(line), expected, quoted(line));
+    let error = |line, expected| FormatError::new(Location::Line(line), expected, quoted(line));
     for parsed in lines(text) {
         let (line, parsed) = parsed.map_err(|LineError { line, reason }| {
             let expected = match reason {
@@ -201,7 +201,7 @@ fn format_error(error: FlashError) -> FormatError {
     // Writing to a `String` does not fail.
     let _ = error.write_found(&mut found);
     FormatError::new(
-        Place::Byte(error.offset as usize),
+        Location::Byte(error.offset as usize),
         error.expected.to_string(),
         found,
     )

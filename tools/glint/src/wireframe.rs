@@ -1,7 +1,7 @@
 //! Programs of the wireframe simulator: files, and programs of the edges of a mesh (docs/wireframe.md).
 
 use crate::convert::{self, Options};
-use crate::error::{FormatError, InputError, Place, quote};
+use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::{STDIN, read_file};
 use crate::polygons::Polygons;
 use glint_core::fixed::Q5_11;
@@ -100,8 +100,8 @@ pub fn check(bytes: &[u8]) -> Result<Program<'_>, FormatError> {
 
 fn format_error(error: &ProgramError) -> FormatError {
     let place = match error.place {
-        wireframe::Place::Line(number) => Place::Line(number),
-        wireframe::Place::Word(number) => Place::Word(number),
+        wireframe::Location::Line(number) => Location::Line(number),
+        wireframe::Location::Word(number) => Location::Word(number),
     };
     let violation = error.violation;
     FormatError::new(
@@ -393,9 +393,9 @@ mod tests {
     fn up_is_up() {
         let mut polygons = Polygons::default();
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 3.0]].map(|point| {
-            crate::polygons::Corner::at(polygons.add_point(point, Place::Whole).unwrap())
+            crate::polygons::Corner::at(polygons.add_point(point, Location::Whole).unwrap())
         });
-        polygons.add_face(&corners, None, Place::Whole).unwrap();
+        polygons.add_face(&corners, None, Location::Whole).unwrap();
         let made = make(polygons, None, &usual()).unwrap();
         let program = check(&made.bytes).unwrap();
         let point = |x: i16, y: i16, z: i16| [x, y, z].map(Q5_11::from_num);

@@ -2,7 +2,7 @@
 
 use crate::message::ToPage;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
+use virtual_image_sensor::{Hand, ImageSensor, Model, Scene, Timing};
 use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
 /// Time constant in s with which the sensor follows the page.
@@ -98,7 +98,7 @@ impl Motion {
         let [width, height] = CAMERA.map(|length| length as f64);
         let mut scene = Scene::new(CAMERA, move |_| {
             let hand = motion.lock().hand;
-            let place = hand.map(|[x, y]| Place {
+            let place = hand.map(|[x, y]| Hand {
                 centre: [x * width, y * height],
                 area: width * height / 16.0,
             });

@@ -263,17 +263,17 @@ fn mean_colour(polygons: &Polygons, corners: [Corner; 3]) -> Option<Rgb8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Place;
+    use crate::error::Location;
     use crate::formats::glm;
 
     fn soup(points: &[Vector], faces: &[&[u32]]) -> Polygons {
         let mut polygons = Polygons::default();
         for &point in points {
-            polygons.add_point(point, Place::Whole).unwrap();
+            polygons.add_point(point, Location::Whole).unwrap();
         }
         for face in faces {
             let corners: Vec<Corner> = face.iter().map(|&point| Corner::at(point)).collect();
-            polygons.add_face(&corners, None, Place::Whole).unwrap();
+            polygons.add_face(&corners, None, Location::Whole).unwrap();
         }
         polygons.check_indices().unwrap();
         polygons

@@ -23,7 +23,7 @@ pub const MAX_REMARKS: usize = 8;
 
 /// Place of an error in an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Location {
     /// The file as a whole.
     Whole,
     /// A line of a text file, counted from 1.
@@ -36,14 +36,14 @@ pub enum Place {
     Word(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Whole => Ok(()),
-            Place::Line(number) => write!(f, "line {number}: "),
-            Place::Cell(line, column) => write!(f, "line {line}, column {column}: "),
-            Place::Byte(offset) => write!(f, "byte {offset}: "),
-            Place::Word(number) => write!(f, "word {number}: "),
+            Location::Whole => Ok(()),
+            Location::Line(number) => write!(f, "line {number}: "),
+            Location::Cell(line, column) => write!(f, "line {line}, column {column}: "),
+            Location::Byte(offset) => write!(f, "byte {offset}: "),
+            Location::Word(number) => write!(f, "word {number}: "),
         }
     }
 }
@@ -53,7 +53,7 @@ impl fmt::Display for Place {
 #[error("{place}expected {expected}, found {found}")]
 pub struct FormatError {
     /// Place of the violation.
-    pub place: Place,
+    pub place: Location,
     /// The requirement of the format at this position.
     pub expected: String,
     /// The content of the input at this position.
@@ -62,7 +62,7 @@ pub struct FormatError {
 
 impl FormatError {
     /// Creates an error at a position.
-    pub fn new(place: Place, expected: impl Into<String>, found: impl Into<String>) -> Self {
+    pub fn new(place: Location, expected: impl Into<String>, found: impl Into<String>) -> Self {
         Self {
             place,
             expected: expected.into(),
@@ -72,7 +72,7 @@ impl FormatError {
 
     /// Creates an error that concerns the whole file.
     pub fn whole(expected: impl Into<String>, found: impl Into<String>) -> Self {
-        Self::new(Place::Whole, expected, found)
+        Self::new(Location::Whole, expected, found)
     }
 
     /// Adds the name of the file to the error.

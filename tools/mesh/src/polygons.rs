@@ -1,6 +1,6 @@
 //! A mesh as read from a file: points, and polygons between them.
 
-use crate::error::{FormatError, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES, Place};
+use crate::error::{FormatError, Location, MAX_POINTS, MAX_POLYGON, MAX_REMARKS, MAX_TRIANGLES};
 
 /// A point or a direction, in the file's unit.
 pub type Vector = [f64; 3];
@@ -78,10 +78,10 @@ pub struct Polygons {
 /// The largest index that a face has used so far, and the place of that face. Faces may use points or normals that come later in
 /// the file, so only this index is checked, at the end of the file.
 #[derive(Clone, Copy, Debug, Default)]
-struct Largest(Option<(u32, Place)>);
+struct Largest(Option<(u32, Location)>);
 
 impl Largest {
-    fn update(&mut self, index: u32, place: Place) {
+    fn update(&mut self, index: u32, place: Location) {
         if self.0.is_none_or(|(largest, _)| index > largest) {
             self.0 = Some((index, place));
         }
@@ -112,7 +112,7 @@ impl Polygons {
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] points.
-    pub fn add_point(&mut self, point: Vector, place: Place) -> Result<u32, FormatError> {
+    pub fn add_point(&mut self, point: Vector, place: Location) -> Result<u32, FormatError> {
         push(&mut self.points, point, "points", place)
     }
 
@@ -120,7 +120,7 @@ impl Polygons {
     ///
     /// # Errors
     /// There are more than [`MAX_POINTS`] normals.
-    pub fn add_normal(&mut self, normal: Vector, place: Place) -> Result<u32, FormatError> {
+    pub fn add_normal(&mut self, normal: Vector, place: Location) -> Result<u32, FormatError> {
         push(&mut self.normals, normal, "normals", place)
     }
 
@@ -132,7 +132,7 @@ impl Polygons {
         &mut self,
         corners: &[Corner],
         colour: Option<Rgb8>,
-        place: Place,
+        place: Location,
     ) -> Result<(), FormatError> {
         let count = corners.len();
         if !(3..=MAX_POLYGON).contains(&count) {
@@ -199,7 +199,7 @@ fn push(
     list: &mut Vec<Vector>,
     vector: Vector,
     name: &str,
-    place: Place,
+    place: Location,
 ) -> Result<u32, FormatError> {
     if list.len() >= MAX_POINTS {
         return Err(FormatError::new(
@@ -219,23 +219,23 @@ mod tests {
     #[test]
     fn the_largest_index_is_named() {
         let mut polygons = Polygons::default();
-        polygons.add_point([0.0; 3], Place::Line(1)).unwrap();
+        polygons.add_point([0.0; 3], Location::Line(1)).unwrap();
         polygons
             .add_face(
                 &[Corner::at(0), Corner::at(7), Corner::at(3)],
                 None,
-                Place::Line(2),
+                Location::Line(2),
             )
             .unwrap();
         polygons
             .add_face(
                 &[Corner::at(1), Corner::at(0), Corner::at(0)],
                 None,
-                Place::Line(3),
+                Location::Line(3),
             )
             .unwrap();
         let error = polygons.check_indices().unwrap_err();
-        assert_eq!(error.place, Place::Line(2));
+        assert_eq!(error.place, Location::Line(2));
         assert_eq!(error.found, "7 (counted from 0)");
     }
 }

@@ -165,15 +165,15 @@ fn is_ear(scratch: &Scratch, i: usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Place;
+    use crate::error::Location;
 
     fn polygon(points: &[Vector]) -> Polygons {
         let mut polygons = Polygons::default();
         let corners: Vec<Corner> = points
             .iter()
-            .map(|&p| Corner::at(polygons.add_point(p, Place::Whole).unwrap()))
+            .map(|&p| Corner::at(polygons.add_point(p, Location::Whole).unwrap()))
             .collect();
-        polygons.add_face(&corners, None, Place::Whole).unwrap();
+        polygons.add_face(&corners, None, Location::Whole).unwrap();
         polygons
     }
 

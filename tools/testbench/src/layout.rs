@@ -55,7 +55,7 @@ impl From<Shape> for Layout {
 
 /// Part of a value of a packed type: the bits from `low` on, which have the type `layout`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Part<'a> {
+pub(crate) struct Member<'a> {
     pub low: usize,
     pub layout: &'a Layout,
 }
@@ -77,8 +77,8 @@ impl Layout {
     ///
     /// # Errors
     /// When the path names no part; the message lists the known names.
-    pub(crate) fn find(&self, path: &str) -> Result<Part<'_>, String> {
-        let mut part = Part {
+    pub(crate) fn find(&self, path: &str) -> Result<Member<'_>, String> {
+        let mut part = Member {
             low: 0,
             layout: self,
         };
@@ -129,7 +129,7 @@ impl Layout {
     }
 }
 
-impl Part<'_> {
+impl Member<'_> {
     /// Narrows this part to the member or element at the start of `rest`, and returns the remaining path.
     fn enter<'p>(&mut self, rest: &'p str) -> Result<&'p str, String> {
         match (&*self.layout.shape, rest.strip_prefix('[')) {

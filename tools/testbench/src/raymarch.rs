@@ -8,7 +8,7 @@ use glint_model::raymarch::{
 
 /// Place of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Place {
+pub struct RayPlace {
     /// Whether the number of the pixel's band is odd.
     pub odd: bool,
     /// Line in the band.
@@ -19,7 +19,7 @@ pub struct Place {
     pub eye: usize,
 }
 
-impl Place {
+impl RayPlace {
     /// Returns the place that stands for a cone: its line and column hold the cone's number.
     pub fn of_cone(eye: usize, number: u32) -> Self {
         Self {
@@ -48,17 +48,17 @@ impl Place {
 }
 
 /// Packs a ray, before its first step, as a `ray_t`.
-pub fn ray(layout: &Layout, place: Place, ray: &Ray) -> Bits {
+pub fn ray(layout: &Layout, place: RayPlace, ray: &Ray) -> Bits {
     ray_record(layout, place, ray).bits()
 }
 
 /// Packs a cone, before its first step, as a `ray_t`.
-pub fn cone(layout: &Layout, place: Place, cone: &Cone) -> Bits {
+pub fn cone(layout: &Layout, place: RayPlace, cone: &Cone) -> Bits {
     let record = ray_record(layout, place, &cone.ray);
     record.with("spread", cone.spread).bits()
 }
 
-fn ray_record(layout: &Layout, place: Place, ray: &Ray) -> Record {
+fn ray_record(layout: &Layout, place: RayPlace, ray: &Ray) -> Record {
     let mut record = layout.record();
     record.set_all("direction", ray.direction);
     record.set("start", ray.start);
@@ -169,19 +169,19 @@ impl End {
 
     /// Unpacks the place and the end of a cone from an `end_t`.
     #[must_use]
-    pub fn of_cone(record: &Record) -> (Place, Self) {
+    pub fn of_cone(record: &Record) -> (RayPlace, Self) {
         let end = Self {
             t: record.get("t"),
             steps: record.get("steps"),
             length: record.get("length"),
             ..Self::default()
         };
-        (Place::of(record), end)
+        (RayPlace::of(record), end)
     }
 
     /// Unpacks the place and the end of a ray from an `end_t`, with 0 in members without a meaning.
     #[must_use]
-    pub fn of(record: &Record) -> (Place, Self) {
+    pub fn of(record: &Record) -> (RayPlace, Self) {
         let state = Kind::of(record);
         let if_hit = |name| match state {
             Kind::Hit => record.get(name),
@@ -215,7 +215,7 @@ impl End {
                 [0; 3]
             },
         };
-        (Place::of(record), end)
+        (RayPlace::of(record), end)
     }
 }
 
@@ -332,7 +332,7 @@ pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread:
 }
 
 /// Packs the `end_t` of a ray from the model's result.
-pub fn end(layout: &Layout, place: Place, ray: &Ray, outcome: &RayResult) -> Bits {
+pub fn end(layout: &Layout, place: RayPlace, ray: &Ray, outcome: &RayResult) -> Bits {
     let end = End::expected(ray, outcome);
     let mut record = layout.record();
     record.set("slope", end.slope);
@@ -420,7 +420,7 @@ impl From<[u64; 7]> for Pixel {
 pub fn pixel(
     setup: &FieldSetup,
     palette: &Palette,
-    place: Place,
+    place: RayPlace,
     ray: &Ray,
     outcome: &RayResult,
 ) -> Pixel {

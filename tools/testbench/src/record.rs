@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::Bits;
 use crate::bits::holds;
-use crate::layout::{Layout, Part};
+use crate::layout::{Layout, Member};
 
 /// A value of a packed type. A path names a part of it: for example `place.line`, `half[2]`, `[1][0]`, or `""` for the whole.
 ///
@@ -79,7 +79,7 @@ impl Record {
     /// # Panics
     /// When there is no such part, or the number does not fit.
     pub fn set(&mut self, path: &str, value: impl Into<i128>) {
-        let Part { low, layout } = self.find(path);
+        let Member { low, layout } = self.find(path);
         self.bits = with_number(self.bits, path, low, layout, value.into());
     }
 
@@ -88,7 +88,7 @@ impl Record {
     /// # Panics
     /// When there is no such array, its length differs from the number of values, or a number does not fit.
     pub fn set_all(&mut self, path: &str, values: impl IntoIterator<Item: Into<i128>>) {
-        let Part { low, layout } = self.find(path);
+        let Member { low, layout } = self.find(path);
         let (mut bits, mut found) = (self.bits, 0);
         for value in values {
             if let Some((count, element)) = layout.elements()
@@ -109,7 +109,7 @@ impl Record {
     /// # Panics
     /// When there is no such part, or its type has no value of that name.
     pub fn set_name(&mut self, path: &str, name: &str) {
-        let Part { low, layout } = self.find(path);
+        let Member { low, layout } = self.find(path);
         let values = layout.values();
         let value = values.and_then(|values| values.get(name)).copied();
         let value = value.unwrap_or_else(|| {
@@ -196,7 +196,7 @@ impl Record {
         }
     }
 
-    fn find(&self, path: &str) -> Part<'_> {
+    fn find(&self, path: &str) -> Member<'_> {
         let part = self.layout.find(path);
         part.unwrap_or_else(|error| panic!("{error}"))
     }

@@ -21,5 +21,5 @@ mod sensor;
 
 pub use chip::{Chip, ChipFault, Format, Model, Polarity};
 pub use frame::{Error, Frame, Images, Source, rgb565};
-pub use scene::{Place, Scene};
+pub use scene::{Hand, Scene};
 pub use sensor::{Fault, ImageSensor, Levels, Timing};

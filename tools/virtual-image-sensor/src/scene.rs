@@ -16,7 +16,7 @@ const SAMPLES: usize = 4;
 
 /// A hand in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct Hand {
     /// Coordinates x and y of the centre of mass in pixels. The centre of the top left pixel is (0, 0).
     pub centre: [f64; 2],
     /// Area in pixels.
@@ -78,9 +78,9 @@ pub struct Scene {
     /// Width and height of a frame.
     pub size: [usize; 2],
     /// The hands at a time: none, one or several.
-    pub hands: Over<Vec<Place>>,
+    pub hands: Over<Vec<Hand>>,
     /// Discs of the hand's colour that never move: a face, a wooden door.
-    pub discs: Vec<Place>,
+    pub discs: Vec<Hand>,
     /// Brightness of the light at a time; 1 is full light.
     pub light: Over<f64>,
     /// Standard deviation of the noise of each channel, in units of 1/255 of its range.
@@ -93,7 +93,7 @@ pub struct Scene {
 impl Scene {
     /// Creates a scene in full light, without noise. `hands` returns the hands at a time in s.
     #[must_use]
-    pub fn new(size: [usize; 2], hands: impl Fn(f64) -> Vec<Place> + Send + 'static) -> Self {
+    pub fn new(size: [usize; 2], hands: impl Fn(f64) -> Vec<Hand> + Send + 'static) -> Self {
         Self {
             size,
             hands: Box::new(hands),

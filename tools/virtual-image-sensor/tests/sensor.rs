@@ -2,7 +2,7 @@
 
 use virtual_i2c_device::{Device, Wires};
 use virtual_image_sensor::{
-    ChipFault, Fault, Frame, ImageSensor, Images, Levels, Model, Place, Polarity, Scene, Source,
+    ChipFault, Fault, Frame, Hand, ImageSensor, Images, Levels, Model, Polarity, Scene, Source,
     Timing,
 };
 
@@ -21,7 +21,7 @@ fn select_rgb565(sensor: &mut ImageSensor) {
 
 fn still_hand() -> Scene {
     Scene::new(SIZE, |_| {
-        vec![Place {
+        vec![Hand {
             centre: [20.0, 12.0],
             area: 100.0,
         }]
@@ -258,7 +258,7 @@ fn is_skin(pixel: u16) -> bool {
 #[test]
 fn the_hand_has_the_stated_centre_and_area() {
     for (centre, area) in [([160.0, 120.0], 500.0), ([57.3, 88.9], 6_000.0)] {
-        let mut scene = Scene::new([320, 240], move |_| vec![Place { centre, area }]);
+        let mut scene = Scene::new([320, 240], move |_| vec![Hand { centre, area }]);
         scene.noise = 2.0;
         let frame = scene.frame(0.0);
         let (mut count, mut sums) = (0.0, [0.0; 2]);
@@ -285,7 +285,7 @@ fn the_hand_has_the_stated_centre_and_area() {
 #[test]
 fn light_salt_discs_and_time_change_the_picture() {
     let mut scene = Scene::new(SIZE, |time| {
-        vec![Place {
+        vec![Hand {
             centre: [10.0 + time, 12.0],
             area: 60.0,
         }]
@@ -296,7 +296,7 @@ fn light_salt_discs_and_time_change_the_picture() {
     let hand = skin(&first);
     assert!(first.pixels[12 * SIZE[0] + 10] >> 11 == 28);
     assert!(scene.frame(6.0).pixels[12 * SIZE[0] + 16] >> 11 == 14);
-    scene.discs.push(Place {
+    scene.discs.push(Hand {
         centre: [34.0, 5.0],
         area: 40.0,
     });

@@ -46,7 +46,7 @@ impl Pace {
     /// Takes the time of a read in µs, which is later than the time of the previous read. If `found` states that the read has a
     /// new sample, returns the time in µs at which this sample was measured. The sample of the first read may be old, so for it
     /// the result is `None`.
-    pub fn on_look(&mut self, time: u64, found: bool) -> Option<u64> {
+    pub fn on_poll(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
             return None;

@@ -11,17 +11,17 @@ use super::{Error, Identity, Measurement, Mpu6050, PERIOD};
 
 /// Time between the starts of two reads in µs. It is slightly longer than one read takes, and slightly less than half a sample
 /// period. Therefore no sample is missed, and relative to the samples the reads drift by 40 µs per sample period.
-const LOOK: u32 = 480;
+const POLL_PERIOD: u32 = 480;
 /// Time between the starts of two reads in µs for a chip that stretches the I2C clock. It is slightly less than a sample period,
-/// and gives the same drift as `LOOK`.
-const LONG_LOOK: u32 = 960;
+/// and gives the same drift as `POLL_PERIOD`.
+const SLOW_POLL_PERIOD: u32 = 960;
 
 /// Longest time without a new sample that is not an error, in µs.
 const SILENCE: u32 = 20_000;
 /// This many successive samples that are each equal to their predecessor are an error.
 const FROZEN: u32 = 50;
 /// Pause before the next attempt to find the chip, in ms. It bounds the load that an absent sensor causes.
-const AGAIN: u32 = 30;
+const RETRY_DELAY: u32 = 30;
 
 /// Receiver of samples.
 pub trait Sink<E> {
@@ -57,39 +57,43 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
     /// Finds, configures and reads the chip endlessly.
     pub async fn run(&mut self) -> ! {
         let mut reset = false;
-        let mut look = LOOK;
+        let mut period = POLL_PERIOD;
         loop {
-            let Err(error) = self.start_and_read(reset, look).await;
+            let Err(error) = self.start_and_read(reset, period).await;
             // A chip that answers without measuring may seem correctly configured, so the next start resets it.
             reset = matches!(error, Error::Silent | Error::Frozen);
             let is_late = matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun);
-            look = if is_late { LONG_LOOK } else { LOOK };
+            period = if is_late {
+                SLOW_POLL_PERIOD
+            } else {
+                POLL_PERIOD
+            };
             self.sink.on_error(error);
-            self.delay.delay_ms(AGAIN).await;
+            self.delay.delay_ms(RETRY_DELAY).await;
         }
     }
 
     async fn start_and_read(
         &mut self,
         reset: bool,
-        look: u32,
+        period: u32,
     ) -> Result<Infallible, Error<B::Error>> {
         let identity = self.chip.start(reset, &mut self.delay).await?;
         self.sink.on_start(identity);
-        self.read_all(look).await
+        self.read_all(period).await
     }
 
-    /// Reads the chip every `look` µs, until an error occurs.
-    async fn read_all(&mut self, look: u32) -> Result<Infallible, Error<B::Error>> {
-        self.chip.begin_looks(look)?;
+    /// Reads the chip every `period` µs, until an error occurs.
+    async fn read_all(&mut self, period: u32) -> Result<Infallible, Error<B::Error>> {
+        self.chip.begin_polling(period)?;
         let mut pace = Pace::new(PERIOD);
         let mut last = Measurement::default();
         let (mut same, mut silent) = (0, 0);
         loop {
-            let (time, measurement) = self.chip.look().await?;
-            let measured = pace.on_look(time, measurement.is_some());
+            let (time, measurement) = self.chip.poll().await?;
+            let measured = pace.on_poll(time, measurement.is_some());
             let Some(measurement) = measurement else {
-                silent += look;
+                silent += period;
                 if silent > SILENCE {
                     return Err(Error::Silent);
                 }

@@ -9,7 +9,7 @@ use crate::calibration::RestBias;
 
 /// Effect of a sample on the attitude.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Outcome {
+pub enum SampleEffect {
     /// First sample: the attitude starts.
     First,
     /// The attitude was integrated from the previous sample to this one.
@@ -100,7 +100,7 @@ impl Tracker {
     // On the soft core most of the time is spent on misses of the instruction cache, so the code of every sample is small and
     // contiguous, and rare code is in separate functions.
     #[inline(never)]
-    pub fn on_sample(&mut self, sample: &Sample) -> Outcome {
+    pub fn on_sample(&mut self, sample: &Sample) -> SampleEffect {
         let Some(last) = self.last else {
             return self.begin(sample);
         };
@@ -134,7 +134,7 @@ impl Tracker {
             self.integrator.forget();
             self.doubt();
         }
-        Outcome::Step
+        SampleEffect::Step
     }
 
     /// The rate of a sample without the bias, in 1/256 LSB.
@@ -145,28 +145,28 @@ impl Tracker {
     /// Takes the first sample, which starts the attitude.
     #[cold]
     #[inline(never)]
-    fn begin(&mut self, sample: &Sample) -> Outcome {
+    fn begin(&mut self, sample: &Sample) -> SampleEffect {
         self.last = Some(sample.t_us);
         self.integrator.restart(self.rate(sample));
         if self.tilt.is_some() {
             self.integrator.set_attitude(Tilt::align(sample.accel));
         }
-        Outcome::First
+        SampleEffect::First
     }
 
     /// Takes a sample that is not integrated, because it is not later than the previous sample or follows a gap.
     #[cold]
     #[inline(never)]
-    fn hold(&mut self, sample: &Sample, last: u64) -> Outcome {
+    fn hold(&mut self, sample: &Sample, last: u64) -> SampleEffect {
         if sample.t_us <= last {
             self.counts.stale += 1;
-            return Outcome::Stale;
+            return SampleEffect::Stale;
         }
         self.last = Some(sample.t_us);
         self.counts.gaps += 1;
         self.integrator.restart(self.rate(sample));
         self.doubt();
-        Outcome::Gap
+        SampleEffect::Gap
     }
 
     /// Marks the tilt as uncertain after a gap or saturation.

@@ -10,14 +10,14 @@ use crate::words::Word;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProgramError<'a> {
     /// The place.
-    pub place: Place,
+    pub place: Location,
     /// The deviation.
     pub violation: Violation<'a>,
 }
 
 /// The place of an error in a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum Location {
     /// A line of the text form, counted from 1.
     Line(usize),
     /// A word of the binary form, counted from 1.
@@ -39,7 +39,7 @@ impl<'a> Violation<'a> {
     }
 
     /// Adds the line number.
-    pub(super) const fn at(self, place: Place) -> ProgramError<'a> {
+    pub(super) const fn at(self, place: Location) -> ProgramError<'a> {
         ProgramError {
             place,
             violation: self,
@@ -129,7 +129,7 @@ impl fmt::Display for ProgramError<'_> {
 
 impl core::error::Error for ProgramError<'_> {}
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Line(number) => write!(f, "line {number}"),

@@ -1,6 +1,6 @@
 //! Checked programs.
 
-use super::error::{Expected, Found, Place, ProgramError, Violation};
+use super::error::{Expected, Found, Location, ProgramError, Violation};
 use super::format::{MAX_SEGMENTS, Opcode, Point, Segment, WORD_BYTES, Window};
 use super::instruction::Instruction;
 use crate::fixed::Q5_11;
@@ -128,7 +128,7 @@ impl<'a> Program<'a> {
         let (words, rest) = bytes.as_chunks();
         let mut checker = Checker::default();
         for (index, word) in words.iter().enumerate() {
-            let at = |violation: Violation<'static>| violation.at(Place::Word(index + 1));
+            let at = |violation: Violation<'static>| violation.at(Location::Word(index + 1));
             let instruction = Instruction::decode(word).map_err(at)?;
             let Some(viewing) = checker.take(instruction).map_err(at)? else {
                 continue;
@@ -136,7 +136,7 @@ impl<'a> Program<'a> {
             let after = bytes.len() - WORD_BYTES * (index + 1);
             if after > 0 {
                 let violation = Violation::new(Expected::NothingAfterEnd, Found::Bytes(after));
-                return Err(violation.at(Place::Word(index + 2)));
+                return Err(violation.at(Location::Word(index + 2)));
             }
             return Ok(Self {
                 viewing,
@@ -149,7 +149,7 @@ impl<'a> Program<'a> {
         } else {
             Violation::new(Expected::WholeWord, Found::Bytes(rest.len()))
         };
-        Err(violation.at(Place::Word(words.len() + 1)))
+        Err(violation.at(Location::Word(words.len() + 1)))
     }
 
     /// The viewing parameters.

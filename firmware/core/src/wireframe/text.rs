@@ -66,21 +66,21 @@ impl fmt::Display for Instruction {
 /// The first deviation from the format, with the number of its line.
 #[cfg(feature = "alloc")]
 pub fn assemble(text: &str) -> Result<alloc::vec::Vec<u8>, super::ProgramError<'_>> {
-    use super::error::Place;
+    use super::error::Location;
 
     let mut checker = super::Checker::default();
     let mut bytes = alloc::vec::Vec::new();
     let (mut ended, mut last) = (false, 0);
     for (number, line) in text.lines().enumerate().map(|(i, line)| (i + 1, line)) {
         last = number;
-        let at = |violation: Violation<'static>| violation.at(Place::Line(number));
-        let parsed = parse_line(line).map_err(|violation| violation.at(Place::Line(number)))?;
+        let at = |violation: Violation<'static>| violation.at(Location::Line(number));
+        let parsed = parse_line(line).map_err(|violation| violation.at(Location::Line(number)))?;
         let Some(instruction) = parsed else {
             continue;
         };
         if ended {
             let word = Words::new(line).next().map_or(Found::More, Found::Word);
-            return Err(Violation::new(Expected::NothingAfterEnd, word).at(Place::Line(number)));
+            return Err(Violation::new(Expected::NothingAfterEnd, word).at(Location::Line(number)));
         }
         ended = checker.take(instruction).map_err(at)?.is_some();
         bytes.extend(instruction.encode());
@@ -88,6 +88,6 @@ pub fn assemble(text: &str) -> Result<alloc::vec::Vec<u8>, super::ProgramError<'
     if ended {
         Ok(bytes)
     } else {
-        Err(Violation::new(Expected::End, Found::Exhausted).at(Place::Line(last + 1)))
+        Err(Violation::new(Expected::End, Found::Exhausted).at(Location::Line(last + 1)))
     }
 }

@@ -2,7 +2,7 @@
 
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
-    Angles, Gain, Integrator, LONGEST_STEP, Outcome, Quaternion, Sample, Scale, TIME_CONSTANT,
+    Angles, Gain, Integrator, LONGEST_STEP, Quaternion, Sample, SampleEffect, Scale, TIME_CONSTANT,
     Tilt, Tracker, log,
 };
 
@@ -332,10 +332,10 @@ fn what_becomes_of_samples() {
     const WRAP: u64 = 1 << 32;
     let mut tracker = tracker();
     // The low word of the time wraps between the first and the second sample.
-    assert_eq!(tracker.on_sample(&rest(WRAP - 401)), Outcome::First);
-    assert_eq!(tracker.on_sample(&rest(WRAP + 600)), Outcome::Step);
+    assert_eq!(tracker.on_sample(&rest(WRAP - 401)), SampleEffect::First);
+    assert_eq!(tracker.on_sample(&rest(WRAP + 600)), SampleEffect::Step);
     for stale in [WRAP + 600, WRAP + 599, 601, 0] {
-        assert_eq!(tracker.on_sample(&rest(stale)), Outcome::Stale);
+        assert_eq!(tracker.on_sample(&rest(stale)), SampleEffect::Stale);
     }
     let turning = |t_us| Sample {
         gyro: [0, 0, 16_400],
@@ -345,12 +345,12 @@ fn what_becomes_of_samples() {
     let longest = u64::from(LONGEST_STEP);
     assert_eq!(
         tracker.on_sample(&turning(WRAP + 601 + longest)),
-        Outcome::Gap
+        SampleEffect::Gap
     );
     assert_eq!(tracker.attitude(), before, "held");
     assert_eq!(
         tracker.on_sample(&turning(WRAP + 601 + longest + 90_000)),
-        Outcome::Step
+        SampleEffect::Step
     );
     let yaw = degrees(tracker.attitude().angles().yaw);
     assert!((yaw - 90.0).abs() < 1e-5, "{yaw}");
@@ -389,7 +389,7 @@ fn a_pause_of_2_to_the_32_us_is_a_gap() {
             gyro: [0, 0, 16_400],
             ..rest(7 + pause)
         };
-        assert_eq!(tracker.on_sample(&turning), Outcome::Gap, "{pause} µs");
+        assert_eq!(tracker.on_sample(&turning), SampleEffect::Gap, "{pause} µs");
         assert_eq!(tracker.attitude(), Quaternion::IDENTITY);
     }
 }

@@ -83,7 +83,7 @@ impl Line {
 
 /// Outcome of a transfer.
 #[derive(Debug)]
-struct Outcome {
+struct TransferResult {
     sender: State,
     receiver: State,
     /// The received data; `None` if the transfer failed.
@@ -93,7 +93,7 @@ struct Outcome {
     frame_bytes: u32,
 }
 
-impl Outcome {
+impl TransferResult {
     /// Computes the number of transferred data bytes divided by the number of bytes that the line can carry in the same time.
     fn efficiency(&self) -> f64 {
         let bytes = self.received.as_ref().map_or(0, Vec::len);
@@ -129,7 +129,7 @@ impl Default for Scene {
 }
 
 impl Scene {
-    fn run(&self, data: &[u8]) -> Outcome {
+    fn run(&self, data: &[u8]) -> TransferResult {
         let mut buffer = vec![0; self.room];
         let mut sender = Sender::new(data, 5, Timing::HOST, 0);
         let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
@@ -177,7 +177,7 @@ impl Scene {
                 }
             }
         }
-        Outcome {
+        TransferResult {
             sender: sender.state(),
             receiver: receiver.state(),
             received: receiver.received().map(<[u8]>::to_vec),
@@ -195,7 +195,7 @@ fn some_data(length: usize) -> Vec<u8> {
 }
 
 #[track_caller]
-fn assert_arrives(scene: &Scene, length: usize) -> Outcome {
+fn assert_arrives(scene: &Scene, length: usize) -> TransferResult {
     let data = some_data(length);
     let outcome = scene.run(&data);
     let ends = (outcome.sender, outcome.receiver);

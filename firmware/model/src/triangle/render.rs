@@ -120,7 +120,7 @@ pub fn trace_frame(
     options: &Options,
     mut show: impl FnMut(&DrawnTriangle),
 ) -> Result<Stats, RenderError> {
-    let part = Part {
+    let part = PreparedMesh {
         mesh: *mesh,
         frame,
         options: *options,
@@ -131,7 +131,7 @@ pub fn trace_frame(
 
 /// A mesh of a frame: its frame constants and options.
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'a> {
+pub struct PreparedMesh<'a> {
     /// The mesh.
     pub mesh: Mesh<'a>,
     /// The frame constants of the mesh.
@@ -147,7 +147,7 @@ pub struct Part<'a> {
 /// As [`set_up_parts`], or the size of a part differs from that of the frame buffer. If no triangle was drawn before, the frame buffer is
 /// unchanged.
 pub fn draw_parts<'a>(
-    part: &mut dyn FnMut(usize) -> Option<Part<'a>>,
+    part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
     clear: u16,
     target: &mut FrameBuffer,
     scratch: &mut [Projected],
@@ -194,7 +194,7 @@ pub fn draw_parts<'a>(
 /// [`RenderError`]; if a later part is the cause, triangles of the previous parts have been emitted.
 #[inline(never)]
 pub fn set_up_parts<'a>(
-    part: &mut dyn FnMut(usize) -> Option<Part<'a>>,
+    part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
     (width, height): (u32, u32),
     scratch: &mut [Projected],
     emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
@@ -203,7 +203,7 @@ pub fn set_up_parts<'a>(
     // Number of the first part with triangles to clip, of all such parts, and of the part whose vertices are in the scratch memory.
     let (mut first, mut projected) = (None, 0);
     let mut number = 0;
-    while let Some(Part {
+    while let Some(PreparedMesh {
         mesh,
         frame,
         options,
@@ -237,7 +237,7 @@ pub fn set_up_parts<'a>(
     }
     let mut left = stats.clipped;
     for number in first.unwrap_or(number)..number {
-        let Some(Part {
+        let Some(PreparedMesh {
             mesh,
             frame,
             options,

@@ -182,7 +182,7 @@ impl GatewareRenderer {
 
     /// Cancels the frame if `result` is an error.
     fn check<T>(&mut self, result: Result<T, Fallback>, output: &Output) -> Result<T, Fallback> {
-        result.map_err(|error| self.give_up(output, error))
+        result.map_err(|error| self.cancel(output, error))
     }
 
     /// Waits for the end of the pass whose result the function `result` reads.
@@ -200,7 +200,7 @@ impl GatewareRenderer {
                         self.waited += u64::from(cpu::cycles_low().wrapping_sub(start));
                         return Ok(());
                     }
-                    Some(Err(error)) => return Err(self.give_up(output, error.into())),
+                    Some(Err(error)) => return Err(self.cancel(output, error.into())),
                     None => {}
                 }
             }

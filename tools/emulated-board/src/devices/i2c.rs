@@ -20,7 +20,7 @@ const PHASE: u64 = (CONFIG_CLOCK_FREQUENCY as u64).div_ceil(3 * 400_000);
 /// Cycles until a rise of SCL passes the spike filter.
 const FILTER: u64 = 7;
 /// Cycles between two looks at SCL while a device holds it low.
-const LOOK: u64 = 16;
+const POLL_CYCLES: u64 = 16;
 /// Most cycles that a device may hold SCL low.
 const STRETCH: u64 = 1 << 21;
 /// Number of the clock of the acknowledge, from 0.
@@ -196,7 +196,7 @@ impl I2c {
             if now - self.released > STRETCH {
                 self.fail(Error::Clock);
             } else {
-                self.until = now + LOOK;
+                self.until = now + POLL_CYCLES;
                 self.stretched = true;
             }
             return;

@@ -5,7 +5,7 @@ use glint_core::camera::Projection;
 use glint_core::colour::Shading;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_core::picture::Size;
-use glint_model::triangle::Part;
+use glint_model::triangle::PreparedMesh;
 use glint_model::triangle::descriptor::{ListCounts, ListWriter, list_word};
 use glint_model::triangle::setup::Setup;
 use glint_model::{MeshLight, MeshSetup, Options, clip_exceptions};
@@ -131,8 +131,8 @@ impl Bench {
     }
 
     /// Writes a mesh to memory, and the parameters of its geometry pass. Returns the flags of the start.
-    pub fn prepare(&mut self, part: &Part) -> Geometry {
-        let Part {
+    pub fn prepare(&mut self, part: &PreparedMesh) -> Geometry {
+        let PreparedMesh {
             mesh,
             frame,
             options,
@@ -250,7 +250,7 @@ impl Bench {
     }
 
     /// Draws parts, each by a geometry pass, and returns the numbers of triangles off screen and of culled triangles.
-    pub fn draw(&mut self, size: Size, slot: bool, parts: &[Part]) -> [u32; 2] {
+    pub fn draw(&mut self, size: Size, slot: bool, parts: &[PreparedMesh]) -> [u32; 2] {
         let (mut clipped, mut listed, mut left_out) = (vec![], 0, [0; 2]);
         for (number, part) in parts.iter().enumerate() {
             let flags = self.prepare(part).with_append(number > 0);
@@ -309,8 +309,8 @@ pub fn geometry_flags(frame: &MeshSetup, options: &Options) -> Geometry {
 }
 
 /// A mesh alone.
-pub fn alone<'a>(mesh: &'a [u8], frame: MeshSetup, cull: bool) -> Part<'a> {
-    Part {
+pub fn alone<'a>(mesh: &'a [u8], frame: MeshSetup, cull: bool) -> PreparedMesh<'a> {
+    PreparedMesh {
         mesh: Mesh::new_checked(mesh).expect("a mesh"),
         frame,
         options: Options {

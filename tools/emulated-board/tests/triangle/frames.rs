@@ -7,7 +7,7 @@ use glint_core::matrix::{Axis, Matrix};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_model::triangle::vertex_cache;
-use glint_model::triangle::{Part, draw_parts};
+use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{MeshLight, MeshSetup, Placement, Projected, Stats};
 use glint_vectors::meshes::{self, ahead, at};
 use glint_vectors::picture::CLEAR;
@@ -29,7 +29,7 @@ fn shape(name: &str) -> Vec<u8> {
     model.encoded()
 }
 
-fn by_model(size: Size, parts: &[Part]) -> Picture {
+fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     let mut picture = Picture::blank(size.pixels().into());
     let vertices = parts.iter().map(|part| part.mesh.largest_chunk()).max();
     let mut scratch = vec![Projected::Behind; vertices.unwrap_or(0)];
@@ -46,7 +46,7 @@ fn by_model(size: Size, parts: &[Part]) -> Picture {
 }
 
 /// Draws parts by the engine and by the model, and compares pictures and counts.
-fn check(bench: &mut Bench, name: &str, size: Size, parts: &[Part]) -> Stats {
+fn check(bench: &mut Bench, name: &str, size: Size, parts: &[PreparedMesh]) -> Stats {
     let expected = by_model(size, parts);
     let counters = [
         offset::VERTICES,
@@ -119,7 +119,7 @@ fn frames_of_several_objects() {
         let light = random
             .random::<bool>()
             .then(|| some_light(&mut random, &view));
-        let parts: Vec<Part> = meshes
+        let parts: Vec<PreparedMesh> = meshes
             .iter()
             .map(|mesh| {
                 let radius = Mesh::new_checked(mesh).unwrap().radius();

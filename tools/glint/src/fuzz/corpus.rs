@@ -4,7 +4,7 @@ use super::mutate::MAX_INPUT;
 use super::targets::Target;
 use super::{firmware, host, transfer};
 use crate::convert::{self, Options};
-use crate::error::Place;
+use crate::error::Location;
 use crate::formats::gltf::example::{TWO_MESHES, as_binary};
 use crate::formats::write;
 use crate::generate;
@@ -71,11 +71,11 @@ fn models() -> Vec<Polygons> {
                 radius * angle.sin(),
                 f64::from(i) * 0.01,
             ];
-            star.add_point(point, Place::Whole).ok().map(Corner::at)
+            star.add_point(point, Location::Whole).ok().map(Corner::at)
         })
         .collect();
     let colour = Some(Rgb8([255, 0, 0]));
-    if star.add_face(&corners, colour, Place::Whole).is_ok() {
+    if star.add_face(&corners, colour, Location::Whole).is_ok() {
         models.push(star);
     }
     models

@@ -1,7 +1,7 @@
 //! Logs as CSV: a header with `t_us,ax,ay,az,gx,gy,gz` and optionally `temp`, in any order, then one sample a line in raw
 //! counts.
 
-use crate::error::{FormatError, Place, quote};
+use crate::error::{FormatError, Location, quote};
 use crate::formats::text::{Line, Lines};
 
 /// One sample of a log.
@@ -139,7 +139,7 @@ impl Header {
                 .copied()
         };
         let bad_cell = |column: usize, expected: &str| {
-            let place = Place::Cell(line.number, COLUMNS[column]);
+            let place = Location::Cell(line.number, COLUMNS[column]);
             FormatError::new(place, expected, quote(cell(column).unwrap_or_default()))
         };
         let number = |column: usize| std::str::from_utf8(cell(column).unwrap_or_default());

@@ -3,7 +3,7 @@
 use super::log::Entry;
 use crate::board::{Board, Route};
 use crate::console::{self, Console, ConsoleError};
-use crate::error::{FormatError, Place};
+use crate::error::{FormatError, Location};
 use crate::transfer::{self, TransferError};
 use glint_core::calibration::{Calibration, MOST_SAMPLES, Progress as Going, Report, Units};
 use glint_core::orientation::log::{
@@ -240,7 +240,7 @@ fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, Format
             Ok(Going::Going(_)) => {}
             Err(refusal) => {
                 return Err(FormatError::new(
-                    Place::Line(entry.line),
+                    Location::Line(entry.line),
                     format!("a sensor at rest in the first {seconds} s"),
                     refusal.to_string(),
                 ));

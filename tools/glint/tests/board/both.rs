@@ -15,7 +15,7 @@ use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_model::{Object, Placement};
-use virtual_board::virtual_image_sensor::{Place, Scene};
+use virtual_board::virtual_image_sensor::{Hand, Scene};
 
 /// The frames, each with its name, by a board.
 fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) -> Vec<Rendered> {
@@ -110,7 +110,7 @@ fn both_boards_draw_the_same() {
 
 /// Statistics of a hand that rests in front of an image sensor without noise.
 fn found<S: Simulation>(mut board: SimulatedBoard<S>) -> [String; 3] {
-    let hand = Place {
+    let hand = Hand {
         centre: [150.0, 110.0],
         area: 6_000.0,
     };

@@ -13,7 +13,7 @@ use glint_core::console::{Command, Setting};
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use std::sync::{Arc, Mutex};
-use virtual_board::virtual_image_sensor::{ImageSensor, Model, Place, Scene, Timing};
+use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Model, Scene, Timing};
 
 /// Clock cycles of a millisecond.
 const MS: u64 = 81_250;
@@ -22,19 +22,19 @@ const SIZE: [usize; 2] = [320, 240];
 const COMMAND: &str = "gesture";
 
 /// Where the hand was in each camera frame.
-type Path = Arc<Mutex<Vec<Place>>>;
+type Path = Arc<Mutex<Vec<Hand>>>;
 
 /// The view of an image sensor, as set by a test: hands and the brightness of the light.
 #[derive(Clone)]
-struct View(Arc<Mutex<(Vec<Place>, f64)>>);
+struct View(Arc<Mutex<(Vec<Hand>, f64)>>);
 
 impl View {
     /// One hand in full light.
-    fn new(hand: Place) -> Self {
+    fn new(hand: Hand) -> Self {
         Self(Arc::new(Mutex::new((vec![hand], 1.0))))
     }
 
-    fn show(&self, hands: &[Place], light: f64) {
+    fn show(&self, hands: &[Hand], light: f64) {
         *self.0.lock().unwrap() = (hands.to_vec(), light);
     }
 
@@ -49,7 +49,7 @@ impl View {
 }
 
 /// An image sensor that sees a hand on a path over the time in s, with the noise of a sensor and a face beside the hand.
-fn sensor_with(hand: impl Fn(f64) -> Place + Send + 'static) -> (Scene, Path) {
+fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     let path = Path::default();
     let seen = path.clone();
     let mut scene = Scene::new(SIZE, move |time| {
@@ -63,10 +63,10 @@ fn sensor_with(hand: impl Fn(f64) -> Place + Send + 'static) -> (Scene, Path) {
 
 /// A hand in the middle of the frame, where the camera is at first. From `begin` on it goes along a figure eight, 0.3 s a round, and
 /// becomes larger and smaller.
-fn figure_eight(time: f64, begin: f64) -> Place {
+fn figure_eight(time: f64, begin: f64) -> Hand {
     let turns = std::f64::consts::TAU * (time - begin).max(0.0) / 0.3;
     let width = 0.25 + 0.05 * turns.sin();
-    Place {
+    Hand {
         centre: [
             159.5 + 60.0 * turns.sin(),
             119.5 + 40.0 * (2.0 * turns).sin(),
@@ -76,7 +76,7 @@ fn figure_eight(time: f64, begin: f64) -> Place {
 }
 
 /// Azimuth and polar angle in degrees, and the distance, at which a hand puts the camera.
-fn target(place: &Place) -> [f64; 3] {
+fn target(place: &Hand) -> [f64; 3] {
     let [x, y] = place.centre;
     let width = (place.area / (320.0 * 240.0)).sqrt();
     [
@@ -158,7 +158,7 @@ fn the_camera_follows_the_hand() {
         let (centre, camera) = (numbers(&lines, "centre"), numbers(&lines, "camera"));
         // The frame of these numbers is one of the last that the sensor began.
         let path = path.lock().unwrap();
-        let distance = |place: &Place| {
+        let distance = |place: &Hand| {
             let [x, y] = place.centre;
             (centre[0] - x).hypot(centre[1] - y)
         };
@@ -221,7 +221,7 @@ fn faults() -> Vec<(SensorFault, &'static str, &'static str)> {
 }
 
 /// Where the camera is at first.
-const MIDDLE: Place = Place {
+const MIDDLE: Hand = Hand {
     centre: [159.5, 119.5],
     area: 4_800.0,
 };
@@ -312,12 +312,12 @@ fn stays(before: &[String], after: &[String], case: &str) {
 }
 
 /// The views of the image sensor for the rows of the table of docs/hand.md in order: hands, light, and time in ms.
-fn sights() -> [(&'static str, Vec<Place>, f64, u64); 5] {
-    let far = Place {
+fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
+    let far = Hand {
         centre: [285.0, 150.0],
         area: 2_400.0,
     };
-    let right = Place {
+    let right = Hand {
         centre: [183.5, 119.5],
         ..MIDDLE
     };
@@ -364,7 +364,7 @@ fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard
 fn a_calibration_finds_the_hand() {
     let mut board = emulator();
     let mut console = console(&mut board);
-    let place = Place {
+    let place = Hand {
         centre: [160.0, 110.0],
         area: 18_000.0,
     };

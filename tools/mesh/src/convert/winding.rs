@@ -131,7 +131,7 @@ fn edges_of(corners: &[u32]) -> impl Iterator<Item = (u32, u32)> {
 struct Edges(HashMap<(u32, u32), Vec<(usize, bool)>>);
 
 /// Faces that are connected over edges of two faces each.
-struct Part {
+struct Patch {
     faces: Vec<usize>,
     /// Whether the faces can be turned so that all neighbours agree.
     two_sided: bool,
@@ -152,8 +152,8 @@ impl Edges {
     }
 
     /// Collects the part of a face, and sets for each of its faces whether it has to be turned to agree with the first one.
-    fn part(&self, faces: &[Vec<u32>], first: usize, turned: &mut [Option<bool>]) -> Part {
-        let mut part = Part {
+    fn part(&self, faces: &[Vec<u32>], first: usize, turned: &mut [Option<bool>]) -> Patch {
+        let mut part = Patch {
             faces: vec![first],
             two_sided: true,
         };
@@ -229,7 +229,7 @@ fn volume(polygons: &Polygons, part: &[usize], turned: &[Option<bool>]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Place;
+    use crate::error::Location;
     use crate::generate;
     use crate::polygons::Corner;
 
@@ -248,11 +248,11 @@ mod tests {
     fn strip(points: &[Vector], faces: &[[u32; 3]]) -> Polygons {
         let mut polygons = Polygons::default();
         for &point in points {
-            polygons.add_point(point, Place::Whole).unwrap();
+            polygons.add_point(point, Location::Whole).unwrap();
         }
         for face in faces {
             polygons
-                .add_face(&face.map(Corner::at), None, Place::Whole)
+                .add_face(&face.map(Corner::at), None, Location::Whole)
                 .unwrap();
         }
         polygons
@@ -302,12 +302,12 @@ mod tests {
             let corners: Vec<Corner> = corners
                 .map(|&corner| {
                     apart
-                        .add_point(whole.point(corner), Place::Whole)
+                        .add_point(whole.point(corner), Location::Whole)
                         .map(Corner::at)
                         .unwrap()
                 })
                 .collect();
-            apart.add_face(&corners, None, Place::Whole).unwrap();
+            apart.add_face(&corners, None, Location::Whole).unwrap();
         }
         let expected = apart.corners.clone();
         turn_some(&mut apart, 5);

@@ -1,6 +1,6 @@
 //! Conversion of GLM, Glint's own mesh format, to polygons.
 
-use crate::error::{FormatError, Place};
+use crate::error::{FormatError, Location};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use glint_core::mesh::{Mesh, MeshHeader, Rgb565, checksum, stated_checksum};
 
@@ -16,8 +16,8 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
     for chunk in mesh.chunks() {
         let first = polygons.points.len() as u32;
         for vertex in chunk.vertices() {
-            polygons.add_point(world(vertex.position), Place::Whole)?;
-            polygons.add_normal(world(vertex.normal), Place::Whole)?;
+            polygons.add_point(world(vertex.position), Location::Whole)?;
+            polygons.add_normal(world(vertex.normal), Location::Whole)?;
             polygons.point_colours.push(rgb8(vertex.colour));
         }
         for triangle in chunk.triangles() {
@@ -28,7 +28,7 @@ pub fn parse(bytes: &[u8]) -> Result<Polygons, FormatError> {
             polygons.add_face(
                 &triangle.indices.map(corner),
                 Some(rgb8(triangle.colour)),
-                Place::Whole,
+                Location::Whole,
             )?;
         }
     }
@@ -47,14 +47,14 @@ pub fn check_file(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
     if bytes.starts_with(WITHOUT_CHECKSUM) {
         let expected = "\"GLM2\", a mesh with a checksum";
         let found = "'GLM1', written by an earlier glint: convert the original file again";
-        return Err(FormatError::new(Place::Byte(0), expected, found));
+        return Err(FormatError::new(Location::Byte(0), expected, found));
     }
     let mesh = check(bytes)?;
     let needed = checksum(bytes);
     match stated_checksum(bytes) {
         Some(stated) if stated == needed => Ok(mesh),
         stated => Err(FormatError::new(
-            Place::Byte(MeshHeader::CHECKSUM.start),
+            Location::Byte(MeshHeader::CHECKSUM.start),
             format!("the CRC-32 {needed:08x} of the other bytes"),
             format!("{:08x}: the file is damaged", stated.unwrap_or_default()),
         )),
@@ -74,7 +74,7 @@ pub fn check(bytes: &[u8]) -> Result<Mesh<'_>, FormatError> {
             _ => error.found.to_string(),
         };
         FormatError::new(
-            Place::Byte(error.offset as usize),
+            Location::Byte(error.offset as usize),
             error.expected.to_string(),
             found,
         )

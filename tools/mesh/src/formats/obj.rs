@@ -5,7 +5,7 @@
 
 use super::mtl;
 use super::text::{Line, Lines, coordinate, vector};
-use crate::error::{FormatError, InputError, MAX_LINE, MAX_REMARKS, Place, quote};
+use crate::error::{FormatError, InputError, Location, MAX_LINE, MAX_REMARKS, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -158,7 +158,7 @@ impl Reader {
     }
 
     /// Skips an unknown statement, with a remark at its first place.
-    fn skip(&mut self, keyword: &[u8], place: Place) {
+    fn skip(&mut self, keyword: &[u8], place: Location) {
         if self.skipped.len() < MAX_REMARKS && !self.skipped.iter().any(|known| known == keyword) {
             self.skipped.push(keyword.to_vec());
             let text = format!("{place}the unknown statement {} is skipped", quote(keyword));
@@ -169,7 +169,7 @@ impl Reader {
     fn vertex<'a>(
         &mut self,
         words: &mut impl Iterator<Item = &'a [u8]>,
-        place: Place,
+        place: Location,
     ) -> Result<(), FormatError> {
         let point = vector(words, "vertex", place)?;
         let mut extra = [0.0; 4];
@@ -206,7 +206,7 @@ impl Reader {
     fn face<'a>(
         &mut self,
         words: &mut impl Iterator<Item = &'a [u8]>,
-        place: Place,
+        place: Location,
     ) -> Result<(), FormatError> {
         self.corners.clear();
         for word in words {

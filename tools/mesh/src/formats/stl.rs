@@ -4,7 +4,7 @@
 //! takes a binary file for ASCII if its header starts with `solid`.
 
 use super::text::{BYTE_ORDER_MARK, Lines, any_number, checked_at, vector};
-use crate::error::{FormatError, MAX_TRIANGLES, Place, quote};
+use crate::error::{FormatError, Location, MAX_TRIANGLES, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 
 const HEADER: usize = 84;
@@ -90,7 +90,7 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
     let (header, records) = file.split_at(HEADER);
     if count as usize > MAX_TRIANGLES {
         return Err(FormatError::new(
-            Place::Byte(80),
+            Location::Byte(80),
             format!("at most {MAX_TRIANGLES} triangles"),
             format!("{count}"),
         ));
@@ -116,10 +116,10 @@ fn parse_binary(file: &[u8], count: u32) -> Result<Polygons, FormatError> {
                 let bytes = [record[at], record[at + 1], record[at + 2], record[at + 3]];
                 *c = checked_at(f64::from(f32::from_le_bytes(bytes)), offset + at)?;
             }
-            corner.point = polygons.add_point(point, Place::Byte(offset + start))?;
+            corner.point = polygons.add_point(point, Location::Byte(offset + start))?;
         }
         let colour = colours.of_face(u16::from_le_bytes([record[48], record[49]]));
-        polygons.add_face(&corners, colour, Place::Byte(offset))?;
+        polygons.add_face(&corners, colour, Location::Byte(offset))?;
     }
     Ok(polygons)
 }
@@ -152,7 +152,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
     let mut polygons = Polygons::default();
     let mut expect = Expect::Solid;
     let mut corners = [Corner::at(0); 3];
-    let mut facet = Place::Whole;
+    let mut facet = Location::Whole;
     let mut last = 0;
     let mut lines = Lines::new(file);
     while let Some(line) = lines.next_line()? {
@@ -214,7 +214,7 @@ fn parse_ascii(file: &[u8]) -> Result<Polygons, FormatError> {
     match expect {
         Expect::Solid => Ok(polygons),
         _ => Err(FormatError::new(
-            Place::Line(last),
+            Location::Line(last),
             expect.text(),
             "the end of the file",
         )),

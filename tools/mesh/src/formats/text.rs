@@ -1,6 +1,6 @@
 //! Lines, words and numbers of text files, with their positions.
 
-use crate::error::{FormatError, MAX_COORDINATE, MAX_LINE, Place, quote};
+use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_LINE, quote};
 
 /// The byte order mark of UTF-8.
 pub const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -45,7 +45,7 @@ impl<'a> Lines<'a> {
             .unwrap_or(window.len());
         if length > MAX_LINE {
             return Err(FormatError::new(
-                Place::Line(self.number),
+                Location::Line(self.number),
                 format!("a line of at most {MAX_LINE} bytes"),
                 "a longer one",
             ));
@@ -76,8 +76,8 @@ impl<'a> Line<'a> {
     }
 
     /// The line's position.
-    pub fn place(self) -> Place {
-        Place::Line(self.number)
+    pub fn place(self) -> Location {
+        Location::Line(self.number)
     }
 }
 
@@ -90,7 +90,7 @@ pub fn any_number(word: &[u8]) -> Option<f64> {
 ///
 /// # Errors
 /// The word is not a number, not finite, or too large.
-pub fn coordinate(word: &[u8], place: Place) -> Result<f64, FormatError> {
+pub fn coordinate(word: &[u8], place: Location) -> Result<f64, FormatError> {
     any_number(word).and_then(checked).ok_or_else(|| {
         FormatError::new(
             place,
@@ -112,7 +112,7 @@ pub fn checked(value: f64) -> Option<f64> {
 pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
     checked(value).ok_or_else(|| {
         FormatError::new(
-            Place::Byte(offset),
+            Location::Byte(offset),
             format!("a number within ±{MAX_COORDINATE:e}"),
             format!("{value:e}"),
         )
@@ -126,7 +126,7 @@ pub fn checked_at(value: f64, offset: usize) -> Result<f64, FormatError> {
 pub fn vector<'a>(
     words: &mut impl Iterator<Item = &'a [u8]>,
     what: &str,
-    place: Place,
+    place: Location,
 ) -> Result<[f64; 3], FormatError> {
     let mut vector = [0.0; 3];
     for (i, c) in vector.iter_mut().enumerate() {
@@ -162,7 +162,7 @@ mod tests {
         text.push(b'x');
         assert_eq!(
             Lines::new(&text).next_line().unwrap_err().place,
-            Place::Line(1)
+            Location::Line(1)
         );
     }
 
@@ -179,10 +179,13 @@ mod tests {
             "1,5",
             "0x10",
         ] {
-            assert!(coordinate(word.as_bytes(), Place::Whole).is_err(), "{word}");
+            assert!(
+                coordinate(word.as_bytes(), Location::Whole).is_err(),
+                "{word}"
+            );
         }
         for (word, value) in [("1", 1.0), ("-.5", -0.5), ("+2.", 2.0), ("1e-300", 1e-300)] {
-            assert_eq!(coordinate(word.as_bytes(), Place::Whole).unwrap(), value);
+            assert_eq!(coordinate(word.as_bytes(), Location::Whole).unwrap(), value);
         }
     }
 }

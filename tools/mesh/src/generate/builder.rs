@@ -1,6 +1,6 @@
 //! Builder of meshes from faces given by points; equal points are shared.
 
-use crate::error::{FormatError, Place};
+use crate::error::{FormatError, Location};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use std::collections::HashMap;
 
@@ -20,7 +20,7 @@ impl Builder {
         if let Some(&number) = self.numbers.get(&key) {
             return Ok(number);
         }
-        let number = self.polygons.add_point(point, Place::Whole)?;
+        let number = self.polygons.add_point(point, Location::Whole)?;
         self.numbers.insert(key, number);
         Ok(number)
     }
@@ -39,7 +39,7 @@ impl Builder {
         if corners.len() < 3 {
             return Ok(());
         }
-        self.polygons.add_face(&corners, colour, Place::Whole)
+        self.polygons.add_face(&corners, colour, Location::Whole)
     }
 
     /// Adds the quads of a grid, whose points are given row by row. The cross product of the direction along a row and the

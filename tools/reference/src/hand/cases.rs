@@ -81,7 +81,7 @@ impl Fault {
 
 /// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outcome {
+pub struct CaseResult {
     /// Presence of the hand after half of the fault's time.
     pub presence: Presence,
     /// Reason why the last frame of the fault was not used; `None` if it was.
@@ -97,7 +97,7 @@ pub struct Outcome {
 }
 
 /// Runs a case: a hand at rest, with the noise of a sensor, a fault for a second, then the hand again.
-pub fn outcome(fault: Fault) -> Outcome {
+pub fn outcome(fault: Fault) -> CaseResult {
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let noise = Noise::SENSOR;
     let place = [100.0, 110.0];
@@ -113,7 +113,7 @@ pub fn outcome(fault: Fault) -> Outcome {
     let mut control = Control::default();
     let (mut before, mut last) = ([0.0; 2], [0.0; 2]);
     let mut presence = Presence::Absent;
-    let mut outcome = Outcome {
+    let mut outcome = CaseResult {
         presence,
         doubt: None,
         moved: 0.0,

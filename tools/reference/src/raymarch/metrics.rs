@@ -62,7 +62,7 @@ fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
 
 /// Result of a pixel in a compared picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outcome {
+pub enum RayOutcome {
     /// The ray hits a surface.
     Hit {
         /// Parameter of the ray at the hit.
@@ -132,26 +132,26 @@ pub struct Accuracy {
 ///
 /// # Panics
 /// When the two pictures differ in size.
-pub fn accuracy(expected: &[Expected], found: &[Outcome]) -> Accuracy {
+pub fn accuracy(expected: &[Expected], found: &[RayOutcome]) -> Accuracy {
     assert_eq!(expected.len(), found.len(), "pixels of both");
     let (mut false_miss, mut false_hit, mut undecided) = (0, 0, 0);
     let (mut either, mut wrong) = (0, 0);
     let (mut depths, mut angles) = (Vec::new(), Vec::new());
     for (expected, found) in expected.iter().zip(found) {
         match (expected.hit, *found) {
-            (Some(hit), Outcome::Hit { t, face, normal }) => {
+            (Some(hit), RayOutcome::Hit { t, face, normal }) => {
                 depths.push((t - hit.t).abs());
                 wrong += usize::from(face != hit.face);
                 if (face, hit.face) == (Face::Round, Face::Round) {
                     angles.push(degrees(normal, hit.normal));
                 }
             }
-            (Some(_), Outcome::Miss) => false_miss += 1,
-            (None, Outcome::Hit { .. }) => false_hit += 1,
-            (_, Outcome::Undecided) => undecided += 1,
-            (None, Outcome::Miss) => {}
+            (Some(_), RayOutcome::Miss) => false_miss += 1,
+            (None, RayOutcome::Hit { .. }) => false_hit += 1,
+            (_, RayOutcome::Undecided) => undecided += 1,
+            (None, RayOutcome::Miss) => {}
         }
-        either += usize::from(expected.hit.is_some() || matches!(found, Outcome::Hit { .. }));
+        either += usize::from(expected.hit.is_some() || matches!(found, RayOutcome::Hit { .. }));
     }
     let part = |count: usize, of: usize| count as f64 / of.max(1) as f64;
     let both = depths.len();
@@ -203,8 +203,8 @@ mod tests {
         }
     }
 
-    fn hit(t: f64, face: Face, normal: Vector) -> Outcome {
-        Outcome::Hit { t, face, normal }
+    fn hit(t: f64, face: Face, normal: Vector) -> RayOutcome {
+        RayOutcome::Hit { t, face, normal }
     }
 
     #[test]
@@ -228,11 +228,11 @@ mod tests {
             hit(1.0, TOP, x),
             hit(1.25, SIDE, x),
             hit(1.5, Face::Round, [3.0, 3.0, 0.0]),
-            Outcome::Miss,
-            Outcome::Undecided,
+            RayOutcome::Miss,
+            RayOutcome::Undecided,
             hit(9.0, TOP, x),
-            Outcome::Miss,
-            Outcome::Undecided,
+            RayOutcome::Miss,
+            RayOutcome::Undecided,
         ];
         let accuracy = accuracy(&expected, &found);
         let normal = accuracy.normal.expect("a round pixel");

@@ -9,7 +9,7 @@ use glint_core::field::{
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::{self, FieldOptions, FieldSetup, State};
 
-use super::metrics::{self, Accuracy, Expected, Outcome, Quantiles, accuracy};
+use super::metrics::{self, Accuracy, Expected, Quantiles, RayOutcome, accuracy};
 use super::{Face, Field, Plane, Sphere, views};
 use crate::camera::{Camera, Size, length};
 
@@ -18,7 +18,7 @@ use crate::camera::{Camera, Size, length};
 pub struct RenderedRay {
     /// Result of the ray. The depth of a hit (its distance along the camera's n, in world units) is computed from the ray's
     /// parameter t.
-    pub outcome: Outcome,
+    pub outcome: RayOutcome,
     /// Depth of a hit in world units, computed from its depth code. `None` if there is no hit, or if the code gives no depth.
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
@@ -30,9 +30,9 @@ pub struct RenderedRay {
 
 impl RenderedRay {
     /// Returns [`Self::outcome`] with the depth that was computed from the depth code, if there is such a depth.
-    pub fn by_code(&self) -> Outcome {
+    pub fn by_code(&self) -> RayOutcome {
         match (self.outcome, self.coded) {
-            (Outcome::Hit { face, normal, .. }, Some(t)) => Outcome::Hit { t, face, normal },
+            (RayOutcome::Hit { face, normal, .. }, Some(t)) => RayOutcome::Hit { t, face, normal },
             (outcome, _) => outcome,
         }
     }
@@ -63,8 +63,8 @@ pub fn rendered_ray(
     end: &raymarch::RayResult,
 ) -> RenderedRay {
     let (outcome, coded) = match end.state {
-        State::Miss => (Outcome::Miss, None),
-        State::Undecided => (Outcome::Undecided, None),
+        State::Miss => (RayOutcome::Miss, None),
+        State::Undecided => (RayOutcome::Undecided, None),
         State::Hit(surface) => {
             let (face, normal) = match surface {
                 Surface::Face { axis, positive } => {
@@ -98,7 +98,7 @@ pub fn rendered_ray(
                     (Face::Round, normal)
                 }
             };
-            let hit = Outcome::Hit {
+            let hit = RayOutcome::Hit {
                 t: depth(setup, ray, end.reached()),
                 face,
                 normal,
@@ -350,7 +350,8 @@ pub struct Measured {
 impl Measured {
     /// Compares a picture, or the concatenated rays of several pictures, with the reference.
     pub fn new(expected: &[Expected], found: &[RenderedRay]) -> Self {
-        let outcomes = |of: fn(&RenderedRay) -> Outcome| found.iter().map(of).collect::<Vec<_>>();
+        let outcomes =
+            |of: fn(&RenderedRay) -> RayOutcome| found.iter().map(of).collect::<Vec<_>>();
         Self {
             accuracy: accuracy(expected, &outcomes(|ray| ray.outcome)),
             coded: accuracy(expected, &outcomes(RenderedRay::by_code)).depth,

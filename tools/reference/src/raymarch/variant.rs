@@ -1,7 +1,7 @@
 //! Other methods to march rays to the Menger sponge, in f64, whose numbers of steps are compared with Glint's method.
 
 use super::distance::euclidean;
-use super::metrics::Outcome;
+use super::metrics::RayOutcome;
 use super::raymarched::RenderedRay;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
@@ -69,7 +69,7 @@ impl Method {
             let left = distance(point);
             steps += 1;
             if (0..3).any(|axis| point[axis].abs() > 1.0 && outward(ray, axis, point)) {
-                break Outcome::Miss;
+                break RayOutcome::Miss;
             }
             let grown = self.growth.powi((steps / GROWTH_STEPS) as i32);
             let threshold = (self.threshold + self.footprint * t * speed) * grown;
@@ -84,11 +84,11 @@ impl Method {
                     }
                     _ => step / speed,
                 };
-                break Outcome::Hit { t, face, normal };
+                break RayOutcome::Hit { t, face, normal };
             }
             t += step / speed;
             if steps >= self.cap {
-                break Outcome::Undecided;
+                break RayOutcome::Undecided;
             }
         };
         RenderedRay {

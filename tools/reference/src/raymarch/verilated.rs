@@ -2,7 +2,9 @@
 
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
-use glint_testbench::raymarch::{Pixel, Place, pixel, set_blocks, set_lane, set_paint, set_rays};
+use glint_testbench::raymarch::{
+    Pixel, RayPlace, pixel, set_blocks, set_lane, set_paint, set_rays,
+};
 use glint_testbench::{Counters, Module, Port};
 
 /// The raymarcher's SystemVerilog module, built with all kinds of fields. Nothing makes it wait: it may draw each band (strip of
@@ -74,7 +76,7 @@ impl Raymarcher {
             while !self.module.is_high(done) {
                 if self.module.is_high(valid) {
                     let found = self.pixel();
-                    let place = Place {
+                    let place = RayPlace {
                         odd: band % 2 == 1,
                         line: found.line as u32,
                         column: (8 * found.column) as u32 + found.mask.trailing_zeros(),

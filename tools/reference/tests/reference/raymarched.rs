@@ -4,7 +4,7 @@ use glint_core::field::Field as Scene;
 use glint_core::fixed::Q32_32;
 use glint_model::raymarch::{FieldOptions, FieldSetup, Ray, State, Stereo, Tint};
 use glint_reference::camera::{Camera, Vector};
-use glint_reference::raymarch::metrics::{Accuracy, Outcome};
+use glint_reference::raymarch::metrics::{Accuracy, RayOutcome};
 use glint_reference::raymarch::raymarched::{self, Measured, Subject};
 use glint_reference::raymarch::{Field, views};
 
@@ -266,18 +266,18 @@ fn rays_along_the_axes_end_at_the_walls() {
             let exact = sponge.hit(eye, direction, 0.0, 100.0);
             let context = || format!("{eye:?}, {axis}, {side}: {end:?}, {exact:?}");
             match (raymarched::rendered_ray(&setup, &ray, &end).outcome, exact) {
-                (Outcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
+                (RayOutcome::Hit { .. }, _) if end.steps > 64 && [0, 1023].contains(&end.slope) => {
                     beside += 1;
                 }
-                (Outcome::Hit { face, .. }, Some(exact)) => {
+                (RayOutcome::Hit { face, .. }, Some(exact)) => {
                     let t =
                         f64::from(end.reached()) / f64::from(1 << 12) / setup.scale.to_num::<f64>();
                     hits += 1;
                     most = most.max((t - exact.t).abs());
                     assert_eq!(face, exact.face, "{}", context());
                 }
-                (Outcome::Miss, None) => passed += 1,
-                (Outcome::Undecided, _) => given_up += 1,
+                (RayOutcome::Miss, None) => passed += 1,
+                (RayOutcome::Undecided, _) => given_up += 1,
                 _ => panic!("{}", context()),
             }
         }

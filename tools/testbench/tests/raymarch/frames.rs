@@ -9,7 +9,7 @@ use crate::scenes::{
     FIELDS, ROUND, SPONGES, UNIONS, further_kinds, lights, setup, setup_with, tunnel,
 };
 use glint_testbench::raymarch::{
-    Pixel, Place, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
+    Pixel, RayPlace, pixel, set_blocks, set_lane, set_lights, set_paint, set_rays,
 };
 use glint_vectors::Random;
 
@@ -122,7 +122,7 @@ impl Bench {
             let mut expected = std::collections::HashMap::new();
             for y in 0..lines {
                 for (x, eye) in (0..setup.width).flat_map(|x| (0..eyes).map(move |eye| (x, eye))) {
-                    let place = Place {
+                    let place = RayPlace {
                         odd: band % 2 == 1,
                         line: y,
                         column: x,

@@ -5,7 +5,7 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Bits, Layout, Module, Sink, Stalls, step};
 
 use crate::scenes::{FIELDS, ROUND, every_field, setup, setup_with};
-use glint_testbench::raymarch::{Place, cone, ray, set_blocks, set_generator};
+use glint_testbench::raymarch::{RayPlace, cone, ray, set_blocks, set_generator};
 use glint_vectors::Random;
 
 /// Name of the module variant with all fields and with cones.
@@ -23,7 +23,7 @@ fn expected(layout: &Layout, setup: &FieldSetup, lines: u32) -> Vec<Bits> {
     let places = (0..lines).flat_map(move |y| {
         (0..eyes).flat_map(move |eye| {
             (0..setup.width).map(move |x| {
-                let place = Place {
+                let place = RayPlace {
                     odd: y / band_lines % 2 == 1,
                     line: y % band_lines,
                     column: x,
@@ -51,7 +51,7 @@ fn expected_cones(layout: &Layout, setup: &FieldSetup) -> Vec<Bits> {
         .map(|(number, (eye, column, row))| {
             cone(
                 layout,
-                Place::of_cone(eye, number),
+                RayPlace::of_cone(eye, number),
                 &setup.cone(&cones, eye, column, row),
             )
         })

@@ -7,7 +7,7 @@ use glint_model::raymarch::FieldSetup;
 use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, step};
 
 use crate::scenes::{SPONGES, every_field, setup, setup_with};
-use glint_testbench::raymarch::{End, Place, cone, ray, set_lane};
+use glint_testbench::raymarch::{End, RayPlace, cone, ray, set_lane};
 use glint_vectors::Random;
 
 /// Number of rays or cones in a frame.
@@ -21,14 +21,14 @@ struct Sent {
 }
 
 /// Makes random rays of a frame, with their expected ends, by place.
-fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
+fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
     // A place has the band's number modulo 2 only, so rays of different bands can have the same position; one of them is kept.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;
-        let place = Place {
+        let place = RayPlace {
             odd: y / 64 % 2 == 1,
             line: y % 64,
             column: x,
@@ -47,7 +47,7 @@ fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMa
 }
 
 /// Makes random cones of a frame, with their expected ends, by place.
-fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<Place, Sent> {
+fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
     let cones = setup.cones.expect("cones");
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let [columns, rows] = [setup.width, setup.height].map(|pixels| pixels >> cones.block);
@@ -57,7 +57,7 @@ fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashM
         let eye = random.bits() as usize % eyes;
         let start = setup.cone(&cones, eye, number % columns, number / columns);
         let (t, steps) = setup.march_cone(&start);
-        let place = Place::of_cone(eye, number);
+        let place = RayPlace::of_cone(eye, number);
         let sent = Sent {
             item: cone(layout, place, &start),
             end: End::expected_of_cone(&start, (t, steps)),
@@ -96,7 +96,7 @@ impl Bench {
     }
 
     /// Sends rays or cones of a frame through the lane and compares their ends with the expected ones.
-    fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<Place, Sent>) {
+    fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<RayPlace, Sent>) {
         set_lane(&mut self.module, setup);
         self.module.drive("cones", cones);
         let end = self.module.packed_type("raymarch_pkg::end_t").clone();

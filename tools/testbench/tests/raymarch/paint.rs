@@ -6,7 +6,7 @@ use glint_model::triangle::descriptor::band_rows;
 use glint_testbench::{Module, Sink, Source, Stalls, step};
 
 use crate::scenes::{FIELDS, setup};
-use glint_testbench::raymarch::{Pixel, Place, end, pixel, set_paint};
+use glint_testbench::raymarch::{Pixel, RayPlace, end, pixel, set_paint};
 use glint_vectors::Random;
 
 fn palette(random: &mut Random) -> Palette {
@@ -73,7 +73,7 @@ fn ends_of_random_rays() {
             .map(|_| {
                 let column = random.integer(0, i64::from(setup.width) - 1) as u32;
                 let lines = i64::from(band_rows(setup.width));
-                let place = Place {
+                let place = RayPlace {
                     odd: random.coin(),
                     line: random.integer(0, lines - 1) as u32,
                     column,

@@ -9,7 +9,7 @@ use glint_model::triangle::{Path, Placed};
 use glint_model::{Options, Projected};
 use litex_pac::triangle::{Counters, Error, Geometry, offset};
 
-use super::output::{Output, Room};
+use super::output::{Output, OutputLimits};
 use super::region::{Regions, WORD, picture_size, record};
 use super::setup::Setup;
 use super::time::{GeometryTime, Work};
@@ -60,7 +60,7 @@ impl GeometryUnit {
         ram: &mut MainMemory,
     ) -> Result<Work, Error> {
         let size = picture_size(flags.size()).ok_or(Error::Size)?;
-        let room = Room::new(parameters, size);
+        let room = OutputLimits::new(parameters, size);
         let mesh = parameters.word(offset::MESH);
         let words = parameters.word(offset::MESH_BYTES) / WORD;
         let mut regions = Regions::default();

@@ -16,7 +16,7 @@ const DESCRIPTOR: usize = words(Shading::Flat);
 
 /// The room for the output in memory.
 #[derive(Clone, Copy, Default)]
-pub struct Room {
+pub struct OutputLimits {
     /// Addresses of descriptors, lists and exceptions.
     places: [u32; 3],
     descriptor_limit: u32,
@@ -26,7 +26,7 @@ pub struct Room {
     exception_limit: u32,
 }
 
-impl Room {
+impl OutputLimits {
     /// Reads the parameters of a pass.
     pub fn new(parameters: &Parameters, size: Size) -> Self {
         let list_shift = parameters.unsigned(offset::LIST_SHIFT, 5);
@@ -75,7 +75,7 @@ impl Exceptions {
 
 /// The output of the passes of a frame so far.
 pub struct Output {
-    room: Room,
+    room: OutputLimits,
     descriptors: Vec<u32>,
     lists: Vec<u32>,
     counts: ListCounts,
@@ -87,7 +87,7 @@ pub struct Output {
 impl Output {
     pub const fn new() -> Self {
         Self {
-            room: Room {
+            room: OutputLimits {
                 places: [0; 3],
                 descriptor_limit: 0,
                 list_shift: 0,
@@ -107,7 +107,7 @@ impl Output {
     }
 
     /// Prepares for a pass, which continues the output of the previous pass, or begins with empty lists.
-    pub fn open(&mut self, room: Room, continues: bool) {
+    pub fn open(&mut self, room: OutputLimits, continues: bool) {
         if !continues {
             let Self {
                 descriptors, lists, ..

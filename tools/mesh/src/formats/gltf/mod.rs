@@ -7,7 +7,7 @@ mod buffers;
 pub mod example;
 
 use super::text::{BYTE_ORDER_MARK, checked};
-use crate::error::{FormatError, MAX_COORDINATE, Place, quote};
+use crate::error::{FormatError, Location, MAX_COORDINATE, quote};
 use crate::polygons::{Corner, Polygons, Rgb8, Vector};
 use buffers::{Beside, Buffers};
 use gltf::accessor::Dimensions;
@@ -77,7 +77,7 @@ fn split(file: &[u8]) -> Result<Chunks<'_>, FormatError> {
     let length = u32::from_le_bytes(*length);
     if length < 12 || length as usize > file.len() {
         return Err(FormatError::new(
-            Place::Byte(8),
+            Location::Byte(8),
             format!("a length of 12 to {} bytes", file.len()),
             length.to_string(),
         ));
@@ -255,7 +255,7 @@ fn add_primitive(
                 format!("{found:.3e} of a mesh in its place"),
             ));
         }
-        polygons.add_point(point, Place::Whole)?;
+        polygons.add_point(point, Location::Whole)?;
         let colour = colours
             .as_ref()
             .map_or([1.0; 3], |colours| colours.vector(i));
@@ -265,7 +265,7 @@ fn add_primitive(
             let normal = apply(&turned, normals.vector(i));
             // Without a direction the normal follows from the faces.
             let valid = normal.iter().all(|c| c.is_finite());
-            polygons.add_normal(if valid { normal } else { [0.0; 3] }, Place::Whole)?;
+            polygons.add_normal(if valid { normal } else { [0.0; 3] }, Location::Whole)?;
         }
     }
 
@@ -301,7 +301,7 @@ fn add_primitive(
         };
         let [b, c] = if mirrored { [c, b] } else { [b, c] };
         let face = [corner(a)?, corner(b)?, corner(c)?];
-        polygons.add_face(&face, colour, Place::Whole)?;
+        polygons.add_face(&face, colour, Location::Whole)?;
     }
     Ok(())
 }

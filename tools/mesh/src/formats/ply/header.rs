@@ -1,6 +1,6 @@
 //! Header of a PLY file: its elements and their properties.
 
-use crate::error::{FormatError, MAX_REMARKS, Place, quote};
+use crate::error::{FormatError, Location, MAX_REMARKS, quote};
 use crate::formats::text::{Line, Lines};
 
 /// Maximum number of elements in a header, and of properties in an element; files in use have fewer.
@@ -141,7 +141,7 @@ pub struct Element {
     /// Properties of each instance.
     pub properties: Vec<Property>,
     /// Place of the element's declaration in the header.
-    pub place: Place,
+    pub place: Location,
 }
 
 /// A whole header.
@@ -237,7 +237,7 @@ impl Header {
             }
         }
         Err(FormatError::new(
-            Place::Line(number.max(1)),
+            Location::Line(number.max(1)),
             if number == 0 { "ply" } else { "end_header" },
             "the end of the file",
         ))

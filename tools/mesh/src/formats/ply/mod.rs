@@ -7,7 +7,7 @@ mod header;
 mod source;
 
 use super::text::{Lines, checked};
-use crate::error::{FormatError, MAX_COORDINATE, MAX_POLYGON, Place, quote};
+use crate::error::{FormatError, Location, MAX_COORDINATE, MAX_POLYGON, quote};
 use crate::polygons::{Corner, Polygons, Rgb8};
 use header::{Element, Encoding, Header, Kind, Property, Scalar};
 use source::{AsciiSource, BinarySource, Source};
@@ -132,7 +132,7 @@ fn has_colour(slots: &[Slot]) -> bool {
     })
 }
 
-fn coordinate(value: f64, place: Place) -> Result<f64, FormatError> {
+fn coordinate(value: f64, place: Location) -> Result<f64, FormatError> {
     checked(value).ok_or_else(|| {
         FormatError::new(
             place,

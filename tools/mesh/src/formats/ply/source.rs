@@ -1,7 +1,7 @@
 //! Values of a PLY's body, ASCII or binary.
 
 use super::header::Scalar;
-use crate::error::{FormatError, Place, quote};
+use crate::error::{FormatError, Location, quote};
 use crate::formats::text::{Lines, any_number};
 
 /// The values of a PLY's elements in file order.
@@ -13,7 +13,7 @@ pub trait Source {
     /// Ends the instance. In an ASCII file the line must have no further word.
     fn end(&mut self) -> Result<(), FormatError>;
     /// The place of the next value.
-    fn place(&self) -> Place;
+    fn place(&self) -> Location;
 }
 
 /// Values as decimal words, with one line per instance of an element.
@@ -41,7 +41,7 @@ impl Source for AsciiSource<'_> {
         loop {
             let line = self.lines.next_line()?.ok_or_else(|| {
                 FormatError::new(
-                    Place::Line(self.number),
+                    Location::Line(self.number),
                     "as many elements as the header declares",
                     "the end of the file",
                 )
@@ -79,8 +79,8 @@ impl Source for AsciiSource<'_> {
         }
     }
 
-    fn place(&self) -> Place {
-        Place::Line(self.number)
+    fn place(&self) -> Location {
+        Location::Line(self.number)
     }
 }
 
@@ -128,7 +128,7 @@ impl Source for BinarySource<'_> {
         Ok(())
     }
 
-    fn place(&self) -> Place {
-        Place::Byte(self.offset)
+    fn place(&self) -> Location {
+        Location::Byte(self.offset)
     }
 }

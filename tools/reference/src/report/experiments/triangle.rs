@@ -5,7 +5,7 @@ use anyhow::{Context, Result, ensure};
 use glint::board::{self, SimulatedBoard, built_firmware};
 use glint::console::Console;
 use glint::convert::{self, Options};
-use glint::error::Place;
+use glint::error::Location;
 use glint::generate;
 use glint::polygons::{Corner, Polygons};
 use glint::render::{self, BoardRenderer, Frame, Route, Stats, Subject};
@@ -140,9 +140,9 @@ fn screen() -> Result<Vec<u8>> {
     let made = || -> Result<Polygons, glint::error::FormatError> {
         let mut numbers = Vec::new();
         for corner in corners {
-            numbers.push(Corner::at(polygons.add_point(corner, Place::Whole)?));
+            numbers.push(Corner::at(polygons.add_point(corner, Location::Whole)?));
         }
-        polygons.add_face(&numbers, None, Place::Whole)?;
+        polygons.add_face(&numbers, None, Location::Whole)?;
         Ok(polygons)
     }();
     let options = Options {

@@ -53,7 +53,7 @@ fn quaternion(parts: [i32; 4]) -> Result<Quaternion> {
 fn sample_times(reads: Vec<(u64, bool)>) -> Result<Outcome> {
     let mut pace = Pace::new(glint_core::mpu6050::PERIOD);
     let times = reads.into_iter().map(|(time, found)| {
-        let measured = pace.on_look(time, found);
+        let measured = pace.on_poll(time, found);
         measured.map_or("-".to_owned(), |time| time.to_string())
     });
     Ok(Outcome::exact(times.collect::<Vec<_>>().join(" ")))

@@ -3,7 +3,7 @@
 use glint_core::camera::View;
 use glint_core::mesh::{Mesh, Rgb565};
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
-use glint_model::triangle::{Part, draw_parts};
+use glint_model::triangle::{PreparedMesh, draw_parts};
 use glint_model::{DrawnTriangle, FrameBuffer, MeshSetup, Options, Projected, Shading, Stats};
 
 pub const SIZES: [(u32, u32); 3] = glint_model::SIZES;
@@ -82,11 +82,13 @@ pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'stat
         }
     };
     let mut part = |number: usize| {
-        parts.get(number).map(|&(mesh, frame, options)| Part {
-            mesh,
-            frame,
-            options,
-        })
+        parts
+            .get(number)
+            .map(|&(mesh, frame, options)| PreparedMesh {
+                mesh,
+                frame,
+                options,
+            })
     };
     let (_, frame, options) = parts[0];
     let stats = draw_parts(

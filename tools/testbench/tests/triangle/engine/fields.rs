@@ -10,7 +10,7 @@ use glint_core::stereo::{Stereo, Tint};
 use glint_model::raymarch::Rays;
 use glint_model::triangle::descriptor::band_rows;
 use glint_model::{FieldSubject, Frame, Subject};
-use glint_testbench::raymarch::{Pixel, Place, pixel};
+use glint_testbench::raymarch::{Pixel, RayPlace, pixel};
 use glint_vectors::{Camera, Picture as Drawn};
 use rand::RngExt;
 use rand::seq::SliceRandom;
@@ -54,7 +54,7 @@ impl Picture {
         for (y, x) in (0..setup.height).flat_map(|y| (0..setup.width).map(move |x| (y, x))) {
             for eye in 0..eyes {
                 let ray = rays.ray(eye, x, y);
-                let place = Place {
+                let place = RayPlace {
                     odd: y / lines % 2 == 1,
                     line: y % lines,
                     column: x,

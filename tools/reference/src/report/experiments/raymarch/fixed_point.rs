@@ -4,7 +4,7 @@
 
 use glint_model::raymarch::{DEFAULT_TUNING, FieldOptions, FieldSetup, Ray, Tuning};
 
-use crate::raymarch::metrics::Outcome;
+use crate::raymarch::metrics::RayOutcome;
 use crate::raymarch::raymarched::{RenderedRay, Subject};
 use crate::raymarch::{Face, Field};
 
@@ -101,20 +101,20 @@ impl FixedPoint {
                 magnitude(point[i]) > self.bound && (point[i] < 0) == (ray.direction[i] < 0)
             };
             if (0..3).any(leaves) || next > self.tuning.far {
-                break Outcome::Miss;
+                break RayOutcome::Miss;
             }
             if distance < threshold as i32 {
                 let reached = t + self.rest(ray, distance, axis, positive);
                 let mut normal = [0.0; 3];
                 normal[axis] = if positive { 1.0 } else { -1.0 };
-                break Outcome::Hit {
+                break RayOutcome::Hit {
                     t: self.depth(ray, reached.min(farthest(self.fraction))),
                     face: Face::Axis { axis, positive },
                     normal,
                 };
             }
             if steps >= self.tuning.cap {
-                break Outcome::Undecided;
+                break RayOutcome::Undecided;
             }
             t = next;
         };

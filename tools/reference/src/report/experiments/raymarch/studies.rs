@@ -6,7 +6,7 @@ use glint_model::raymarch::{Cones, DEFAULT_TUNING, FieldOptions, Tuning};
 use super::fixed_point::{FixedPoint, MODEL_FRACTION};
 use super::requirements::{LARGE, SMALL};
 use super::trials::{Trial, Views, pixels};
-use crate::raymarch::metrics::Outcome;
+use crate::raymarch::metrics::RayOutcome;
 use crate::raymarch::raymarched::{self, Subject};
 use crate::raymarch::variant::{Method, Norm, Taps};
 use crate::report::provenance::Provenance;
@@ -283,7 +283,7 @@ fn normals(views: &Views) -> Vec<Trial> {
                         .into_iter()
                         .zip(pixels(subject))
                         .map(|(mut rendered, (_, _, ray))| {
-                            if let Outcome::Hit { t, face, .. } = &mut rendered.outcome {
+                            if let RayOutcome::Hit { t, face, .. } = &mut rendered.outcome {
                                 *face = taps.face(&subject.field, ray.at(*t), step);
                             }
                             rendered

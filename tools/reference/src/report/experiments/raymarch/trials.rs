@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::requirements::missed;
 use crate::camera::{Ray, Size};
 use crate::raymarch::Field;
-use crate::raymarch::metrics::{Expected, Outcome};
+use crate::raymarch::metrics::{Expected, RayOutcome};
 use crate::raymarch::raymarched::{self, Measured, RenderedRay, Subject};
 use crate::raymarch::variant::{Method, entry};
 use crate::raymarch::verilated::Raymarcher;
@@ -80,7 +80,7 @@ impl<'a> Views<'a> {
         let found: Vec<RenderedRay> = self.subjects.iter().flat_map(draw).collect();
         let measured = Measured::new(&self.expected, &found);
         let accuracy = measured.accuracy;
-        let hit = |ray: &&RenderedRay| matches!(ray.outcome, Outcome::Hit { .. });
+        let hit = |ray: &&RenderedRay| matches!(ray.outcome, RayOutcome::Hit { .. });
         let hits = found.iter().filter(hit).count();
         Trial {
             family: family.to_owned(),
