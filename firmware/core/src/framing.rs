@@ -120,7 +120,7 @@ impl Sphere {
         }
         let distance = wanted.clamp(least, most);
         let [[sp, cp], [st, ct]] = [POLAR, AZIMUTH.wrapping_add(turned)].map(sines);
-        // Away from the sphere, in units of 2^−30.
+        // Direction from the sphere to the camera, in units of 2^−30.
         let back = about(up, [(sp * ct) >> 30, (sp * st) >> 30, cp]);
         let eye = [0, 1, 2].map(|i| {
             let shift = (distance * back[i]) >> 18;

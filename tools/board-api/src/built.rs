@@ -20,9 +20,9 @@ pub struct NotBuilt {
     pub command: &'static str,
 }
 
-/// Finds a file of the folder `target` of a clone, which `command` builds. The clone is the one that the variable `GLINT_HOME` names. If the
-/// variable is not set, it is the first folder with the file among those above the running program, then the current folder and those above
-/// it.
+/// Finds a file of the folder `target` of a clone, which `command` builds. The clone is the one that the variable `GLINT_HOME`
+/// names. If the variable is not set, it is the first folder with the file among those above the running program, then the
+/// current folder and those above it.
 ///
 /// # Errors
 /// No folder has the file.

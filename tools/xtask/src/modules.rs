@@ -133,7 +133,7 @@ struct Import {
 }
 
 impl Crate {
-    /// Loads the crate whose root is the file `root`.
+    /// Loads the crate with the root file `root`.
     fn load(root: &Path, read: ReadSource) -> Result<Self> {
         let mut sources = Self::default();
         let folder = root.parent().unwrap_or(Path::new(""));

@@ -38,8 +38,8 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains nothing. Nor
-/// has it debug information, a tenth of the time: a panic names its line without.
+/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains
+/// nothing. Nor has it debug information, a tenth of the time: a panic names its line without.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
     command
