@@ -55,8 +55,8 @@ def environment(folder):
         first = rows.iloc[0]
         return f"Made at commit {first.commit} with {first.tools}."
 
-    pages = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, finalize=tables.shown, trim_blocks=True, lstrip_blocks=True,
-                        keep_trailing_newline=True)
+    pages = Environment(loader=FileSystemLoader(TEMPLATES), undefined=StrictUndefined, finalize=tables.shown,
+                        trim_blocks=True, lstrip_blocks=True)
     pages.globals.update(
         read=read, made=made, figures=figures, groups=tables.groups, concat=pd.concat,
         constants=dict(read("constants").set_index("name").value),

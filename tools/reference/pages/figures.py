@@ -68,14 +68,14 @@ def timeline(frames, lanes):
 
 
 def qualities(errors, cycles):
-    """Errors and cycles of frames, and whether a frame is on the front of its scene: no other has no more cycles and no larger errors, and less
-    of one of them. Cycles that differ by less than 0.5 % are equal, because scan-out reads memory at another time."""
+    """Errors and cycles of frames, and whether a frame is on the Pareto front of its scene: no other frame has no more of cycles and errors,
+    and less of one of them. Cycles that differ by less than 0.5 % are equal, because scan-out reads memory at another time."""
     frames = errors.merge(cycles.drop(columns="commit"), "left")
 
     def is_beaten(frame):
         others = frames[frames.scene == frame.scene]
         spent = others.cycles.where((others.cycles - frame.cycles).abs() > 0.005 * others.cycles, frame.cycles)
-        differences = pd.DataFrame({"wrong": others.wrong - frame.wrong, "colour": others.colour - frame.colour, "cycles": spent - frame.cycles})
+        differences = pd.concat([others.wrong - frame.wrong, others.colour - frame.colour, spent - frame.cycles], axis=1)
         return ((differences <= 0).all(axis=1) & (differences < 0).any(axis=1)).any()
 
     is_on_front = [not is_beaten(frame) for frame in frames.itertuples()]
@@ -114,7 +114,8 @@ def cases(rates):
             poses=poses.groupby("view").view.transform("size"),
             mean_alone=poses.groupby("view").cycles_alone.transform("mean"),
         )
-        name = [case["field"], 2 if case["stereo"] else 1, f"{case['width']}×{case['height']}", "yes" if case["prepass"] else "", case["lanes"]]
+        size = f"{case['width']}×{case['height']}"
+        name = [case["field"], 2 if case["stereo"] else 1, size, "yes" if case["prepass"] else "", case["lanes"]]
         rate = 1e6 * case["clock"] / views.cycles_frame.max()
         found.append(case | {"name": " | ".join(map(str, name)), "rate": rate, "views": rows(views)})
     return found
@@ -198,7 +199,8 @@ def index(read, blocks):
         cells = f"`{block}`: {blocks[block]['lut']}, {blocks[block]['dsp']}" if block else ""
         parts.append(pd.DataFrame({
             "name": name, "page": page, "config": frame.config, "shipped": frame.shipped, "error": frame.eval(error),
-            "rms": frame.eval(rms) if rms else np.nan, "cost": frame.eval(cost).astype(float), "error_unit": error_unit, "cost_unit": cost_unit,
+            "rms": frame.eval(rms) if rms else np.nan, "cost": frame.eval(cost).astype(float),
+            "error_unit": error_unit, "cost_unit": cost_unit,
             "cells": [cells if holds in config else "" for config in frame.config], "in_overview": in_overview,
         }))
 

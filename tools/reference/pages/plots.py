@@ -58,8 +58,8 @@ def scale(axis, values, above=0.06):
 
 
 def work_precision(path, rows, *, title, across, up, error, cost, family, label=None):
-    """Writes a diagram of costs against errors, given as expressions of the columns. A line joins the rows of a family, and a ring marks those
-    that Glint uses. A row without a cost is an empty mark at the upper end."""
+    """Writes a diagram of costs against errors, given as expressions of the columns. A line joins the rows of a family, and a ring marks
+    those that Glint uses. A row without a cost is an empty mark at the upper end."""
     points = rows.assign(error=rows.eval(error), cost=rows.eval(cost).astype(float), family=rows[family])
     points["label"] = rows[label].fillna("").astype(str) if label else ""
     figure, axis = axes(title, across, up)
@@ -115,7 +115,8 @@ def save_labelled(figure, axis, texts, path):
 
 
 def lines(path, rows, *, title, across, up, at, series, band, least=0.0):
-    """Writes lines over a column, each with its name, its expression and, if it has not all rows, their query, in front of a band from an expression to three times of it."""
+    """Writes lines over a column, in front of a band from an expression to three times of it. A line has a name, an expression and, unless it
+    has all rows, a query."""
     figure, axis = axes(title, across, up, right=0.98, bottom=0.2)
     scale(axis.xaxis, rows[at])
     values = [rows.eval(expression).abs().clip(lower=least) for _, expression, *_ in series] + [3 * rows.eval(band)]

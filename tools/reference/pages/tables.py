@@ -15,7 +15,6 @@ def read(folder, name):
     return pd.read_csv(
         path if path.exists() else COMMITTED / path.name,
         dtype={"commit": str, "config": str, "value": str},
-        float_precision="round_trip",
         keep_default_na=False,
         na_values=[""],
     )

@@ -45,6 +45,15 @@ class Qualities(unittest.TestCase):
         self.assertEqual(front((0.1, 1000), (0.1, 1000)), [True, True])
 
 
+    def test_the_qualities_of_a_scene_lie_on_its_front_and_differ(self):
+        frames = figures.qualities(*(tables.read(tables.COMMITTED, name) for name in ("quality", "quality-cycles")))
+        self.assertEqual(frames[frames.shipped & ~frames.is_on_front].scene.tolist(), [])
+        for scene, levels in frames[frames.shipped].groupby("scene"):
+            levels = levels.set_index("quality").loc[["fast", "balanced", "exact"]]
+            for column, is_ordered in [("cycles", 1), ("wrong", -1), ("colour", -1)]:
+                self.assertTrue((is_ordered * levels[column].diff()[1:] > 0).all(), f"{scene}: {column}")
+
+
 class Index(unittest.TestCase):
     CHOICES = pd.DataFrame(
         [("cheapest", 1e-1, 1), ("cheap", 1e-2, 5), ("own", 1e-3, 10), ("worse", 1e-2, 20), ("better", 1e-4, 30), ("best", 1e-6, 40),
@@ -63,8 +72,9 @@ class Index(unittest.TestCase):
 
 class Formats(unittest.TestCase):
     def test_numbers(self):
-        self.assertEqual([tables.sci(1.26e-10, 1), tables.sci(5e-4), tables.sci(0.0, 2), tables.sci(None, 1, "none")], ["1.3e-10", "5e-4", "0.00e0", "none"])
-        self.assertEqual([tables.shown(1e-5), tables.shown(81.25), tables.shown(100.0), tables.shown(None)], ["0.00001", "81.25", "100", ""])
+        self.assertEqual([tables.sci(1.26e-10, 1), tables.sci(5e-4), tables.sci(0.0, 2)], ["1.3e-10", "5e-4", "0.00e0"])
+        self.assertEqual(tables.sci(None, 1, "none"), "none")
+        self.assertEqual([tables.shown(value) for value in (1e-5, 81.25, 100.0, None)], ["0.00001", "81.25", "100", ""])
 
 
 if __name__ == "__main__":
