@@ -1,5 +1,6 @@
 //! Memory for uploads, or for copies of meshes, side by side. The largest gap between uploads is the staging memory.
 
+use core::ops::Range;
 use core::ptr;
 use core::slice;
 
@@ -8,10 +9,61 @@ use glint_core::regions::{Region, Regions};
 /// Largest number of uploads: the meshes, a program, and one that replaces another.
 const UPLOADS: usize = 18;
 
+/// Memory that a task fills or sends over several turns. Nothing else refers to it until it is given back.
+pub struct Loan {
+    bytes: &'static mut [u8],
+    /// The part of the bytes that is used.
+    part: Range<usize>,
+    /// The region of the arena that has lent it; `NONE` for other memory.
+    region: Region,
+}
+
+impl Default for Loan {
+    /// No memory.
+    fn default() -> Self {
+        Self::new(&mut [])
+    }
+}
+
+impl Loan {
+    /// A loan of memory that belongs to no arena.
+    pub const fn new(bytes: &'static mut [u8]) -> Self {
+        Self {
+            part: 0..bytes.len(),
+            bytes,
+            region: Region::NONE,
+        }
+    }
+
+    /// Whether it is memory of an arena.
+    pub fn is_of_arena(&self) -> bool {
+        self.region != Region::NONE
+    }
+
+    /// Uses this part of the bytes, or nothing if they have no such part.
+    pub const fn narrow(&mut self, part: Range<usize>) {
+        self.part = part;
+    }
+}
+
+impl AsRef<[u8]> for Loan {
+    fn as_ref(&self) -> &[u8] {
+        self.bytes.get(self.part.clone()).unwrap_or_default()
+    }
+}
+
+impl AsMut<[u8]> for Loan {
+    fn as_mut(&mut self) -> &mut [u8] {
+        self.bytes.get_mut(self.part.clone()).unwrap_or_default()
+    }
+}
+
 /// Memory that is divided into regions.
 pub struct Arena {
     memory: *mut [u8],
     regions: Regions<UPLOADS>,
+    /// Number of regions that are lent. Regions stay in place meanwhile.
+    lent: usize,
 }
 
 impl Arena {
@@ -20,7 +72,13 @@ impl Arena {
         Self {
             regions: Regions::new(memory.len()),
             memory: ptr::from_mut(memory),
+            lent: 0,
         }
+    }
+
+    /// Number of regions that are lent.
+    pub const fn lent(&self) -> usize {
+        self.lent
     }
 
     /// Number of bytes without a region.
@@ -42,6 +100,35 @@ impl Arena {
         self.regions.keep(length)
     }
 
+    /// Lends the first `length` bytes of [`staging`](Self::staging), as they are, until [`keep_lent`](Self::keep_lent) or
+    /// [`give_back`](Self::give_back) of this arena. `None` as of [`keep`](Self::keep).
+    pub fn lend(&mut self, length: usize) -> Option<Loan> {
+        let region = self.keep(length)?;
+        let start = self.regions.range(region).start;
+        self.lent += 1;
+        // SAFETY: the region has at least `length` bytes of the memory, which `new` took for good. Only the loan has its number, so that
+        // nothing else is made of its bytes before the loan is gone; it is apart from all other regions, and stays in place because
+        // `close_gaps` moves nothing while a region is lent.
+        let bytes =
+            unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(start), length) };
+        Some(Loan {
+            region,
+            ..Loan::new(bytes)
+        })
+    }
+
+    /// The region of a loan, which ends.
+    pub fn keep_lent(&mut self, loan: Loan) -> Region {
+        self.lent -= usize::from(loan.is_of_arena());
+        loan.region
+    }
+
+    /// Ends a loan and makes its region part of the gaps, which keep the bytes.
+    pub fn give_back(&mut self, loan: Loan) {
+        let region = self.keep_lent(loan);
+        self.release(region);
+    }
+
     /// The first `length` bytes of a region; nothing if it is shorter.
     pub fn bytes(&self, region: Region, length: usize) -> &[u8] {
         let range = self.regions.range(region);
@@ -55,8 +142,11 @@ impl Arena {
         self.regions.release(region);
     }
 
-    /// Moves all regions together, so that one gap remains.
+    /// Moves all regions together, so that one gap remains, unless a region is lent.
     pub fn close_gaps(&mut self) {
+        if self.lent > 0 {
+            return;
+        }
         let memory = self.memory.cast::<u8>();
         self.regions.close_gaps(|from, to| {
             // SAFETY: both ranges are in the memory, and the second one reaches no region but the moved one. This method borrows

@@ -14,14 +14,15 @@ mod scene;
 pub mod statistics;
 mod upload;
 
-pub use frame::send_frame;
+pub use frame::begin_download;
+pub use upload::finish;
 
 pub use scene::show as show_scene;
 
 use glint_core::console::{Command, Effect};
 
 use crate::error::CommandError;
-use crate::job::Reply;
+use crate::job::{Job, Reply};
 use crate::machine::Machine;
 
 /// Executes a line of the console as a command. Returns the command's reply; `None` for a blank line. A command that sets the picture
@@ -39,7 +40,8 @@ pub fn execute<'l>(
         return Ok(None);
     };
     let reply = command.execute(machine)?;
-    if command.effect() != Effect::None {
+    // An upload changes nothing until it has been accepted.
+    if command.effect() != Effect::None && !matches!(reply, Reply::After(Job::Transfer(_))) {
         machine.demo.stop();
     }
     Ok(Some(reply))

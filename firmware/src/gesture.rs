@@ -12,6 +12,7 @@ use glint_core::hand::{
     Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};
+use glint_core::tasks::Turn;
 use glint_engines::gesture::{self as engine, SetUpError};
 use glint_hal::gesture::GestureEngine;
 use glint_hal::timer::{Clock, Deadline};
@@ -39,11 +40,6 @@ static FRAME: Mutex<Cell<Option<u64>>> = Mutex::new(Cell::new(None));
 pub fn on_interrupt() {
     let now = cpu::cycles();
     critical_section::with(|token| FRAME.borrow(token).set(Some(now)));
-}
-
-/// Whether a frame waits for [`Gesture::poll`].
-pub fn has_frame() -> bool {
-    critical_section::with(|token| FRAME.borrow(token).get().is_some())
 }
 
 /// Clock cycles of the work for one frame, and from the end of a frame to its picture.
@@ -195,9 +191,10 @@ impl Gesture {
 
     /// Takes the statistics of a frame if one has ended; otherwise polls the image sensor from time to time.
     #[inline(never)]
-    pub fn poll(&mut self) {
+    pub fn poll(&mut self) -> Turn {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
-            return self.watch();
+            self.watch();
+            return Turn::Wait;
         };
         let start = cpu::cycles_low();
         // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
@@ -212,6 +209,7 @@ impl Gesture {
             self.cycles.frames = self.cycles.frames.wrapping_add(1);
             self.cycles.total += u64::from(cpu::cycles_low().wrapping_sub(start));
         }
+        Turn::Again
     }
 
     /// The position to which the camera moves; `None` if it has arrived.

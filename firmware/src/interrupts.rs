@@ -1,5 +1,7 @@
 //! The interrupt handler, and sleeping until the next interrupt.
 
+use core::sync::atomic::{AtomicU32, Ordering};
+
 use glint_core::feature::{GESTURE, IMU};
 use glint_hal::{gesture as engine, i2c, interrupt, raymarch, scanout, timer, triangle};
 use litex_pac::{Interrupt, cpu};
@@ -47,12 +49,20 @@ pub fn start(present: Present) {
     }
 }
 
-/// Sleeps until the next interrupt, unless `awake` returns true because there is work.
-pub fn sleep_unless(awake: impl FnOnce() -> bool) {
-    // An interrupt handled between `awake` and the sleep would not end the sleep. Interrupts are therefore masked: a
+/// Number of interrupts so far, modulo 2^32. Only the handler writes it, so load and store need not be atomic.
+static COUNT: AtomicU32 = AtomicU32::new(0);
+
+/// Number of interrupts so far, modulo 2^32.
+pub fn count() -> u32 {
+    COUNT.load(Ordering::Relaxed)
+}
+
+/// Sleeps until the next interrupt, unless one has come since [`count`] returned `before`.
+pub fn sleep(before: u32) {
+    // An interrupt handled between the comparison and the sleep would not end the sleep. Interrupts are therefore masked: a
     // pending interrupt ends the sleep and is handled afterwards.
     riscv::interrupt::free(|| {
-        if !awake() {
+        if count() == before {
             riscv::asm::wfi();
         }
     });
@@ -61,6 +71,7 @@ pub fn sleep_unless(awake: impl FnOnce() -> bool) {
 #[riscv_rt::core_interrupt(riscv::interrupt::Interrupt::MachineExternal)]
 fn handle() {
     let start = cpu::cycles_low();
+    COUNT.store(count().wrapping_add(1), Ordering::Relaxed);
     let unexpected = interrupt::dispatch(cpu::interrupts_pending(), |interrupt| match interrupt {
         Interrupt::Uart => UART.on_interrupt(),
         Interrupt::Scanout => scanout::acknowledge_vblank(),

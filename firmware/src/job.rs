@@ -6,15 +6,21 @@ use glint_core::fixed::Turns;
 use glint_hal::timer::Deadline;
 use glint_scene::{Scene, Sphere};
 
+use crate::arena::Loan;
 use crate::error::CommandError;
+use crate::transfer::Transfer;
 
 /// The result of a command.
 pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
 
 /// The result of a job; `Poll::Pending` until the job has ended.
-pub type JobResult = Poll<Result<(), CommandError<'static>>>;
+pub type JobResult = Poll<Outcome<'static>>;
 
 /// The reply of a successful command.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one reply exists at a time, and there is no heap"
+)]
 pub enum Reply {
     /// The command is done.
     Done,
@@ -23,6 +29,10 @@ pub enum Reply {
 }
 
 /// Work that continues after a command has returned.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one job exists at a time, and there is no heap"
+)]
 pub enum Job {
     /// Draw the scene.
     Draw,
@@ -37,10 +47,41 @@ pub enum Job {
     Orbit(Orbit),
     /// Calibrate the sensor, or print its samples.
     Sensor(SensorJob),
-    /// Compute the attitudes after the samples of an uploaded log.
-    Replay,
+    /// Compute the attitudes after the samples of an uploaded log, in this memory.
+    Replay(Loan),
     /// Calibrate the hand's colour, or send its mask.
     Gesture(GestureJob),
+    /// Receive or send data.
+    Transfer(Transfer),
+}
+
+impl Job {
+    /// Whether the next line ends the job. It waits until any other job has ended.
+    pub const fn ends_by_line(&self) -> bool {
+        match self {
+            Self::Orbit(_) | Self::Sensor(_) | Self::Replay(_) => true,
+            Self::Draw | Self::Render | Self::Frame { .. } => false,
+            Self::Gesture(_) | Self::Transfer(_) => false,
+        }
+    }
+
+    /// Whether the job waits for the next picture of the scene.
+    pub const fn awaits_picture(&self) -> bool {
+        match self {
+            Self::Draw | Self::Render | Self::Frame { .. } => true,
+            Self::Orbit(_) | Self::Sensor(_) | Self::Replay(_) => false,
+            Self::Gesture(_) | Self::Transfer(_) => false,
+        }
+    }
+
+    /// Whether the demo may show another scene meanwhile.
+    pub const fn allows_demo(&self) -> bool {
+        match self {
+            Self::Sensor(_) | Self::Replay(_) | Self::Transfer(_) => true,
+            Self::Draw | Self::Render | Self::Frame { .. } => false,
+            Self::Orbit(_) | Self::Gesture(_) => false,
+        }
+    }
 }
 
 /// A job that waits for a small picture of the image sensor.
@@ -90,7 +131,7 @@ impl Orbit {
     /// Moves the camera to its position for the next frame, until the turn is complete.
     pub fn poll(&mut self, scene: &mut Scene) -> JobResult {
         if self.frame == self.frames {
-            return Poll::Ready(Ok(()));
+            return Poll::Ready(Ok(Reply::Done));
         }
         self.frame += 1;
         // The shifted number of the frame fits 64 bits. The quotient is at most one full turn, 2^32, which wraps to 0.

@@ -7,6 +7,7 @@ use glint_hal::timer::Clock;
 use glint_scene::Scene;
 use litex_pac::ctrl::Ctrl;
 
+use crate::arena::Loan;
 use crate::demo::Demo;
 use crate::gesture::Gesture;
 use crate::interrupts::UART;
@@ -59,7 +60,7 @@ pub struct Machine {
     pub identity: Identity,
     /// Time since start.
     pub clock: Clock,
-    /// The UART, for transfers.
+    /// The UART.
     pub uart: &'static ConsoleUart,
     /// The console on the UART.
     pub terminal: Terminal,
@@ -124,8 +125,22 @@ impl Machine {
             switches: Switches::default(),
             ctrl,
             heartbeat: true,
-            downloads: Downloads::new(&UART, clock),
+            downloads: Downloads::default(),
             replay: None,
+        }
+    }
+
+    /// Whether a new frame is needed.
+    pub fn needs_picture(&self) -> bool {
+        self.picture.is_outdated(&self.scene, &self.models)
+    }
+
+    /// Takes back memory that was lent for a transfer or a replay.
+    pub fn give_back(&mut self, memory: Loan) {
+        if memory.is_of_arena() {
+            self.models.give_back(memory);
+        } else {
+            self.downloads.give_back(memory);
         }
     }
 }

@@ -4,13 +4,13 @@
 //! imports only modules below it:
 //!
 //! ```text
-//! start, main_loop
+//! start, main_loop (tasks), indicators (LEDs and digits)
 //! commands (scene, demo, object, appearance, camera, imu, gesture, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
 //! machine (state) ─┬─ renderer, gateware, scene, models, objects, shapes, arena, memory
-//!                  ├─ terminal, transfer
-//!                  ├─ panel (switches, LEDs, digits), demo, scenes (built in and in the flash)
+//!                  ├─ transfer, terminal
+//!                  ├─ panel (what switches, LEDs and digits mean), demo, scenes (built in and in the flash)
 //!                  ├─ sensor, gesture, replay
 //!                  └─ interrupts
 //! panic (traps, panics)    bench (kernels)
@@ -20,7 +20,7 @@
 #![no_main]
 #![deny(unsafe_code)]
 
-#[allow(unsafe_code)] // Divides memory into regions and moves them.
+#[allow(unsafe_code)] // Divides memory into regions, moves and lends them.
 mod arena;
 mod bench;
 mod commands;
@@ -30,6 +30,7 @@ mod error;
 mod format;
 mod gateware;
 mod gesture;
+mod indicators;
 #[allow(unsafe_code)] // Enables interrupts.
 mod interrupts;
 mod job;

@@ -1,7 +1,7 @@
-//! The main loop.
+//! The main loop: tasks take turns, and the CPU sleeps while all of them wait.
 //!
-//! No step of the loop waits: interrupts fill queues, and each pass of the loop takes the contents of the queues. A command
-//! whose reply needs a frame or samples leaves a [`Job`]; input waits in the UART's queue until this job has ended.
+//! No task waits in its turn: interrupts fill queues, and each task takes the contents of its queues. A command whose reply needs a frame,
+//! samples or a transfer leaves a [`Job`], a task like the others; input waits in the UART's queue until this job has ended.
 
 use core::future::pending;
 use core::pin::pin;
@@ -9,21 +9,21 @@ use core::task::Poll;
 use core::time::Duration;
 
 use glint_core::calibration::SAMPLES;
-use glint_core::feature::{DEMO, GESTURE, IMU, REPLAY, WIREFRAME};
+use glint_core::feature::{DEMO, GESTURE, IMU, WIREFRAME};
 use glint_core::hand::Pose;
 use glint_core::mpu6050::Stream;
+use glint_core::tasks::{self, Turn};
 use glint_hal::timer::{Clock, Deadline};
 use glint_scene::{Scene, Sphere};
-use litex_pac::cpu;
 
 use crate::commands::{self, gesture as gesture_commands, imu, replay, statistics};
 use crate::demo::Demo;
 use crate::error::CommandError;
-use crate::gesture;
+use crate::indicators::Indicators;
 use crate::interrupts;
 use crate::job::{Job, Reply};
 use crate::machine::{Devices, Machine};
-use crate::panel::{self, HOLD};
+use crate::panel::HOLD;
 use crate::sensor::{self, Imu, Inbox};
 use crate::terminal::Input;
 use crate::wireframe::{self, Keypad};
@@ -37,17 +37,27 @@ const CALIBRATE: u8 = 1 << 2;
 /// Bit of button 3, which recentres the camera.
 const RECENTRE: u8 = 1 << 3;
 
-/// Time between two changes of the blinking LED.
-const HEARTBEAT: Duration = Duration::from_millis(500);
+/// The tasks in the order of their turns.
+const TASKS: [fn(&mut MainLoop) -> Turn; 11] = [
+    // Comes first after an interrupt, because the gateware waits between the passes of a frame.
+    MainLoop::draw,
+    MainLoop::poll_job,
+    MainLoop::run_demo,
+    MainLoop::indicate,
+    MainLoop::poll_panel,
+    |all| all.machine.terminal.listen(),
+    |all| sensor::deliver(&mut all.machine.imu),
+    MainLoop::follow_hand,
+    MainLoop::answer,
+    MainLoop::steer,
+    MainLoop::step,
+];
 
 /// The machine and the state of its main loop.
 pub struct MainLoop {
     machine: Machine,
     job: Option<Job>,
-    /// Time of the next change of the blinking LED.
-    beat: Deadline,
-    /// The level of the blinking LED.
-    blinks: bool,
+    indicators: Indicators,
     /// Time at which the idle time after a reply ends.
     quiet: Deadline,
 }
@@ -59,8 +69,7 @@ impl MainLoop {
         Self {
             machine,
             job: None,
-            beat: clock.after(Duration::ZERO),
-            blinks: false,
+            indicators: Indicators::new(clock),
             quiet: clock.after(QUIET),
         }
     }
@@ -83,136 +92,69 @@ impl MainLoop {
         unsafe { sensor::start(stream) };
         self.power_up();
         loop {
-            // Comes first after an interrupt, because the gateware waits between the passes of a frame.
-            self.draw();
-            self.poll_job();
-            self.run_demo();
-            self.beat();
-            self.poll_panel();
-            self.machine.terminal.listen();
-            sensor::deliver(&mut self.machine.imu);
-            self.follow_hand();
-            self.answer();
-            self.steer();
-            self.step();
-            interrupts::sleep_unless(|| self.is_busy());
+            tasks::step(self, &TASKS, interrupts::count, interrupts::sleep);
         }
     }
 
-    /// Starts the demo, if the flash has a list, with its first scene as the first picture.
+    /// Starts the demo, if the flash has a list. The first picture is then that of its first scene.
     fn power_up(&mut self) {
-        let Machine {
-            demo,
-            library,
-            terminal,
-            ..
-        } = &mut self.machine;
-        if let Some((name, error)) = demo.power_up(library) {
-            terminal.notify(format_args!(
-                "demo: error {}: {name}: {error}",
-                demo.error().unwrap_or(0)
-            ));
+        let machine = &mut self.machine;
+        if let Some((name, error)) = machine.demo.power_up(&machine.library) {
+            let number = machine.demo.error().unwrap_or(0);
+            let text = format_args!("demo: error {number}: {name}: {error}");
+            machine.terminal.notify(text);
         }
         self.run_demo();
     }
 
     /// Goes on with the demo: begins the next turn when it is time, and turns the camera where the scene does.
-    fn run_demo(&mut self) {
-        let Machine {
-            demo,
-            clock,
-            renderer,
-            scene,
-            picture,
-            models,
-            ..
-        } = &mut self.machine;
-        if !demo.is_on() || self.job.is_some() || renderer.is_busy() {
-            return;
+    fn run_demo(&mut self) -> Turn {
+        let machine = &mut self.machine;
+        let is_allowed = self.job.as_ref().is_none_or(Job::allows_demo);
+        if !machine.demo.is_on() || !is_allowed || machine.renderer.is_busy() {
+            return Turn::Wait;
         }
-        if let Some(orbit) = &mut demo.orbit
-            && !picture.is_outdated(scene, models)
-            && orbit.poll(scene).is_ready()
+        let mut turn = Turn::Wait;
+        let is_outdated = machine.needs_picture();
+        if let (Some(orbit), false) = (&mut machine.demo.orbit, is_outdated) {
+            turn = Turn::Again;
+            if orbit.poll(&mut machine.scene).is_ready() {
+                machine.demo.orbit = None;
+            }
+        }
+        if (machine.demo.turns)
+            .poll(machine.clock.milliseconds())
+            .is_none()
         {
-            demo.orbit = None;
+            return turn;
         }
-        if demo.turns.poll(clock.milliseconds()).is_none() {
-            return;
-        }
-        demo.orbit = None;
-        let name = demo.scene().unwrap_or_default();
-        let shown = commands::show_scene(&mut self.machine, name);
-        let Machine { demo, terminal, .. } = &mut self.machine;
-        match shown {
-            Ok(Reply::After(Job::Orbit(orbit))) => demo.orbit = Some(orbit),
+        machine.demo.orbit = None;
+        let name = machine.demo.scene().unwrap_or_default();
+        match commands::show_scene(machine, name) {
+            Ok(Reply::After(Job::Orbit(orbit))) => machine.demo.orbit = Some(orbit),
             // Without a sensor the scene does not move.
             Ok(_) => {}
             Err(error) if error.is_of_sensor() => {}
             Err(error) => {
                 let number = error.number();
-                if demo.set_error(number) {
-                    terminal.notify(format_args!("demo: error {number}: {error}"));
+                if machine.demo.set_error(number) {
+                    let text = format_args!("demo: error {number}: {error}");
+                    machine.terminal.notify(text);
                 }
             }
         }
+        Turn::Again
     }
 
-    /// Whether there is work for the next pass of the loop, so that the CPU must not sleep.
-    fn is_busy(&mut self) -> bool {
-        // The last condition is for SoCs without scan-out, where no interrupt would wake the loop for the blinking LED.
-        let Machine {
-            renderer,
-            scene,
-            models,
-            picture,
-            ..
-        } = &mut self.machine;
-        let is_ready = renderer.is_ready(|| picture.is_outdated(scene, models));
-        is_ready
-            || self.answers_next()
-            || self.machine.keypad.is_changing()
-            || self.may_step()
-            || sensor::has_events()
-            || gesture::has_frame()
-            || matches!(self.job, Some(Job::Replay))
-            || self.demo_goes_on()
-            || !self.machine.renderer.display.is_visible()
-    }
-
-    /// Whether the demo has a scene to show now.
-    fn demo_goes_on(&self) -> bool {
-        let Machine { demo, clock, .. } = &self.machine;
-        demo.is_on()
-            && self.job.is_none()
-            && !self.machine.renderer.is_busy()
-            && demo.turns.is_ready(clock.milliseconds())
-    }
-
-    /// Whether the next pass of the loop will execute or receive input.
-    fn answers_next(&self) -> bool {
-        if self.machine.terminal.has_input() {
-            self.takes_input()
-        } else {
-            self.machine.uart.has_received()
-        }
-    }
-
-    /// Whether a line can be executed now. A line waits until the gateware has drawn its frame, and until most jobs have
-    /// ended. It does not wait for an orbit, a job of the sensor or a replay: the line ends such a job.
-    fn takes_input(&self) -> bool {
-        matches!(
-            self.job,
-            None | Some(Job::Orbit(_) | Job::Sensor(_) | Job::Replay)
-        ) && !self.machine.renderer.is_busy()
-    }
-
-    /// Executes the line that the terminal has received, if it is complete and can be executed now.
-    fn answer(&mut self) {
-        if !self.takes_input() {
-            return;
+    /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and
+    /// the job has ended, or ends by the line.
+    fn answer(&mut self) -> Turn {
+        let is_free = self.job.as_ref().is_none_or(Job::ends_by_line);
+        if !is_free || self.machine.renderer.is_busy() {
+            return Turn::Wait;
         }
         let Some(input) = self.machine.terminal.input() else {
-            return;
+            return Turn::Wait;
         };
         if self.job.is_some() {
             // The prompt follows the reply to the line, which is already on the screen.
@@ -228,86 +170,72 @@ impl MainLoop {
             Input::Overlong => self.finish(Err(CommandError::Overlong)),
             Input::Interrupt => self.machine.terminal.prompt(),
         }
+        Turn::Again
     }
 
     /// Computes the camera's position from a frame of the image sensor.
-    fn follow_hand(&mut self) {
-        if GESTURE.is_built
-            && let Some(gesture) = &mut self.machine.gesture
-        {
-            gesture.poll();
+    fn follow_hand(&mut self) -> Turn {
+        match &mut self.machine.gesture {
+            Some(gesture) if GESTURE.is_built => gesture.poll(),
+            _ => Turn::Wait,
         }
     }
 
     /// Turns the camera to the sensor's attitude or moves it to the position that the hand sets, if a frame can be drawn.
-    fn steer(&mut self) {
-        let Machine {
-            renderer,
-            scene,
-            picture,
-            models,
-            imu,
-            gesture,
-            ..
-        } = &mut self.machine;
-        if renderer.is_busy() || renderer.display.back().is_none() {
-            return;
+    fn steer(&mut self) -> Turn {
+        let machine = &mut self.machine;
+        if machine.renderer.is_busy() || machine.renderer.display.back().is_none() {
+            return Turn::Wait;
         }
+        let (scene, picture) = (&mut machine.scene, &mut machine.picture);
+        let mut turn = Turn::Wait;
         if GESTURE.is_built
-            && let Some(gesture) = gesture
+            && let Some(gesture) = &mut machine.gesture
         {
             if let Some(Pose { r, theta, phi }) = gesture.move_to() {
                 // The control keeps the distance in its range.
                 let _ = scene.set_sphere(Sphere { r, theta, phi });
-                if !picture.is_outdated(scene, models) {
+                if !picture.is_outdated(scene, &machine.models) {
                     gesture.on_unchanged();
                 }
+                turn = Turn::Again;
             }
-            picture.mark = gesture.mark();
+            if picture.mark != gesture.mark() {
+                picture.mark = gesture.mark();
+                turn = Turn::Again;
+            }
         }
         let (eye, radius) = (scene.view.eye(), scene.sphere.r);
         if IMU.is_built
-            && let Some(Ok(view)) = imu.view(eye, radius)
+            && let Some(Ok(view)) = machine.imu.view(eye, radius)
         {
             scene.move_view(view);
+            turn = Turn::Again;
         }
-    }
-
-    /// Whether a key has requested a step of the wireframe, and a frame can be drawn.
-    fn may_step(&mut self) -> bool {
-        let Machine {
-            keypad,
-            scene,
-            picture,
-            models,
-            renderer,
-            ..
-        } = &mut self.machine;
-        WIREFRAME.is_built
-            && keypad.has_request()
-            && !picture.is_outdated(scene, models)
-            && !renderer.is_busy()
-            && renderer.display.back().is_some()
+        turn
     }
 
     /// Moves the wireframe by the request of one key, if a frame can be drawn: each frame has at most one step.
-    fn step(&mut self) {
-        if !self.may_step() {
-            return;
+    fn step(&mut self) -> Turn {
+        let machine = &mut self.machine;
+        if !WIREFRAME.is_built
+            || !machine.keypad.has_request()
+            || machine.renderer.is_busy()
+            || machine.renderer.display.back().is_none()
+            || machine.needs_picture()
+        {
+            return Turn::Wait;
         }
-        let Machine {
-            keypad,
-            scene,
-            devices,
-            ..
-        } = &mut self.machine;
-        if let (Some(key), Some(devices)) = (keypad.take(), devices) {
-            scene.move_wireframe(key.step(wireframe::rotates(devices.switches.read())));
-        }
+        let (Some(devices), Some(key)) = (&machine.devices, machine.keypad.take()) else {
+            return Turn::Wait;
+        };
+        let rotates = wireframe::rotates(devices.switches.read());
+        machine.scene.move_wireframe(key.step(rotates));
+        Turn::Again
     }
 
     /// Draws the scene if it has changed and a frame buffer is free.
-    fn draw(&mut self) {
+    fn draw(&mut self) -> Turn {
         let Machine {
             terminal,
             scene,
@@ -320,63 +248,91 @@ impl MainLoop {
             clock,
             gesture,
             demo,
+            heartbeat,
             ..
         } = &mut self.machine;
-        let is_outdated = !renderer.is_busy() && picture.is_outdated(scene, models);
-        if matches!(self.job, Some(Job::Draw | Job::Render | Job::Frame { .. })) && is_outdated {
-            renderer.drop_pending();
+        let job = &mut self.job;
+        let begins = !renderer.is_busy();
+        if begins {
+            if !picture.is_outdated(scene, models) {
+                return Turn::Wait;
+            }
+            if job.as_ref().is_some_and(Job::awaits_picture) {
+                renderer.drop_pending();
+            }
+            if job.is_none() && !self.quiet.passed() {
+                // No interrupt comes at the end of this short time.
+                return Turn::Again;
+            }
         }
+        // The turns that other tasks get while the CPU draws.
         let mut progress = || {
+            if let Some(Job::Transfer(transfer)) = job {
+                transfer.poll(terminal, *clock);
+            }
             terminal.listen();
             sensor::deliver(imu);
             poll_buttons(devices, keypad, *clock, scene, imu, demo);
+            self.indicators.poll(devices, demo, picture, *heartbeat);
         };
-        if !renderer.is_busy() {
-            if !is_outdated || !(self.job.is_some() || self.quiet.passed()) {
-                return;
-            }
+        if begins {
             models.update_objects(scene, &mut progress);
         }
-        if let Some(drawn) = renderer.draw(models, scene, picture, progress) {
-            picture.set_drawn(drawn, scene, models);
-            if GESTURE.is_built
-                && let Some(gesture) = gesture
-            {
-                gesture.on_drawn();
-            }
+        let Some(drawn) = renderer.draw(models, scene, picture, progress) else {
+            return Turn::worked(renderer.is_ready());
+        };
+        picture.set_drawn(drawn, scene, models);
+        if GESTURE.is_built
+            && let Some(gesture) = gesture
+        {
+            gesture.on_drawn();
         }
+        Turn::Again
     }
 
     /// Continues the job that a command has left, if there is one, and ends the reply of this command when the job has ended.
-    fn poll_job(&mut self) {
+    fn poll_job(&mut self) -> Turn {
         let machine = &mut self.machine;
-        let Some(job) = &mut self.job else { return };
-        let is_outdated = |machine: &Machine| {
-            let Machine {
-                picture,
-                scene,
-                models,
-                ..
-            } = machine;
-            picture.is_outdated(scene, models)
+        let Some(job) = &mut self.job else {
+            return Turn::Wait;
         };
-        // No command of a build leaves a job of a part that it leaves out.
+        let mut turn = Turn::Wait;
         let result = match job {
-            Job::Sensor(job) if IMU.is_built => imu::poll(machine, job),
-            Job::Replay if REPLAY.is_built => replay::poll(machine),
-            Job::Gesture(job) if GESTURE.is_built => gesture_commands::poll(machine, job),
-            Job::Sensor(_) | Job::Replay | Job::Gesture(_) => Poll::Ready(Ok(())),
-            Job::Draw | Job::Render | Job::Frame { .. } | Job::Orbit(_) if is_outdated(machine) => {
+            Job::Transfer(transfer) => {
+                turn = transfer.poll(&mut machine.terminal, machine.clock);
+                // An upload may take the place of a mesh that is being drawn.
+                if transfer.is_over() && !machine.renderer.is_busy() {
+                    Poll::Ready(commands::finish(machine, transfer))
+                } else {
+                    Poll::Pending
+                }
+            }
+            Job::Sensor(job) => imu::poll(machine, job),
+            Job::Replay(memory) => {
+                turn = Turn::Again;
+                replay::poll(machine, memory)
+            }
+            Job::Gesture(job) => gesture_commands::poll(machine, job),
+            Job::Draw | Job::Render | Job::Frame { .. } | Job::Orbit(_)
+                if machine.needs_picture() =>
+            {
                 Poll::Pending
             }
-            Job::Draw => Poll::Ready(Ok(())),
-            Job::Render => Poll::Ready(statistics::print(machine, false)),
-            Job::Frame { depth } => Poll::Ready(commands::send_frame(machine, *depth)),
-            Job::Orbit(orbit) => orbit.poll(&mut machine.scene),
+            Job::Draw => Poll::Ready(Ok(Reply::Done)),
+            Job::Render => Poll::Ready(statistics::print(machine, false).map(|()| Reply::Done)),
+            Job::Frame { depth } => Poll::Ready(commands::begin_download(machine, *depth)),
+            Job::Orbit(orbit) => {
+                turn = Turn::Again;
+                orbit.poll(&mut machine.scene)
+            }
         };
-        if let Poll::Ready(result) = result {
-            self.finish(result);
+        match result {
+            Poll::Pending => return turn,
+            Poll::Ready(Ok(Reply::After(next))) => self.job = Some(next),
+            Poll::Ready(Ok(Reply::Done)) => self.finish(Ok(())),
+            Poll::Ready(Err(error)) => self.finish(Err(error)),
         }
+        Turn::Again
     }
 
     /// Ends the reply of a command, and its job if it has one, and prints the prompt.
@@ -387,23 +343,20 @@ impl MainLoop {
 
     /// Ends the reply of a command, and its job if it has one.
     fn end_job(&mut self, result: Result<(), CommandError>) {
-        self.job = None;
-        let Machine {
-            terminal,
-            picture,
-            clock,
-            ..
-        } = &mut self.machine;
-        picture.wants_depth = false;
-        self.quiet = clock.after(QUIET);
+        let machine = &mut self.machine;
+        if let Some(Job::Replay(memory)) = self.job.take() {
+            machine.give_back(memory);
+        }
+        machine.picture.wants_depth = false;
+        self.quiet = machine.clock.after(QUIET);
         match result {
-            Ok(()) => terminal.print(format_args!("ok\n")),
-            Err(error) => terminal.print(format_args!("error: {error}\n")),
+            Ok(()) => machine.terminal.print(format_args!("ok\n")),
+            Err(error) => machine.terminal.print(format_args!("error: {error}\n")),
         }
     }
 
-    /// Acts on buttons and switches that have changed since the last poll.
-    fn poll_panel(&mut self) {
+    /// Acts on buttons and switches that have changed since the last turn.
+    fn poll_panel(&mut self) -> Turn {
         let Machine {
             devices,
             keypad,
@@ -415,37 +368,31 @@ impl MainLoop {
             renderer,
             ..
         } = &mut self.machine;
-        poll_buttons(devices, keypad, *clock, scene, imu, demo);
+        let mut turn = poll_buttons(devices, keypad, *clock, scene, imu, demo);
         // The scene must not change while the gateware draws.
-        if let (Some(devices), true, false) = (devices, DEMO.is_built, renderer.is_busy()) {
-            switches.take(devices.switches.read(), demo, scene, clock.milliseconds());
+        if let (Some(devices), true, false) = (devices, DEMO.is_built, renderer.is_busy())
+            && switches.take(devices.switches.read(), demo, scene, clock.milliseconds())
+        {
+            turn = Turn::Again;
         }
+        turn
     }
 
-    /// Blinks the first LED, and shows the state of the board.
-    fn beat(&mut self) {
-        if !self.beat.passed() {
-            return;
+    /// Shows the state of the board on LEDs and digits.
+    fn indicate(&mut self) -> Turn {
+        let machine = &mut self.machine;
+        let turn = self.indicators.poll(
+            &mut machine.devices,
+            &machine.demo,
+            &machine.picture,
+            machine.heartbeat,
+        );
+        // The interrupt of the vertical blanking wakes the tasks that wait for a time. A SoC without scan-out has no such interrupt.
+        if machine.renderer.display.is_visible() {
+            turn
+        } else {
+            Turn::Again
         }
-        let Machine {
-            clock,
-            devices,
-            heartbeat,
-            demo,
-            picture,
-            ..
-        } = &mut self.machine;
-        self.beat = clock.after(HEARTBEAT);
-        self.blinks = !self.blinks;
-        // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
-        sensor::advance(cpu::cycles_low());
-        let Some(devices) = devices else { return };
-        if *heartbeat {
-            devices.leds.set(panel::leds(demo, self.blinks));
-        }
-        let drawn = picture.drawn().and_then(Result::ok);
-        let rate = drawn.map(|drawn| drawn.rate(clock.frequency()));
-        devices.digits.show(panel::digits(demo, rate, self.blinks));
     }
 }
 
@@ -458,28 +405,29 @@ fn poll_buttons(
     scene: &Scene,
     imu: &mut Imu,
     demo: &mut Demo,
-) {
+) -> Turn {
     let Some(devices) = devices else {
-        return;
+        return Turn::Wait;
     };
     if !(IMU.is_built || WIREFRAME.is_built || DEMO.is_built) {
-        return;
+        return Turn::Wait;
     }
     let pressed = keypad.sample(devices.buttons.read(), clock);
     if pressed == 0 {
-        return;
+        // No interrupt tells when the level of a button has settled.
+        return Turn::worked(keypad.is_changing());
     }
     let switches = devices.switches.read();
     if scene.wireframe().is_some() && (!demo.is_on() || switches & HOLD != 0) {
         keypad.press(pressed, switches);
-        return;
+        return Turn::Again;
     }
     let steers = IMU.is_built && imu.follow().is_some();
     if demo.is_on() {
         demo.press(pressed, steers, clock.milliseconds());
     }
     if !IMU.is_built || demo.is_on() && !steers {
-        return;
+        return Turn::Again;
     }
     if pressed & CALIBRATE != 0 {
         imu.calibrate(SAMPLES);
@@ -487,4 +435,5 @@ fn poll_buttons(
     if pressed & RECENTRE != 0 {
         imu.recentre();
     }
+    Turn::Again
 }

@@ -19,6 +19,8 @@ pub struct Memory {
     pub eye: &'static mut [u16],
     /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
+    /// Memory for a copy of a picture that is downloaded.
+    pub copy: &'static mut [u8],
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
     /// Memory for copies of meshes with turned normals.
@@ -41,6 +43,8 @@ unsafe extern "C" {
     static _eye_size: u8;
     static mut _depth: u8;
     static _depth_size: u8;
+    static mut _copy: u8;
+    static _copy_size: u8;
     static mut _scratch: u8;
     static _scratch_size: u8;
     static mut _turned: u8;
@@ -97,6 +101,7 @@ impl Memory {
             ],
             eye: window!(_eye, _eye_size, u16),
             depth: window!(_depth, _depth_size, u32),
+            copy: window!(_copy, _copy_size, u8),
             scratch: Scratch {
                 memory: window!(_scratch, _scratch_size, MaybeUninit<Projected>),
                 ready: 0,

@@ -10,7 +10,7 @@ use glint_model::Frame;
 use glint_scene::{Content, Name, Scene};
 use heapless::Vec;
 
-use crate::arena::Arena;
+use crate::arena::{Arena, Loan};
 use crate::objects::Objects;
 use crate::shapes::Shapes;
 
@@ -160,36 +160,38 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that an upload may have this name, which is not that of a scene.
+    /// Checks that an upload may have this name, which is not that of a scene. An upload that is under way counts as a mesh.
     ///
     /// # Errors
     /// The reason why not.
     pub fn check_name(&self, name: &str) -> Result<(), NameError> {
-        if self.meshes.is_full() && !self.has_upload(name) {
+        if self.meshes.len() + self.arena.lent() >= MAX_MESHES && !self.has_upload(name) {
             return Err(NameError::Full);
         }
         Ok(())
     }
 
-    /// Returns the first `length` bytes of the staging memory; `None` if the free memory is shorter. This may move uploads, so no
-    /// frame may be in progress.
-    pub fn staging_of(&mut self, length: usize) -> Option<&mut [u8]> {
+    /// Lends the first `length` bytes of the staging memory; `None` if the free memory is shorter. This may move uploads, so no frame
+    /// may be in progress.
+    pub fn lend(&mut self, length: usize) -> Option<Loan> {
         if (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
             self.close_gaps();
         }
-        self.arena.staging().get_mut(..length)
+        self.arena.lend(length)
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a mesh, and keeps them under `name`, instead of an earlier mesh
-    /// of this name.
+    /// Takes memory back that [`lend`](Self::lend) has lent. The staging memory keeps its bytes.
+    pub fn give_back(&mut self, loan: Loan) {
+        self.arena.give_back(loan);
+    }
+
+    /// Checks lent memory as a mesh, and keeps the mesh under `name`, instead of an earlier one of this name. No frame may be in progress.
     ///
     /// # Errors
-    /// [`MeshError`] for an invalid mesh; then nothing changes.
-    pub fn accept(&mut self, name: &str, length: usize) -> Result<(), MeshError> {
-        let Some(region) = self.arena.keep(length) else {
-            // The caller has checked name and length, so this returns an error.
-            return Mesh::new_checked(&[]).map(drop);
-        };
+    /// [`MeshError`] for an invalid mesh; then nothing changes, and the memory is given back.
+    pub fn accept(&mut self, name: &str, loan: Loan) -> Result<(), MeshError> {
+        let length = loan.as_ref().len();
+        let region = self.arena.keep_lent(loan);
         let mesh = match Mesh::new_checked(self.lasting(region, length)) {
             Ok(mesh) => mesh,
             Err(error) => {
@@ -217,16 +219,13 @@ impl Models {
         self.objects.truncate(0);
     }
 
-    /// Checks the first `length` bytes of [`staging`](Self::staging) as a wireframe program, and keeps the program instead of the
-    /// last one.
+    /// Checks lent memory as a wireframe program, and keeps the program instead of the last one. No frame may be in progress.
     ///
     /// # Errors
-    /// [`ProgramError`] for an invalid program; then nothing changes.
-    pub fn accept_program(&mut self, length: usize) -> Result<(), ProgramError<'static>> {
-        let Some(region) = self.arena.keep(length) else {
-            // The caller has checked the length, so this returns an error.
-            return Program::new_checked(&[]).map(drop);
-        };
+    /// [`ProgramError`] for an invalid program; then nothing changes, and the memory is given back.
+    pub fn accept_program(&mut self, loan: Loan) -> Result<(), ProgramError<'static>> {
+        let length = loan.as_ref().len();
+        let region = self.arena.keep_lent(loan);
         match Program::new_checked(self.lasting(region, length)) {
             Ok(program) => {
                 self.revise();

@@ -26,8 +26,8 @@ const SCENE: u16 = 4;
 pub struct Switches(u16);
 
 impl Switches {
-    /// Acts on switches that have changed since the last call. They are off at start.
-    pub fn take(&mut self, switches: u16, demo: &mut Demo, scene: &mut Scene, now: u64) {
+    /// Acts on switches that have changed since the last call, and returns whether there are some. They are off at start.
+    pub fn take(&mut self, switches: u16, demo: &mut Demo, scene: &mut Scene, now: u64) -> bool {
         let changed = core::mem::replace(&mut self.0, switches) ^ switches;
         if changed & OVERLAY != 0 {
             scene.overlay = switches & OVERLAY != 0;
@@ -35,6 +35,7 @@ impl Switches {
         if changed & HOLD != 0 && demo.is_on() {
             demo.turns.hold(now, switches & HOLD != 0);
         }
+        changed != 0
     }
 }
 

@@ -132,12 +132,11 @@ impl Renderer {
             .is_some_and(GatewareRenderer::is_busy)
     }
 
-    /// Whether [`draw`](Self::draw) would make progress: the gateware does, or `is_outdated` says that a frame is needed.
-    pub fn is_ready(&mut self, is_outdated: impl FnOnce() -> bool) -> bool {
-        match &self.gateware {
-            Some(gateware) if gateware.is_busy() => gateware.is_ready(),
-            Some(_) | None => self.display.back().is_some() && is_outdated(),
-        }
+    /// Whether the gateware has ended the pass that [`draw`](Self::draw) waits for.
+    pub fn is_ready(&self) -> bool {
+        self.gateware
+            .as_ref()
+            .is_some_and(GatewareRenderer::is_ready)
     }
 
     /// Draws a frame by the gateware. `None` means that the frame is not drawn yet, `Err` that the CPU must draw the frame.

@@ -9,7 +9,7 @@ use litex_pac::cpu;
 /// Number of samples that are replayed in one pass of the main loop, a few milliseconds of work.
 const SLICE: usize = 256;
 
-/// A log in the staging memory and the progress of its replay.
+/// The progress of the replay of a log.
 pub struct Replay {
     tracker: Tracker,
     /// Time of the last replayed sample in µs.
@@ -67,18 +67,14 @@ impl Replay {
         (self.cycles + samples / 2) / samples
     }
 
-    /// The records of the log in the staging memory.
-    pub fn records<'m>(&self, staging: &'m [u8]) -> &'m [u8] {
-        staging.get(self.range()).unwrap_or_default()
-    }
-
-    const fn range(&self) -> Range<usize> {
+    /// The range of the records in the memory of the log.
+    pub const fn range(&self) -> Range<usize> {
         HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * self.samples
     }
 
-    /// Replays the next slice of the log in the staging memory.
-    pub fn advance(&mut self, staging: &mut [u8]) {
-        let records = staging.get_mut(self.range()).unwrap_or_default();
+    /// Replays the next slice of the log in `memory`.
+    pub fn advance(&mut self, memory: &mut [u8]) {
+        let records = memory.get_mut(self.range()).unwrap_or_default();
         // The cast is possible, because the memory is aligned and header and records are whole words. The values are right,
         // because this core is little-endian like the log.
         let records = bytemuck::try_cast_slice_mut::<u8, Record>(records).unwrap_or_default();

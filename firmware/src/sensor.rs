@@ -11,6 +11,7 @@ use core::task::{Context, Waker};
 use critical_section::Mutex;
 use glint_core::feature::IMU;
 use glint_core::mpu6050::{Error, Identity, Measurement, Sink};
+use glint_core::tasks::Turn;
 use glint_hal::i2c;
 use heapless::Deque;
 use litex_pac::cpu;
@@ -31,8 +32,9 @@ enum Event {
     Error(SensorError),
 }
 
-/// Capacity of the queue of events, enough for the samples that arrive while a long frame is drawn.
-const QUEUE: usize = 256;
+/// Capacity of the queue of events: a second of samples, which arrive while a task takes its longest turn, such as the check of an
+/// uploaded mesh.
+const QUEUE: usize = 1024;
 
 /// The future that reads the sensor and never ends.
 struct Stream(Pin<&'static mut dyn Future<Output = ()>>);
@@ -122,18 +124,15 @@ pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }
 
-/// Whether the queue has an event.
-pub fn has_events() -> bool {
-    IMU.is_built && critical_section::with(|token| !EVENTS.borrow_ref(token).is_empty())
-}
-
 /// Gives all queued events to `imu`.
-pub fn deliver(imu: &mut Imu) {
+pub fn deliver(imu: &mut Imu) -> Turn {
+    let mut turn = Turn::Wait;
     if !IMU.is_built {
-        return;
+        return turn;
     }
     while let Some(event) = critical_section::with(|token| EVENTS.borrow_ref_mut(token).pop_front())
     {
+        turn = Turn::Again;
         match event {
             Event::Start(identity) => imu.on_start(identity),
             Event::Sample(time, measurement) => {
@@ -144,4 +143,5 @@ pub fn deliver(imu: &mut Imu) {
             Event::Error(error) => imu.on_error(error),
         }
     }
+    turn
 }

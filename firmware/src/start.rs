@@ -32,6 +32,7 @@ use crate::memory::{self, Memory};
 use crate::models::Models;
 use crate::renderer::Renderer;
 use crate::scenes::Library;
+use crate::transfer::Downloads;
 
 /// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
 #[unsafe(no_mangle)]
@@ -197,6 +198,7 @@ pub fn machine() -> Result<Machine, StartError> {
         peripherals.ctrl,
     );
     machine.library = Library::new(contents);
+    machine.downloads = Downloads::new(memory.copy);
     machine.gesture = gesture.map(|engine| Gesture::new(engine, clock));
     Ok(machine)
 }

@@ -5,6 +5,7 @@ use core::time::Duration;
 
 use embedded_io::Write as _;
 use glint_core::console::{Event, LINE_MAX, LineEditor, PROMPT};
+use glint_core::tasks::Turn;
 use glint_hal::timer::Clock;
 use glint_hal::uart::{Uart, Writer};
 use heapless::String;
@@ -41,6 +42,8 @@ pub struct Terminal {
     editor: LineEditor,
     output: Output,
     waiting: Option<Input>,
+    /// Whether a transfer has the line.
+    is_lent: bool,
 }
 
 impl Terminal {
@@ -54,13 +57,26 @@ impl Terminal {
             editor: LineEditor::new(),
             output,
             waiting: None,
+            is_lent: false,
         }
     }
 
+    /// The UART of the line.
+    pub const fn uart(&self) -> &'static ConsoleUart {
+        self.uart
+    }
+
+    /// Lends the line to a transfer, or takes it back. While it is lent, no input is received, and text is dropped.
+    pub const fn lend(&mut self, is_lent: bool) {
+        self.is_lent = is_lent;
+    }
+
     /// Receives and echoes input until a line is complete. Bytes of further lines wait in the UART's queue.
-    pub fn listen(&mut self) {
+    pub fn listen(&mut self) -> Turn {
         let mut byte = [0];
-        while self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
+        let mut has_worked = false;
+        while !self.is_lent && self.waiting.is_none() && self.uart.receive(&mut byte) > 0 {
+            has_worked = true;
             self.waiting = match self.editor.on_byte(byte[0], &mut self.output) {
                 Event::None => None,
                 // The editor limits lines to the string's capacity, so the conversion does not fail.
@@ -69,16 +85,12 @@ impl Terminal {
                 Event::Interrupt => Some(Input::Interrupt),
             };
         }
+        Turn::worked(has_worked)
     }
 
     /// Takes the complete line or key, if there is one.
     pub fn input(&mut self) -> Option<Input> {
         self.waiting.take()
-    }
-
-    /// Whether a complete line or key is waiting.
-    pub const fn has_input(&self) -> bool {
-        self.waiting.is_some()
     }
 
     /// Prints the prompt.
@@ -88,12 +100,18 @@ impl Terminal {
 
     /// Prints a line above the prompt and the typed line.
     pub fn notify(&mut self, text: fmt::Arguments) {
+        if self.is_lent {
+            return;
+        }
         self.print(format_args!("\r\x1b[K{text}\n"));
         let _ = self.editor.redraw(&mut self.output);
     }
 
     /// Prints text. The text is lost if the serial line accepts no text.
     pub fn print(&mut self, text: fmt::Arguments) {
+        if self.is_lent {
+            return;
+        }
         let _ = fmt::Write::write_fmt(&mut self.output, text);
     }
 

@@ -1,80 +1,271 @@
-//! Uploads and downloads: `glint-core`'s transfer between a buffer and the UART.
+//! Uploads and downloads as tasks: `glint-core`'s transfer between lent memory and the UART, a part of it in each turn.
 //!
 //! During a transfer the line carries no other text. A transfer ends when it is complete, when the other side cancels it,
 //! or after a timeout.
 
-use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
-use glint_hal::timer::Clock;
+use core::mem;
+use core::ops::Range;
 
+use glint_core::tasks::Turn;
+use glint_core::wire::{
+    CRC_32, Digest, Failure, MAX_FRAME, Manifest, Party, Receiving, Role, Sending, State, Timing,
+};
+use glint_hal::timer::Clock;
+use glint_scene::Name;
+
+use crate::arena::Loan;
 use crate::terminal::{ConsoleUart, Terminal};
 
-/// Receives the upload that `manifest` announces into `buffer`.
-///
-/// # Errors
-/// The upload is incomplete.
-pub fn receive(
-    uart: &ConsoleUart,
-    clock: Clock,
-    buffer: &mut [u8],
-    manifest: Manifest,
-) -> Result<(), Failure> {
-    let receiver = Receiver::new(
-        buffer,
-        Some(manifest),
-        Timing::CONSOLE,
-        clock.milliseconds(),
-    );
-    run(uart, clock, receiver)
+/// Number of bytes whose CRC-32 is computed in a turn, about half a millisecond of work.
+const SUMMED: usize = 4 << 10;
+/// Largest number of times in a turn that bytes are exchanged with the UART's queues, up to 256 received ones each time.
+const EXCHANGES: u32 = 8;
+
+/// Timeouts of all transfers.
+const TIMING: Timing = Timing::CONSOLE;
+
+/// What a transfer is for.
+pub enum Purpose {
+    /// An upload of a mesh under this name.
+    Mesh(Name),
+    /// An upload of a wireframe program.
+    Program,
+    /// An upload of a log of sensor samples.
+    Log,
+    /// A download.
+    Download,
+}
+
+/// A transfer in progress.
+pub struct Transfer {
+    /// What it is for.
+    pub purpose: Purpose,
+    /// Of an upload, length and CRC-32 that the host has announced.
+    announced: Option<Manifest>,
+    /// The session number of a download.
+    session: u8,
+    stage: Stage,
+    line: Line,
+}
+
+enum Stage {
+    /// The CRC-32 of the memory is computed: that of the data to send, or that of what is in the memory for an upload, which may be the
+    /// announced data already. A tool may have written them there, bypassing the cache, or a transfer may have been interrupted near its
+    /// end.
+    Sum(Sum),
+    Receive(Party<Receiving<Loan>>),
+    Send(Party<Sending<Loan>>),
+    Over(Loan, Result<(), Failure>),
+}
+
+impl Transfer {
+    /// An upload, announced by `manifest`, into memory of its length.
+    pub fn upload(
+        purpose: Purpose,
+        manifest: Manifest,
+        memory: Loan,
+        terminal: &mut Terminal,
+    ) -> Self {
+        Self::begin(purpose, Some(manifest), 0, memory, terminal)
+    }
+
+    fn begin(
+        purpose: Purpose,
+        announced: Option<Manifest>,
+        session: u8,
+        memory: Loan,
+        terminal: &mut Terminal,
+    ) -> Self {
+        // What the host sends from now on belongs to the transfer.
+        terminal.lend(true);
+        Self {
+            purpose,
+            announced,
+            session,
+            stage: Stage::Sum(Sum::new(memory)),
+            line: Line::new(terminal.uart()),
+        }
+    }
+
+    /// Continues the transfer.
+    pub fn poll(&mut self, terminal: &mut Terminal, clock: Clock) -> Turn {
+        let now = clock.milliseconds();
+        let (turn, next) = match &mut self.stage {
+            Stage::Sum(sum) => {
+                let next = sum.advance().map(|(memory, found)| {
+                    terminal.lend(false);
+                    let next = match self.announced {
+                        Some(announced) if announced == found => {
+                            terminal.print(format_args!("present\n"));
+                            Stage::Over(memory, Ok(()))
+                        }
+                        Some(announced) => {
+                            terminal.print(format_args!("ready\n"));
+                            let announced = Some(announced);
+                            Stage::Receive(Party::<Receiving<_>>::new(
+                                memory, announced, TIMING, now,
+                            ))
+                        }
+                        None => {
+                            terminal.print(format_args!("ready\n"));
+                            Stage::Send(Party::announced(memory, found, self.session, TIMING, now))
+                        }
+                    };
+                    terminal.lend(true);
+                    next
+                });
+                (Turn::Again, next)
+            }
+            Stage::Receive(party) => {
+                let (turn, result) = self.line.exchange(party, now);
+                let over = result.map(|result| Stage::Over(party.take_buffer(), result));
+                (turn, over)
+            }
+            Stage::Send(party) => {
+                let (turn, result) = self.line.exchange(party, now);
+                let over = result.map(|result| Stage::Over(party.take_data(), result));
+                (turn, over)
+            }
+            Stage::Over(..) => (Turn::Wait, None),
+        };
+        if let Some(next) = next {
+            self.stage = next;
+        }
+        turn
+    }
+
+    /// Whether the transfer has ended.
+    pub const fn is_over(&self) -> bool {
+        matches!(self.stage, Stage::Over(..))
+    }
+
+    /// Takes memory and result of a transfer that has ended.
+    pub fn take_result(&mut self) -> Option<(Loan, Result<(), Failure>)> {
+        match &mut self.stage {
+            Stage::Over(memory, result) => Some((mem::take(memory), *result)),
+            Stage::Sum(_) | Stage::Receive(_) | Stage::Send(_) => None,
+        }
+    }
+}
+
+/// Computes the CRC-32 of memory, a part at a time.
+struct Sum {
+    memory: Loan,
+    done: usize,
+    digest: Digest,
+}
+
+impl Sum {
+    fn new(memory: Loan) -> Self {
+        Self {
+            memory,
+            done: 0,
+            digest: CRC_32.digest(),
+        }
+    }
+
+    /// Adds the next part. Returns the memory, its length and its CRC-32 after the last one.
+    fn advance(&mut self) -> Option<(Loan, Manifest)> {
+        let bytes = self.memory.as_ref();
+        let length = bytes.len();
+        let end = length.min(self.done + SUMMED);
+        self.digest
+            .update(bytes.get(self.done..end).unwrap_or_default());
+        self.done = end;
+        (end == length).then(|| {
+            let manifest = Manifest {
+                // Memory has less than 2^32 bytes.
+                length: length as u32,
+                crc32: self.digest.clone().finalize(),
+            };
+            (mem::take(&mut self.memory), manifest)
+        })
+    }
+}
+
+/// The line between a side of a transfer and the UART's queues.
+struct Line {
+    uart: &'static ConsoleUart,
+    frame: [u8; MAX_FRAME],
+    /// The range of `frame` that has not been put into the UART's queue, because the queue was full.
+    unsent: Range<usize>,
+}
+
+impl Line {
+    const fn new(uart: &'static ConsoleUart) -> Self {
+        Self {
+            uart,
+            frame: [0; MAX_FRAME],
+            unsent: 0..0,
+        }
+    }
+
+    /// Exchanges bytes with the queues. Returns the result of the transfer once it has ended.
+    fn exchange(
+        &mut self,
+        party: &mut Party<impl Role>,
+        now: u64,
+    ) -> (Turn, Option<Result<(), Failure>>) {
+        let mut received = [0; 256];
+        let mut has_worked = false;
+        for _ in 0..EXCHANGES {
+            let count = self.uart.receive(&mut received);
+            party.on_bytes(now, received.get(..count).unwrap_or_default());
+            if self.unsent.is_empty() {
+                self.unsent = 0..party.poll(now, &mut self.frame);
+            }
+            let unsent = self.frame.get(self.unsent.clone()).unwrap_or_default();
+            let sent = self.uart.send(unsent);
+            self.unsent.start += sent;
+            if count == 0 && sent == 0 {
+                break;
+            }
+            has_worked = true;
+        }
+        let result = match party.state() {
+            State::Done if self.unsent.is_empty() => Some(Ok(())),
+            State::Failed(failure) if self.unsent.is_empty() => Some(Err(failure)),
+            State::Running | State::Done | State::Failed(_) => None,
+        };
+        // The end of a transfer waits a few milliseconds for a quiet line. Longer timeouts are looked at after the interrupt of each
+        // vertical blanking.
+        (Turn::worked(has_worked || party.is_ending()), result)
+    }
 }
 
 /// The sender of downloads. Each transfer has a session number, one more than that of the previous transfer, modulo 256.
+#[derive(Default)]
 pub struct Downloads {
-    uart: &'static ConsoleUart,
-    clock: Clock,
     session: u8,
+    /// Memory for a copy of what is downloaded; empty while it is lent.
+    copy: Loan,
 }
 
 impl Downloads {
-    /// A sender before its first transfer.
-    pub const fn new(uart: &'static ConsoleUart, clock: Clock) -> Self {
-        Self {
-            uart,
-            clock,
-            session: 0,
-        }
+    /// A sender before its first transfer, with memory for copies.
+    pub const fn new(copy: &'static mut [u8]) -> Self {
+        let copy = Loan::new(copy);
+        Self { session: 0, copy }
     }
 
-    /// Prints `ready` and sends `data`.
-    ///
-    /// # Errors
-    /// The download is incomplete.
-    pub fn send(&mut self, terminal: &mut Terminal, data: &[u8]) -> Result<(), Failure> {
-        terminal.print(format_args!("ready\n"));
+    /// Begins to send memory.
+    pub fn send(&mut self, memory: Loan, terminal: &mut Terminal) -> Transfer {
         self.session = self.session.wrapping_add(1);
-        let now = self.clock.milliseconds();
-        let sender = Sender::new(data, self.session, Timing::CONSOLE, now);
-        run(self.uart, self.clock, sender)
+        Transfer::begin(Purpose::Download, None, self.session, memory, terminal)
     }
-}
 
-fn run(uart: &ConsoleUart, clock: Clock, mut party: impl Party) -> Result<(), Failure> {
-    let mut received = [0; 256];
-    let mut frame = [0; MAX_FRAME];
-    // The range of `frame` that has not been put into the UART's queue, because the queue was full.
-    let mut unsent = 0..0;
-    loop {
-        let now = clock.milliseconds();
-        let count = uart.receive(&mut received);
-        party.on_bytes(now, received.get(..count).unwrap_or_default());
-        if unsent.is_empty() {
-            unsent = 0..party.poll(now, &mut frame);
+    /// Begins to send a copy of `data`, which may change from now on. The memory for copies has room for every picture.
+    pub fn send_copy(&mut self, data: &[u8], terminal: &mut Terminal) -> Transfer {
+        let mut copy = mem::take(&mut self.copy);
+        copy.narrow(0..data.len());
+        if copy.as_ref().len() == data.len() {
+            copy.as_mut().copy_from_slice(data);
         }
-        unsent.start += uart.send(frame.get(unsent.clone()).unwrap_or_default());
-        match party.state() {
-            State::Running => {}
-            _ if !unsent.is_empty() => {}
-            State::Done => return Ok(()),
-            State::Failed(failure) => return Err(failure),
-        }
+        self.send(copy, terminal)
+    }
+
+    /// Takes the memory for copies back.
+    pub fn give_back(&mut self, copy: Loan) {
+        self.copy = copy;
     }
 }

@@ -1,6 +1,6 @@
 //! Code shared by firmware and host: cameras, also those that show whole meshes, sines, the sensor and its attitude, the hand and
 //! its image sensor, distance fields and lights, the formats of meshes and flash images, wireframe programs, transfers over a
-//! serial line, the console's grammar, scenes, and the demo of a board that runs alone.
+//! serial line, the console's grammar, scenes, the demo of a board that runs alone, and tasks that take turns.
 //!
 //! All code is integer arithmetic, and no input makes it panic. Only the feature `alloc` allocates memory.
 #![no_std]
@@ -47,6 +47,7 @@ pub mod regions;
 pub mod root;
 pub mod shape;
 pub mod stereo;
+pub mod tasks;
 pub mod trig;
 pub mod vector;
 pub mod wire;

@@ -9,6 +9,11 @@ pub const ALIGNMENT: usize = 16;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region(usize);
 
+impl Region {
+    /// A region of no memory.
+    pub const NONE: Self = Self(usize::MAX);
+}
+
 /// A memory of a certain length, with at most `N` regions.
 #[derive(Clone, Debug)]
 pub struct Regions<const N: usize> {

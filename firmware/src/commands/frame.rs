@@ -31,22 +31,26 @@ impl<'l> FrameCommands<'l> for Machine {
     }
 }
 
-/// Sends the last frame to the host: its depth codes if `depth` is true, otherwise its colours.
+/// Begins to send a copy of the last frame to the host: its depth codes if `depth` is true, otherwise its colours. The picture goes on
+/// meanwhile.
 ///
 /// # Errors
-/// No frame was drawn, its drawing failed, or the transfer fails.
-pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError<'static>> {
+/// No frame was drawn, or its drawing failed.
+pub fn begin_download(machine: &mut Machine, depth: bool) -> Outcome<'static> {
     let Machine {
         scene,
         picture,
         renderer,
         downloads,
+        terminal,
         ..
     } = machine;
     picture
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
+    // Frames from now on need no depth codes in memory.
+    picture.wants_depth = false;
     // The triangle engine writes to memory and not to the CPU's data cache, which may hold older data.
     cpu::flush_data_cache();
     let bytes = if depth {
@@ -54,7 +58,6 @@ pub fn send_frame(machine: &mut Machine, depth: bool) -> Result<(), CommandError
     } else {
         bytemuck::cast_slice(renderer.colours(scene))
     };
-    downloads
-        .send(&mut machine.terminal, bytes)
-        .map_err(CommandError::Transfer)
+    let transfer = downloads.send_copy(bytes, terminal);
+    Ok(Reply::After(Job::Transfer(transfer)))
 }

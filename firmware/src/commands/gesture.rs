@@ -4,6 +4,7 @@ use core::task::Poll;
 use core::time::Duration;
 
 use glint_core::console::{GestureAction, GestureCommands};
+use glint_core::feature::GESTURE;
 use glint_core::hand::Window;
 use glint_core::image_sensor::FrameSize;
 
@@ -62,7 +63,7 @@ pub fn poll(machine: &mut Machine, job: &GestureJob) -> JobResult {
         downloads,
         ..
     } = machine;
-    let Some(gesture) = gesture else {
+    let Some(gesture) = gesture.as_mut().filter(|_| GESTURE.is_built) else {
         return Poll::Ready(Err(CommandError::NoGesture));
     };
     let late = || match job.end.passed() {
@@ -80,7 +81,7 @@ pub fn poll(machine: &mut Machine, job: &GestureJob) -> JobResult {
         print_windows(terminal, found.windows);
         terminal.print_entry("inside", &found.inside);
         terminal.print_entry("outside", &found.outside);
-        return Poll::Ready(Ok(()));
+        return Poll::Ready(Ok(Reply::Done));
     }
     let mut bytes = [0; MASK];
     let Some(words) = gesture.picture() else {
@@ -91,8 +92,8 @@ pub fn poll(machine: &mut Machine, job: &GestureJob) -> JobResult {
     }
     let [columns, rows] = gesture.picture_size(false);
     terminal.print(format_args!("mask {columns} {rows}\n"));
-    let sent = downloads.send(terminal, &bytes);
-    Poll::Ready(sent.map_err(CommandError::Transfer))
+    let transfer = downloads.send_copy(&bytes, terminal);
+    Poll::Ready(Ok(Reply::After(Job::Transfer(transfer))))
 }
 
 fn print_windows(terminal: &mut crate::terminal::Terminal, windows: [Window; 2]) {

@@ -4,17 +4,19 @@ use core::task::Poll;
 
 use glint_core::calibration::Units;
 use glint_core::console::{ImuAction, ImuCommands};
+use glint_core::feature::IMU;
 use glint_core::fixed::Q32_32;
 use glint_core::follow::Mounting;
 use glint_core::mpu6050::degrees_per_second;
 use glint_core::wire::Manifest;
 
-use super::replay;
+use super::{replay, upload};
 use crate::error::CommandError;
 use crate::format::{OrOff, Vector};
 use crate::job::{Job, JobResult, Outcome, Reply, SensorJob};
 use crate::machine::Machine;
 use crate::sensor;
+use crate::transfer::Purpose;
 
 /// Number of samples between two reports of the progress of a calibration.
 const PROGRESS: u32 = 1_024;
@@ -69,7 +71,7 @@ impl<'l> ImuCommands<'l> for Machine {
 
     fn replay(&mut self, upload: Option<Manifest>) -> Outcome<'l> {
         match upload {
-            Some(manifest) => replay::begin(self, manifest),
+            Some(manifest) => upload::begin(self, "replay", Purpose::Log, manifest),
             None => replay::send(self),
         }
     }
@@ -77,6 +79,9 @@ impl<'l> ImuCommands<'l> for Machine {
 
 /// Continues the job of the sensor: reports the progress of a calibration, or prints new samples.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
+    if !IMU.is_built {
+        return Poll::Ready(Ok(Reply::Done));
+    }
     let Machine {
         terminal,
         imu,
@@ -90,7 +95,7 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
                     Some(Err(error)) => Err(CommandError::Calibration(error)),
                     _ => {
                         print_calibration(machine);
-                        Ok(())
+                        Ok(Reply::Done)
                     }
                 });
             };
@@ -99,7 +104,7 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
                 *reported = samples;
             }
         }
-        SensorJob::Stream { left: Some(0), .. } => return Poll::Ready(Ok(())),
+        SensorJob::Stream { left: Some(0), .. } => return Poll::Ready(Ok(Reply::Done)),
         SensorJob::Stream { left, last } => {
             if let Some(error) = imu.error() {
                 return Poll::Ready(Err(CommandError::Sensor(error)));

@@ -3,10 +3,10 @@
 
 use core::task::Poll;
 
+use glint_core::feature::REPLAY;
 use glint_core::orientation::log;
-use glint_core::wire::Manifest;
 
-use super::upload;
+use crate::arena::Loan;
 use crate::error::CommandError;
 use crate::job::{Job, JobResult, Outcome, Reply};
 use crate::machine::Machine;
@@ -15,28 +15,39 @@ use crate::replay::Replay;
 /// Number of samples between two reports of progress.
 const PROGRESS: usize = 1_024;
 
-/// Receives a log and begins its replay.
-pub fn begin<'l>(machine: &mut Machine, manifest: Manifest) -> Outcome<'l> {
-    let staged = upload::receive(machine, "replay", manifest)?;
-    let (setup, records) = log::open(staged).map_err(CommandError::Log)?;
-    let replay = Replay::new(setup.tracker(), records.len());
-    machine.replay = Some(replay);
-    Ok(Reply::After(Job::Replay))
+/// Begins the replay of an uploaded log.
+///
+/// # Errors
+/// It is not a log; its memory is given back.
+pub fn begin(machine: &mut Machine, mut memory: Loan) -> Outcome<'static> {
+    let opened = log::open(memory.as_mut()).map(|(setup, records)| {
+        let tracker = setup.tracker();
+        Replay::new(tracker, records.len())
+    });
+    match opened {
+        Ok(replay) => {
+            machine.replay = Some(replay);
+            Ok(Reply::After(Job::Replay(memory)))
+        }
+        Err(error) => {
+            machine.give_back(memory);
+            Err(CommandError::Log(error))
+        }
+    }
 }
 
-/// Continues the replay of the log by a slice of its samples.
-pub fn poll(machine: &mut Machine) -> JobResult {
+/// Continues the replay of the log in `memory` by a slice of its samples.
+pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
     let Machine {
         terminal,
-        models,
         replay,
         uart,
         ..
     } = machine;
-    let Some(replay) = replay else {
+    let Some(replay) = replay.as_mut().filter(|_| REPLAY.is_built) else {
         return Poll::Ready(Err(CommandError::NoReplay));
     };
-    replay.advance(models.staging());
+    replay.advance(memory.as_mut());
     if !replay.is_done() {
         // Reports only when all text has been sent: a slow line gets fewer reports.
         if replay.unreported() >= PROGRESS && uart.has_sent() {
@@ -56,10 +67,10 @@ pub fn poll(machine: &mut Machine) -> JobResult {
     ] {
         terminal.print_entry(key, &value);
     }
-    Poll::Ready(Ok(()))
+    Poll::Ready(Ok(Reply::Done))
 }
 
-/// Sends the attitudes that the replay of the last log has computed.
+/// Begins to send the attitudes that the replay of the last log has computed, which the staging memory holds.
 pub fn send<'l>(machine: &mut Machine) -> Outcome<'l> {
     let Machine {
         terminal,
@@ -69,11 +80,9 @@ pub fn send<'l>(machine: &mut Machine) -> Outcome<'l> {
         ..
     } = machine;
     let replay = replay.as_ref().filter(|replay| replay.is_done());
-    let attitudes = replay
-        .ok_or(CommandError::NoReplay)?
-        .records(models.staging());
-    downloads
-        .send(terminal, attitudes)
-        .map_err(CommandError::Transfer)?;
-    Ok(Reply::Done)
+    let attitudes = replay.ok_or(CommandError::NoReplay)?.range();
+    let mut memory = models.lend(attitudes.end).ok_or(CommandError::NoReplay)?;
+    memory.narrow(attitudes);
+    let transfer = downloads.send(memory, terminal);
+    Ok(Reply::After(Job::Transfer(transfer)))
 }

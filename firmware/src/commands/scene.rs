@@ -7,7 +7,7 @@ use glint_core::flash::Kind;
 use glint_core::picture::Backend;
 use glint_core::wire::Manifest;
 use glint_core::wireframe::Key;
-use glint_scene::{CUBE, Line, lines};
+use glint_scene::{CUBE, Line, Name, lines};
 
 use super::{options, upload};
 use crate::error::CommandError;
@@ -15,6 +15,7 @@ use crate::job::{Job, Orbit, Outcome, Reply};
 use crate::machine::Machine;
 use crate::models::{MAX_MESHES, MODEL, NameError};
 use crate::scenes::{BuiltIn, DEFAULT, Found, SCENES, Shows};
+use crate::transfer::Purpose;
 
 impl<'l> SceneCommands<'l> for Machine {
     fn scene(&mut self, name: Option<&'l str>) -> Outcome<'l> {
@@ -28,18 +29,16 @@ impl<'l> SceneCommands<'l> for Machine {
     }
 
     fn load(&mut self, upload: Manifest, name: Option<&'l str>) -> Outcome<'l> {
-        let (name, length) = (name.unwrap_or(MODEL), upload.length as usize);
+        let name = name.unwrap_or(MODEL);
         let accepted = if name == DEFAULT || self.library.find(name).is_some() {
             Err(NameError::Scene)
         } else {
             self.models.check_name(name)
         };
         accepted.map_err(|error| CommandError::MeshName { name, error })?;
-        upload::receive(self, "load", upload)?;
-        let accepted = self.models.accept(name, length);
-        accepted.map_err(CommandError::Mesh)?;
-        self.scene.show_mesh(name);
-        Ok(Reply::Done)
+        // The parser limits names to the string's capacity, so the conversion does not fail.
+        let purpose = Purpose::Mesh(Name::try_from(name).unwrap_or_default());
+        upload::begin(self, "load", purpose, upload)
     }
 
     fn models(&mut self) -> Outcome<'l> {
@@ -101,12 +100,7 @@ impl<'l> SceneCommands<'l> for Machine {
         if !UPLOAD.is_built {
             return Err(CommandError::LeftOut(UPLOAD));
         }
-        upload::receive(self, "program", upload)?;
-        let length = upload.length as usize;
-        let accepted = self.models.accept_program(length);
-        accepted.map_err(CommandError::Program)?;
-        self.scene.show_wireframe();
-        Ok(Reply::Done)
+        upload::begin(self, "program", Purpose::Program, upload)
     }
 
     fn press(&mut self, key: Key, rotate: bool) -> Outcome<'l> {

@@ -1,46 +1,68 @@
 //! Data for the staging memory: uploads of the host, and meshes of the flash.
 
 use glint_core::feature::{DEMO, MESH};
-use glint_core::wire::{Manifest, crc32};
+use glint_core::wire::Manifest;
 use litex_pac::cpu;
 
+use super::replay;
+use crate::arena::Loan;
 use crate::error::CommandError;
+use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
-use crate::models::Models;
-use crate::renderer::Renderer;
-use crate::replay::Replay;
-use crate::transfer;
+use crate::transfer::{Purpose, Transfer};
 
-/// Receives the data that `manifest` announces into the staging memory, unless the memory already holds them, which the reply says
-/// with the line `present`. `command` is the name of the command that uploads them.
+/// Begins to receive the data that `manifest` announces into the staging memory, unless the memory already holds them, which the reply
+/// says with the line `present`. `command` is the name of the command that uploads them.
 ///
 /// # Errors
-/// The upload is longer than the free memory, or the transfer fails.
-pub fn receive<'m>(
-    machine: &'m mut Machine,
+/// The upload is longer than the free memory.
+pub fn begin<'l>(
+    machine: &mut Machine,
     command: &'static str,
+    purpose: Purpose,
     manifest: Manifest,
-) -> Result<&'m mut [u8], CommandError<'static>> {
-    let Machine {
-        terminal,
-        models,
-        renderer,
-        replay,
-        clock,
-        uart,
-        ..
-    } = machine;
-    let staging = staging(models, renderer, replay, command, manifest.length as usize)?;
-    // The memory may hold the data already: a tool may have written it directly, bypassing the cache, or a transfer may
-    // have been interrupted near its end.
+) -> Outcome<'l> {
+    let memory = lend(machine, command, manifest.length as usize)?;
+    // A tool may have written the data directly, bypassing the cache.
     cpu::flush_data_cache();
-    if crc32(staging) == manifest.crc32 {
-        terminal.print(format_args!("present\n"));
-    } else {
-        terminal.print(format_args!("ready\n"));
-        transfer::receive(uart, *clock, staging, manifest).map_err(CommandError::Transfer)?;
+    let transfer = Transfer::upload(purpose, manifest, memory, &mut machine.terminal);
+    Ok(Reply::After(Job::Transfer(transfer)))
+}
+
+/// Uses the data of a transfer that has ended. No frame may be in progress.
+///
+/// # Errors
+/// The transfer has failed, or the data are not what the command needs.
+pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> Outcome<'static> {
+    let Some((memory, result)) = transfer.take_result() else {
+        return Ok(Reply::Done);
+    };
+    machine.terminal.lend(false);
+    if let Err(failure) = result {
+        machine.give_back(memory);
+        return Err(CommandError::Transfer(failure));
     }
-    Ok(staging)
+    let reply = match &transfer.purpose {
+        Purpose::Download => {
+            machine.give_back(memory);
+            return Ok(Reply::Done);
+        }
+        Purpose::Mesh(name) => {
+            let accepted = machine.models.accept(name, memory);
+            accepted.map_err(CommandError::Mesh)?;
+            machine.scene.show_mesh(name);
+            Reply::Done
+        }
+        Purpose::Program => {
+            let accepted = machine.models.accept_program(memory);
+            accepted.map_err(CommandError::Program)?;
+            machine.scene.show_wireframe();
+            Reply::Done
+        }
+        Purpose::Log => replay::begin(machine, memory)?,
+    };
+    machine.demo.stop();
+    Ok(reply)
 }
 
 /// Copies the mesh of this name from the flash to the uploads, unless an upload has the name. Returns whether there is such a mesh.
@@ -51,49 +73,36 @@ pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, Comm
     if !MESH.is_built || !DEMO.is_built {
         return Ok(false);
     }
-    let Machine {
-        models,
-        renderer,
-        replay,
-        library,
-        ..
-    } = machine;
-    if models.has_upload(name) {
+    if machine.models.has_upload(name) {
         return Ok(true);
     }
-    let Some(item) = library.mesh(name) else {
+    let Some(item) = machine.library.mesh(name) else {
         return Ok(false);
     };
     let bytes = item.checked();
     let bytes = bytes.map_err(|error| CommandError::Flash { name, error })?;
-    let accepted = models.check_name(name);
+    let accepted = machine.models.check_name(name);
     accepted.map_err(|error| CommandError::MeshName { name, error })?;
-    staging(models, renderer, replay, name, bytes.len())?.copy_from_slice(bytes);
-    let accepted = models.accept(name, bytes.len());
+    let mut memory = lend(machine, name, bytes.len())?;
+    memory.as_mut().copy_from_slice(bytes);
+    let accepted = machine.models.accept(name, memory);
     accepted.map_err(|error| CommandError::FlashMesh { name, error })?;
     Ok(true)
 }
 
-/// The staging memory for `length` bytes of the upload `name`.
+/// Lends the staging memory for `length` bytes of the upload `name`.
 ///
 /// # Errors
 /// The free memory is shorter.
-fn staging<'m, 'l>(
-    models: &'m mut Models,
-    renderer: &mut Renderer,
-    replay: &mut Option<Replay>,
-    name: &'l str,
-    length: usize,
-) -> Result<&'m mut [u8], CommandError<'l>> {
+fn lend<'l>(machine: &mut Machine, name: &'l str, length: usize) -> Result<Loan, CommandError<'l>> {
     // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
-    *replay = None;
+    machine.replay.take_if(|replay| replay.is_done());
     // Uploads may move, and another mesh may come to the place of the one whose edges the list has.
-    renderer.edges.clear();
-    let free = models.free();
-    let staging = models.staging_of(length);
-    staging.ok_or(CommandError::TooLong {
+    machine.renderer.edges.clear();
+    let memory = machine.models.lend(length);
+    memory.ok_or(CommandError::TooLong {
         name,
         bytes: length,
-        free,
+        free: machine.models.free(),
     })
 }

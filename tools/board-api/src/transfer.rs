@@ -2,7 +2,9 @@
 
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
-use glint_core::wire::{Failure, MAX_FRAME, Manifest, Party, Receiver, Sender, State, Timing};
+use glint_core::wire::{
+    Failure, MAX_FRAME, Manifest, Party, Receiver, Role, Sender, State, Timing,
+};
 
 /// An error of a transfer.
 #[derive(Debug, thiserror::Error)]
@@ -216,7 +218,7 @@ pub fn receive<B: Board + ?Sized>(
 fn run<B: Board + ?Sized>(
     board: &mut B,
     pending: &mut Vec<u8>,
-    party: &mut impl Party,
+    party: &mut Party<impl Role>,
     progress: &mut Progress,
 ) -> Result<(), TransferError> {
     let mut frame = [0; MAX_FRAME];

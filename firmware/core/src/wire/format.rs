@@ -14,6 +14,9 @@ pub const MAX_LENGTH: u32 = ((1 << 24) - 1) * BLOCK;
 /// The CRC-32 algorithm by which a whole transfer is checked.
 pub static CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
+/// The computation of a CRC-32, a part of the data at a time.
+pub type Digest = crc::Digest<'static, u32>;
+
 /// Computes the CRC-32 (IEEE 802.3, as in zlib) of all bytes of a transfer.
 pub fn crc32(data: &[u8]) -> u32 {
     CRC_32.checksum(data)

@@ -1,46 +1,93 @@
-//! A trait that both the sender and the receiver of a transfer implement.
+//! Either side of a transfer.
 
-use super::receiver::Receiver;
-use super::sender::Sender;
+use super::ending::Ending;
+use super::frame::{MAX_FRAME, Message, Reader};
 use super::state::State;
 
-/// Either side of a transfer, for code that connects it to a line.
-///
-/// Each method calls the method of [`Sender`] or [`Receiver`] with the same name.
-pub trait Party {
-    /// Processes received bytes; returns the number of bytes that belong to the transfer.
-    fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize;
-    /// Writes the next frame, if any, and returns its length.
+/// What a sender or receiver does.
+pub trait Role {
+    /// Processes a valid frame.
+    fn on_message(&mut self, now_ms: u64, session: u8, message: Message);
+    /// Ends the transfer at once, on request of the other side. What follows on the line does not belong to it.
+    fn interrupt(&mut self, now_ms: u64);
+    /// The end of the transfer; `None` while the transfer is in progress.
+    fn ending(&mut self) -> Option<&mut Ending>;
+    /// Writes the next frame, if any, to `out`, which has room for it, and returns its length.
     fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
     /// Cancels the transfer and notifies the other side.
     fn abort(&mut self, now_ms: u64);
     /// State of the transfer at the last `poll`.
     fn state(&self) -> State;
-    /// Number of bytes transferred from the start without a gap, and the total number of bytes.
+    /// Number of bytes transferred from the start without a gap, and the total number of bytes (0 while unknown).
     fn progress(&self) -> (u32, u32);
 }
 
-macro_rules! party {
-    ($side:ident) => {
-        impl Party for $side<'_> {
-            fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-                $side::on_bytes(self, now_ms, bytes)
-            }
-            fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-                $side::poll(self, now_ms, out)
-            }
-            fn abort(&mut self, now_ms: u64) {
-                $side::abort(self, now_ms);
-            }
-            fn state(&self) -> State {
-                $side::state(self)
-            }
-            fn progress(&self) -> (u32, u32) {
-                $side::progress(self)
-            }
-        }
-    };
+/// A side of a transfer: a sender or a receiver, by its [`Role`].
+pub struct Party<R> {
+    reader: Reader,
+    /// Everything except the reader, which received frames borrow.
+    pub(super) transfer: R,
 }
 
-party!(Sender);
-party!(Receiver);
+impl<R: Role> Party<R> {
+    pub(super) const fn of(transfer: R) -> Self {
+        Self {
+            reader: Reader::new(),
+            transfer,
+        }
+    }
+
+    /// Processes received bytes. Returns how many of the bytes belong to the transfer: all of them, until the transfer ends.
+    pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
+        if !bytes.is_empty() {
+            self.reader.receive(now_ms);
+        }
+        let mut taken = 0;
+        while let Some(rest) = bytes.get(taken..).filter(|rest| !rest.is_empty()) {
+            if let Some(ending) = self.transfer.ending() {
+                return taken + ending.on_bytes(now_ms, rest);
+            }
+            let (length, frame) = self.reader.take(rest);
+            taken += length;
+            match frame {
+                Some((_, Message::Reset)) => self.transfer.interrupt(now_ms),
+                Some((session, message)) => self.transfer.on_message(now_ms, session, message),
+                None => {}
+            }
+        }
+        taken
+    }
+
+    /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, and regularly, because
+    /// timeouts are checked here. `out` needs [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
+    pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
+        if out.len() < MAX_FRAME {
+            return 0;
+        }
+        if self.transfer.ending().is_none() && self.reader.is_interrupted(now_ms) {
+            // A person has typed Ctrl-C.
+            self.transfer.interrupt(now_ms);
+        }
+        self.transfer.poll(now_ms, out)
+    }
+
+    /// Cancels the transfer and notifies the other side.
+    pub fn abort(&mut self, now_ms: u64) {
+        self.transfer.abort(now_ms);
+    }
+
+    /// State of the transfer at the last `poll`.
+    pub fn state(&self) -> State {
+        self.transfer.state()
+    }
+
+    /// Whether the transfer is over but for its last message and a quiet line, which it waits for by time alone.
+    pub fn is_ending(&mut self) -> bool {
+        self.transfer.ending().is_some()
+    }
+
+    /// Number of bytes transferred from the start without a gap, and the total number of bytes (0 while unknown).
+    pub fn progress(&self) -> (u32, u32) {
+        self.transfer.progress()
+    }
+}

@@ -1,28 +1,18 @@
 //! The receiver of a transfer.
 
 use super::ending::Ending;
-use super::format::{BLOCK, CRC_32, MAX_LENGTH, Manifest, WINDOW};
-use super::frame::{Acknowledge, Data, MAX_FRAME, Message, Reader, write};
-use super::peer::{Peer, check_interrupt, feed};
+use super::format::{BLOCK, CRC_32, Digest, MAX_LENGTH, Manifest, WINDOW};
+use super::frame::{Acknowledge, Data, Message, write};
+use super::party::{Party, Role};
 use super::state::{Failure, Reason, State, Timing};
 
-/// Receives one transfer into a buffer.
-///
-/// Blocks are written to the buffer in any order. The buffer's contents are valid once the state is [`State::Done`].
-pub struct Receiver<'a> {
-    reader: Reader,
-    transfer: Transfer<'a>,
-}
+/// Receives one transfer into a borrowed buffer.
+pub type Receiver<'a> = Party<Receiving<&'a mut [u8]>>;
 
-impl<'a> Receiver<'a> {
+impl<B: AsRef<[u8]> + AsMut<[u8]>> Party<Receiving<B>> {
     /// Waits for a transfer that fits into `buffer`. If `announced` is given, the transfer must have this length and CRC-32.
-    pub fn new(
-        buffer: &'a mut [u8],
-        announced: Option<Manifest>,
-        timing: Timing,
-        now_ms: u64,
-    ) -> Self {
-        let transfer = Transfer {
+    pub fn new(buffer: B, announced: Option<Manifest>, timing: Timing, now_ms: u64) -> Self {
+        Self::of(Receiving {
             buffer,
             announced,
             timing,
@@ -31,61 +21,31 @@ impl<'a> Receiver<'a> {
             reply: false,
             ending: None,
             state: State::Running,
-        };
-        Self {
-            reader: Reader::new(),
-            transfer,
-        }
-    }
-
-    /// Processes received bytes. Returns how many of the bytes belong to the transfer: all of them, until the transfer ends.
-    pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-        feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
-    }
-
-    /// Writes the next frame, if any, and returns its length. Call this regularly, because timeouts are checked here. `out` needs
-    /// [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
-    pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-        if out.len() < MAX_FRAME {
-            0
-        } else {
-            check_interrupt(&self.reader, &mut self.transfer, now_ms);
-            self.transfer.poll(now_ms, out)
-        }
-    }
-
-    /// Cancels the transfer and notifies the sender.
-    pub fn abort(&mut self, now_ms: u64) {
-        self.transfer.abort(Reason::Cancelled, now_ms);
-    }
-
-    /// State of the transfer at the last `poll`.
-    pub fn state(&self) -> State {
-        self.transfer.state
-    }
-
-    /// Number of bytes received from the start without a gap, and the total number of bytes (0 while unknown).
-    pub fn progress(&self) -> (u32, u32) {
-        self.transfer.opened.as_ref().map_or((0, 0), |opened| {
-            let length = opened.manifest.length;
-            ((opened.next * BLOCK).min(length), length)
         })
     }
 
     /// The verified data, once the state is [`State::Done`].
     pub fn received(&self) -> Option<&[u8]> {
         let opened = self.transfer.opened.as_ref()?;
-        let received = self
-            .transfer
-            .buffer
-            .get(..opened.manifest.length as usize)?;
+        let buffer = self.transfer.buffer.as_ref();
+        let received = buffer.get(..opened.manifest.length as usize)?;
         (self.transfer.state == State::Done).then_some(received)
+    }
+
+    /// Takes the buffer of a transfer that has ended.
+    pub fn take_buffer(&mut self) -> B
+    where
+        B: Default,
+    {
+        core::mem::take(&mut self.transfer.buffer)
     }
 }
 
-/// The receiver's state except the reader. It is a separate type because received frames borrow the reader.
-struct Transfer<'a> {
-    buffer: &'a mut [u8],
+/// The role of a receiver, with its buffer.
+///
+/// Blocks are written to the buffer in any order. The buffer's contents are valid once the state is [`State::Done`].
+pub struct Receiving<B> {
+    buffer: B,
     announced: Option<Manifest>,
     timing: Timing,
     opened: Option<Opened>,
@@ -108,12 +68,12 @@ struct Opened {
     /// Frame number of the last received data frame.
     number: u8,
     /// CRC-32 of the blocks before `next`.
-    digest: crc::Digest<'static, u32>,
+    digest: Digest,
     /// Whether the CRC-32 of the transfer is right; `None` until all blocks were received.
     verdict: Option<bool>,
 }
 
-impl Peer for Transfer<'_> {
+impl<B: AsRef<[u8]> + AsMut<[u8]>> Role for Receiving<B> {
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message) {
         if let Message::Open(manifest) = message {
             self.valid_ms = now_ms;
@@ -129,7 +89,7 @@ impl Peer for Transfer<'_> {
         };
         match message {
             Message::Data(data) => {
-                opened.store(data, self.buffer);
+                opened.store(data, self.buffer.as_mut());
                 self.reply = true;
             }
             Message::Close if opened.verdict == Some(true) => {
@@ -154,25 +114,6 @@ impl Peer for Transfer<'_> {
 
     fn ending(&mut self) -> Option<&mut Ending> {
         self.ending.as_mut()
-    }
-}
-
-impl Transfer<'_> {
-    fn open(&mut self, now_ms: u64, session: u8, manifest: Manifest) {
-        let known = |opened: &Opened| opened.session == session && opened.manifest == manifest;
-        if !self.opened.as_ref().is_some_and(known) {
-            self.opened = Some(Opened::new(session, manifest));
-            if self
-                .announced
-                .is_some_and(|announced| announced != manifest)
-            {
-                return self.abort(Reason::Unannounced, now_ms);
-            }
-            if manifest.length > MAX_LENGTH || manifest.length as usize > self.buffer.len() {
-                return self.abort(Reason::TooLong, now_ms);
-            }
-        }
-        self.reply = true;
     }
 
     fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
@@ -199,7 +140,42 @@ impl Transfer<'_> {
         length
     }
 
-    fn abort(&mut self, reason: Reason, now_ms: u64) {
+    fn abort(&mut self, now_ms: u64) {
+        self.cancel(Reason::Cancelled, now_ms);
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn progress(&self) -> (u32, u32) {
+        self.opened.as_ref().map_or((0, 0), |opened| {
+            let length = opened.manifest.length;
+            ((opened.next * BLOCK).min(length), length)
+        })
+    }
+}
+
+impl<B: AsRef<[u8]> + AsMut<[u8]>> Receiving<B> {
+    fn open(&mut self, now_ms: u64, session: u8, manifest: Manifest) {
+        let known = |opened: &Opened| opened.session == session && opened.manifest == manifest;
+        if !self.opened.as_ref().is_some_and(known) {
+            self.opened = Some(Opened::new(session, manifest));
+            if self
+                .announced
+                .is_some_and(|announced| announced != manifest)
+            {
+                return self.cancel(Reason::Unannounced, now_ms);
+            }
+            if manifest.length > MAX_LENGTH || manifest.length as usize > self.buffer.as_ref().len()
+            {
+                return self.cancel(Reason::TooLong, now_ms);
+            }
+        }
+        self.reply = true;
+    }
+
+    fn cancel(&mut self, reason: Reason, now_ms: u64) {
         if self.ending.is_none() {
             // Before an `Open` the session is unknown, so no message can be sent.
             let last_message = self

@@ -2,9 +2,9 @@
 
 use super::ending::Ending;
 use super::format::{BLOCK, MAX_LENGTH, Manifest};
-use super::frame::{Acknowledge, Data, MAX_FRAME, Message, OVERHEAD, Reader, write};
+use super::frame::{Acknowledge, Data, Message, OVERHEAD, write};
 use super::pace::{FrameSize, Patience};
-use super::peer::{Peer, check_interrupt, feed};
+use super::party::{Party, Role};
 use super::state::{Failure, Reason, State, Timing};
 use super::window::Window;
 
@@ -14,18 +14,27 @@ const RESTARTS: u8 = 3;
 const STALL_FACTOR: u64 = 4;
 
 /// Sends one transfer from a slice.
-pub struct Sender<'a> {
-    reader: Reader,
-    transfer: Transfer<'a>,
-}
+pub type Sender<'a> = Party<Sending<&'a [u8]>>;
 
-impl<'a> Sender<'a> {
+impl<D: AsRef<[u8]>> Party<Sending<D>> {
     /// Starts to send `data`. The number `session` (modulo 16) separates this transfer from remains of the previous one, so the
     /// caller increments it for each transfer.
-    pub fn new(data: &'a [u8], session: u8, timing: Timing, now_ms: u64) -> Self {
-        let mut transfer = Transfer {
+    pub fn new(data: D, session: u8, timing: Timing, now_ms: u64) -> Self {
+        let manifest = Manifest::of(data.as_ref());
+        Self::announced(data, manifest, session, timing, now_ms)
+    }
+
+    /// The same for data whose manifest is known.
+    pub fn announced(
+        data: D,
+        manifest: Manifest,
+        session: u8,
+        timing: Timing,
+        now_ms: u64,
+    ) -> Self {
+        let mut transfer = Sending {
             data,
-            manifest: Manifest::of(data),
+            manifest,
             timing,
             session: session & 0xF,
             restarts: RESTARTS,
@@ -42,57 +51,26 @@ impl<'a> Sender<'a> {
         if transfer.manifest.length > MAX_LENGTH {
             transfer.fail(Failure::Aborted(Reason::TooLong), now_ms);
         }
-        Self {
-            reader: Reader::new(),
-            transfer,
-        }
-    }
-
-    /// Processes received bytes. Returns how many of the bytes belong to the transfer: all of them, until the transfer ends.
-    pub fn on_bytes(&mut self, now_ms: u64, bytes: &[u8]) -> usize {
-        feed(&mut self.reader, &mut self.transfer, now_ms, bytes)
-    }
-
-    /// Writes the next frame, if any, and returns its length. Call this whenever the line accepts bytes, because timeouts are
-    /// checked here. `out` needs [`MAX_FRAME`] bytes; to a shorter buffer nothing is written.
-    pub fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
-        if out.len() < MAX_FRAME {
-            0
-        } else {
-            check_interrupt(&self.reader, &mut self.transfer, now_ms);
-            self.transfer.poll(now_ms, out)
-        }
-    }
-
-    /// Cancels the transfer and notifies the receiver.
-    pub fn abort(&mut self, now_ms: u64) {
-        self.transfer
-            .fail(Failure::Aborted(Reason::Cancelled), now_ms);
-    }
-
-    /// State of the transfer at the last `poll`.
-    pub fn state(&self) -> State {
-        self.transfer.state
-    }
-
-    /// Number of bytes acknowledged from the start without a gap, and the total number of bytes.
-    pub fn progress(&self) -> (u32, u32) {
-        let length = self.transfer.manifest.length;
-        (
-            self.transfer.window.next.saturating_mul(BLOCK).min(length),
-            length,
-        )
+        Self::of(transfer)
     }
 
     /// Present number of data bytes per data frame: at most 240, and fewer on a bad line.
     pub fn frame_bytes(&self) -> u32 {
         self.transfer.frame_size.blocks() * BLOCK
     }
+
+    /// Takes the data of a transfer that has ended.
+    pub fn take_data(&mut self) -> D
+    where
+        D: Default,
+    {
+        core::mem::take(&mut self.transfer.data)
+    }
 }
 
-/// The sender's state except the reader. It is a separate type because received frames borrow the reader.
-struct Transfer<'a> {
-    data: &'a [u8],
+/// The role of a sender, with its data.
+pub struct Sending<D> {
+    data: D,
     manifest: Manifest,
     timing: Timing,
     session: u8,
@@ -113,7 +91,7 @@ struct Transfer<'a> {
     state: State,
 }
 
-impl Peer for Transfer<'_> {
+impl<D: AsRef<[u8]>> Role for Sending<D> {
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message) {
         if session != self.session {
             return;
@@ -153,28 +131,6 @@ impl Peer for Transfer<'_> {
     fn ending(&mut self) -> Option<&mut Ending> {
         self.ending.as_mut()
     }
-}
-
-impl Transfer<'_> {
-    /// Applies an acknowledgement. Returns `false` for an impossible acknowledgement, which is ignored.
-    fn acknowledged(&mut self, acknowledge: Acknowledge, now_ms: u64) -> bool {
-        let blocks = self.frame_size.blocks();
-        let Some(fate) = self.window.update(acknowledge) else {
-            return false;
-        };
-        let bytes = (fate.arrived + fate.lost) * BLOCK;
-        self.frame_size.record(
-            bytes + bytes * OVERHEAD as u32 / (blocks * BLOCK),
-            fate.lost_frames,
-        );
-        self.patience.answered(now_ms);
-        self.opened = true;
-        if self.window.next > self.farthest {
-            self.farthest = self.window.next;
-            self.progress_ms = now_ms;
-        }
-        true
-    }
 
     fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize {
         if let Some(ending) = &mut self.ending {
@@ -212,6 +168,41 @@ impl Transfer<'_> {
         write(self.session, Message::Open(self.manifest), out)
     }
 
+    fn abort(&mut self, now_ms: u64) {
+        self.fail(Failure::Aborted(Reason::Cancelled), now_ms);
+    }
+
+    fn state(&self) -> State {
+        self.state
+    }
+
+    fn progress(&self) -> (u32, u32) {
+        let length = self.manifest.length;
+        (self.window.next.saturating_mul(BLOCK).min(length), length)
+    }
+}
+
+impl<D: AsRef<[u8]>> Sending<D> {
+    /// Applies an acknowledgement. Returns `false` for an impossible acknowledgement, which is ignored.
+    fn acknowledged(&mut self, acknowledge: Acknowledge, now_ms: u64) -> bool {
+        let blocks = self.frame_size.blocks();
+        let Some(fate) = self.window.update(acknowledge) else {
+            return false;
+        };
+        let bytes = (fate.arrived + fate.lost) * BLOCK;
+        self.frame_size.record(
+            bytes + bytes * OVERHEAD as u32 / (blocks * BLOCK),
+            fate.lost_frames,
+        );
+        self.patience.answered(now_ms);
+        self.opened = true;
+        if self.window.next > self.farthest {
+            self.farthest = self.window.next;
+            self.progress_ms = now_ms;
+        }
+        true
+    }
+
     /// Writes a data frame with the next blocks to send, at most `most`; returns its length.
     fn send_data(&mut self, most: u32, now_ms: u64, out: &mut [u8]) -> usize {
         let Some(run) = self.window.take(most, self.manifest.blocks()) else {
@@ -220,8 +211,8 @@ impl Transfer<'_> {
         let start = run.block.saturating_mul(BLOCK) as usize;
         let end = start
             .saturating_add((run.blocks * BLOCK) as usize)
-            .min(self.data.len());
-        let bytes = self.data.get(start..end).unwrap_or_default();
+            .min(self.data.as_ref().len());
+        let bytes = self.data.as_ref().get(start..end).unwrap_or_default();
         self.patience.begin(now_ms);
         write(
             self.session,
@@ -269,7 +260,7 @@ impl Transfer<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::wire::Receiver;
+    use crate::wire::{MAX_FRAME, Receiver};
 
     /// Runs a transfer whose manifest has a wrong CRC-32, which simulates damage that no CRC-16 detects. From the session
     /// `mend_in_session` on, the CRC-32 is right.

@@ -24,5 +24,6 @@ mod serial_boot;
 mod stays;
 mod stereo;
 mod terminal;
+mod transfers;
 mod uploads;
 mod wireframes;

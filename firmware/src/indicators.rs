@@ -1,0 +1,62 @@
+//! The task that shows the state of the board on LEDs and digits.
+
+use core::time::Duration;
+
+use glint_core::tasks::Turn;
+use glint_hal::timer::{Clock, Deadline};
+use litex_pac::cpu;
+
+use crate::demo::Demo;
+use crate::machine::Devices;
+use crate::panel;
+use crate::picture::Picture;
+use crate::sensor;
+
+/// Time between two changes of the blinking LED, and of what the digits show.
+const HEARTBEAT: Duration = Duration::from_millis(500);
+
+/// LEDs and digits, which show the state of the board.
+pub struct Indicators {
+    clock: Clock,
+    /// Time of the next change of the blinking LED.
+    beat: Deadline,
+    /// The level of the blinking LED.
+    blinks: bool,
+}
+
+impl Indicators {
+    /// Indicators that change at the first turn.
+    pub fn new(clock: Clock) -> Self {
+        Self {
+            clock,
+            beat: clock.after(Duration::ZERO),
+            blinks: false,
+        }
+    }
+
+    /// Shows the state of the board, when it is time: the LEDs only with `heartbeat`.
+    pub fn poll(
+        &mut self,
+        devices: &mut Option<Devices>,
+        demo: &Demo,
+        picture: &Picture,
+        heartbeat: bool,
+    ) -> Turn {
+        if !self.beat.passed() {
+            return Turn::Wait;
+        }
+        self.beat = self.clock.after(HEARTBEAT);
+        self.blinks = !self.blinks;
+        // Polls the future that reads the sensor, so that a transfer whose interrupt is missing times out.
+        sensor::advance(cpu::cycles_low());
+        if let Some(devices) = devices {
+            if heartbeat {
+                devices.leds.set(panel::leds(demo, self.blinks));
+            }
+            let drawn = picture.drawn().and_then(Result::ok);
+            let rate = drawn.map(|drawn| drawn.rate(self.clock.frequency()));
+            devices.digits.show(panel::digits(demo, rate, self.blinks));
+        }
+        Turn::Again
+    }
+}
