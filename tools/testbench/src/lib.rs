@@ -23,4 +23,4 @@ pub use library::{Instance, LoadError};
 pub use memory::{Memory, ReadPort, WritePort};
 pub use module::{Module, Port};
 pub use record::Record;
-pub use stream::{Sink, Source, Stalls, exchange, step};
+pub use stream::{Pipe, Sink, Source, Stalls, exchange, step};

@@ -219,3 +219,71 @@ impl Sink {
         }
     }
 }
+
+/// A module between a source and a sink.
+pub struct Pipe {
+    /// The module.
+    pub module: Module,
+    /// The sender to its input stream.
+    pub source: Source,
+    /// The receiver of its output stream.
+    pub sink: Sink,
+}
+
+impl Pipe {
+    /// Loads a module, with the names and payloads of its streams. `shares` are those of the source's and the sink's stalls.
+    #[must_use]
+    pub fn new(
+        name: &str,
+        seed: u32,
+        (input, sent): (&str, &[&str]),
+        (output, received): (&str, &[&str]),
+        shares: [f64; 2],
+    ) -> Self {
+        let module = Module::new(name, seed);
+        let [source, sink] =
+            [1, 2].map(|i| Stalls::new(u64::from(seed) + i, shares[i as usize - 1]));
+        Self {
+            source: Source::new(&module, input, sent, source),
+            sink: Sink::new(&module, output, received, sink),
+            module,
+        }
+    }
+
+    /// Runs until `done`, which is asked in each clock between the outputs and the clock edge. Returns the number of clocks.
+    ///
+    /// # Panics
+    /// When `done` is still false after `limit` clocks.
+    pub fn run(&mut self, limit: u64, mut done: impl FnMut(&Self) -> bool) -> u64 {
+        let start = self.module.cycles();
+        loop {
+            exchange(
+                &mut self.module,
+                &mut [&mut self.source],
+                &mut [&mut self.sink],
+            );
+            let clocks = self.module.cycles() - start;
+            if done(self) {
+                return clocks;
+            }
+            assert!(clocks < limit, "not done after {clocks} clocks");
+            self.module.clock();
+        }
+    }
+
+    /// Runs until the source has sent all items and the output `idle` is high, and calls `each` in each clock. Returns the number of
+    /// clocks.
+    ///
+    /// # Panics
+    /// When the module is not idle after `limit` clocks.
+    pub fn drain(&mut self, limit: u64, idle: Port, mut each: impl FnMut(&Self)) -> u64 {
+        // An item that is sent in this clock has no effect on the output yet.
+        let mut is_sent = self.source.is_empty();
+        self.run(limit, |pipe| {
+            each(pipe);
+            let is_done = is_sent && pipe.module.is_high(idle);
+            is_sent = pipe.source.is_empty();
+            is_done
+        })
+    }
+}

@@ -21,14 +21,20 @@ impl Clocks {
         sys: 12_308,
         camera: 20_400,
     };
+
+    /// An image sensor that is twice as fast as the engine, which makes a pixel in each clock of the engine.
+    pub const TWICE: Self = Self {
+        sys: 10_000,
+        camera: 5_000,
+    };
 }
+
+/// The build with quick time-outs and sums of products.
+pub const HASTY: &str = "gesture_engine_hasty";
 
 /// Settings that mark every pixel of a frame of this size.
 pub const fn settings(size: [u16; 2]) -> Settings {
-    const ALL: Window = Window {
-        lower: 0,
-        upper: 255,
-    };
+    const ALL: Window = window(0, 255);
     Settings {
         size,
         windows: [(Channel::Cr, ALL), (Channel::Cb, ALL)],
@@ -38,6 +44,11 @@ pub const fn settings(size: [u16; 2]) -> Settings {
         },
         least_run: 1,
     }
+}
+
+/// A window of the values from `lower` to `upper`.
+pub const fn window(lower: u8, upper: u8) -> Window {
+    Window { lower, upper }
 }
 
 pub struct Bench {
@@ -60,6 +71,13 @@ pub struct Bench {
 }
 
 impl Bench {
+    /// Makes a bench of the build with quick time-outs and sums of products, whose pins have the usual polarity, in the middle of a frame.
+    pub fn usual(clocks: Clocks, settings: Settings, seed: u64) -> Self {
+        let mut bench = Self::new(HASTY, clocks, Polarity::default(), false, settings, seed);
+        bench.begin();
+        bench
+    }
+
     /// Makes a bench of the build `name`. The engine is enabled, and VSYNC has not come yet.
     pub fn new(
         name: &str,

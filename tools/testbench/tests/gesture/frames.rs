@@ -1,15 +1,13 @@
 //! Random frames, polarities, settings and faults, and the frame rates that the engine has to take.
 
-use glint_core::hand::{Region, Window};
+use glint_core::hand::Region;
 use glint_model::gesture::{Channel, Polarity, Settings};
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rand_pcg::Pcg64Mcg;
 
-use crate::bench::{Bench, Clocks, settings};
+use crate::bench::{Bench, Clocks, HASTY, settings, window};
 use crate::camera::{End, Picture};
-
-const HASTY: &str = "gesture_engine_hasty";
 
 fn polarity(random: &mut Pcg64Mcg) -> Polarity {
     Polarity {
@@ -20,15 +18,12 @@ fn polarity(random: &mut Pcg64Mcg) -> Polarity {
 }
 
 fn random_settings(random: &mut Pcg64Mcg, size: [u16; 2]) -> Settings {
-    let window = |random: &mut Pcg64Mcg| {
+    let any = |random: &mut Pcg64Mcg| {
         let [a, b] = [random.random_range(0..=255), random.random_range(0..=255)];
-        let window = Window {
-            lower: u8::min(a, b),
-            upper: u8::max(a, b),
-        };
+        let window = window(u8::min(a, b), u8::max(a, b));
         (*Channel::ALL.choose(random).unwrap(), window)
     };
-    let windows = [window(random), window(random)];
+    let windows = [any(random), any(random)];
     let mut region = settings(size).region;
     if random.random() {
         for axis in [0, 1] {
@@ -166,23 +161,9 @@ fn random_frames_polarities_and_faults() {
 /// Sends two whole frames of `size` at the clock rates, and expects none to be lost.
 fn takes(clocks: Clocks, size: [u16; 2]) {
     let mut asked = settings(size);
-    asked.windows[0] = (
-        Channel::Cr,
-        Window {
-            lower: 100,
-            upper: 180,
-        },
-    );
+    asked.windows[0] = (Channel::Cr, window(100, 180));
     asked.least_run = 4;
-    let mut bench = Bench::new(
-        "gesture_engine_hasty",
-        clocks,
-        Polarity::default(),
-        false,
-        asked,
-        7,
-    );
-    bench.begin();
+    let mut bench = Bench::usual(clocks, asked, 7);
     let mut random = rand::SeedableRng::seed_from_u64(3);
     for _ in 0..2 {
         bench.frame(&picture(&mut random, size), End::Vsync);
@@ -194,13 +175,11 @@ fn takes(clocks: Clocks, size: [u16; 2]) {
 #[test]
 fn vga_at_60_frames_a_second() {
     takes(Clocks::URBANA, [640, 480]);
-    takes(
-        Clocks {
-            sys: 25_000,
-            ..Clocks::URBANA
-        },
-        [640, 480],
-    );
+    let slow = Clocks {
+        sys: 25_000,
+        ..Clocks::URBANA
+    };
+    takes(slow, [640, 480]);
 }
 
 /// 320x240 pixels 120 times a second take less than half of that clock, and a quarter with half of the blanking; they are sent
@@ -214,18 +193,7 @@ fn qvga_at_120_frames_a_second() {
 #[test]
 fn sums_of_the_largest_frame_fit() {
     let size = Settings::MAX_SIZE;
-    let mut bench = Bench::new(
-        HASTY,
-        Clocks {
-            sys: 10_000,
-            camera: 5_000,
-        },
-        Polarity::default(),
-        false,
-        settings(size),
-        9,
-    );
-    bench.begin();
+    let mut bench = Bench::usual(Clocks::TWICE, settings(size), 9);
     bench.frame(&Picture::new(size, |_, _| 0xFFFF), End::Vsync);
     let results = bench.twin.results;
     assert_eq!(results.count, 921_600);
@@ -249,25 +217,8 @@ fn sums_of_the_largest_frame_fit() {
 fn small_pictures() {
     let size = [640, 480];
     let mut asked = settings(size);
-    asked.windows[1] = (
-        Channel::Luma,
-        Window {
-            lower: 40,
-            upper: 160,
-        },
-    );
-    let mut bench = Bench::new(
-        HASTY,
-        Clocks {
-            sys: 10_000,
-            camera: 5_000,
-        },
-        Polarity::default(),
-        false,
-        asked,
-        11,
-    );
-    bench.begin();
+    asked.windows[1] = (Channel::Luma, window(40, 160));
+    let mut bench = Bench::usual(Clocks::TWICE, asked, 11);
     let mut random = rand::SeedableRng::seed_from_u64(5);
     for (step, is_colour, words) in [
         (2, false, 1200),
@@ -287,33 +238,4 @@ fn small_pictures() {
             Some(words)
         );
     }
-}
-
-/// An image sensor whose pixels come faster than the engine takes them: the frame is dropped, never wrong.
-#[test]
-fn pixels_that_come_too_fast_are_noticed() {
-    let size = [400, 4];
-    let mut bench = Bench::new(
-        HASTY,
-        Clocks {
-            sys: 10_000,
-            camera: 2_000,
-        },
-        Polarity::default(),
-        false,
-        settings(size),
-        13,
-    );
-    let pins = bench
-        .camera
-        .send(&mut bench.random, &Picture::default(), End::Vsync);
-    bench.send(&pins);
-    let pins = bench
-        .camera
-        .send(&mut bench.random, &Picture::new(size, |x, _| x), End::Vsync);
-    bench.send(&pins);
-    bench.idle(60);
-    const LOST: u64 = 5;
-    assert_eq!(bench.module.read("status.fault"), LOST);
-    assert_eq!(bench.latches, 0);
 }

@@ -6,7 +6,7 @@ use glint_core::colour::Rgb565;
 use glint_core::hand::{Region, Window};
 use glint_model::gesture::{Channel, Polarity, Settings};
 
-use crate::bench::{Bench, Clocks, settings};
+use crate::bench::{Bench, Clocks, HASTY, settings};
 use crate::camera::{End, Picture};
 
 const PAGE: &str = include_str!("../../../../docs/gesture.md");
@@ -14,9 +14,6 @@ const PAGE: &str = include_str!("../../../../docs/gesture.md");
 const SIZE: [u16; 2] = [64, 48];
 const SKIN: [u8; 3] = [200, 140, 110];
 const RADIUS: i32 = 10;
-
-/// A fault of one frame: what the image sensor sends in its place.
-type Spoil = fn(&mut Picture) -> End;
 
 /// A case: its row in the table, and what computes the outcome.
 type Case = (&'static str, fn() -> String);
@@ -59,40 +56,18 @@ const CASES: [Case; 23] = [
     ("VSYNC lost", || spoilt(|_| End::Lost)),
     ("VSYNC inside a line", || spoilt(|_| End::Cut)),
     ("line too short by a pixel", || {
-        spoilt(|picture| {
-            picture.lines[5].truncate(126);
-            End::Vsync
-        })
+        spoilt_lines(|lines| lines[5].truncate(126))
     }),
     ("line too long by a pixel", || {
-        spoilt(|picture| {
-            picture.lines[5].extend([0, 0]);
-            End::Vsync
-        })
+        spoilt_lines(|lines| lines[5].extend([0, 0]))
     }),
-    ("line missing", || {
-        spoilt(|picture| {
-            picture.lines.remove(5);
-            End::Vsync
-        })
-    }),
+    ("line missing", || spoilt_lines(|lines| _ = lines.remove(5))),
     ("line too many", || {
-        spoilt(|picture| {
-            picture.lines.insert(5, vec![0; 128]);
-            End::Vsync
-        })
+        spoilt_lines(|lines| lines.insert(5, vec![0; 128]))
     }),
-    ("byte lost", || {
-        spoilt(|picture| {
-            picture.lines[5].remove(7);
-            End::Vsync
-        })
-    }),
+    ("byte lost", || spoilt_lines(|lines| _ = lines[5].remove(7))),
     ("byte too many", || {
-        spoilt(|picture| {
-            picture.lines[5].insert(7, 0);
-            End::Vsync
-        })
+        spoilt_lines(|lines| lines[5].insert(7, 0))
     }),
     ("PCLK stopped inside a frame", || {
         let mut bench = bench(asked(), Polarity::default());
@@ -117,37 +92,24 @@ const CASES: [Case; 23] = [
             camera: 2_000,
         };
         let size = [400, 4];
-        let bench = Bench::new(HASTY, clocks, Polarity::default(), false, settings(size), 1);
         // The model has no clocks, so it is not compared.
-        let mut bench = bench;
-        bench.begin();
+        let mut bench = Bench::usual(clocks, settings(size), 1);
         let picture = Picture::new(size, |x, _| x);
         let pins = bench.camera.send(&mut bench.random, &picture, End::Vsync);
         bench.send(&pins);
         bench.idle(60);
+        assert_eq!(bench.latches, 0);
         told(&mut bench)
     }),
     ("wrong polarity of VSYNC", || {
-        wrong(Polarity {
-            vsync_low: true,
-            ..Polarity::default()
-        })
+        wrong(|pins| pins.vsync_low = true)
     }),
     ("wrong polarity of HREF", || {
-        wrong(Polarity {
-            href_low: true,
-            ..Polarity::default()
-        })
+        wrong(|pins| pins.href_low = true)
     }),
-    ("wrong order of bytes", || {
-        wrong(Polarity {
-            swap: true,
-            ..Polarity::default()
-        })
-    }),
+    ("wrong order of bytes", || wrong(|pins| pins.swap = true)),
 ];
 
-const HASTY: &str = "gesture_engine_hasty";
 const GREY: [u8; 3] = [90, 95, 90];
 
 fn colour(rgb: [u8; 3]) -> u16 {
@@ -224,7 +186,7 @@ fn picture(pixel: impl Fn(u16, u16) -> [u8; 3]) -> String {
 }
 
 /// Sends a frame with a fault after a complete one, and then frames without a fault until one of them is complete.
-fn spoilt(spoil: Spoil) -> String {
+fn spoilt(spoil: impl Fn(&mut Picture) -> End) -> String {
     let mut bench = bench(asked(), Polarity::default());
     let hand = hands(&[[20, 24]], 1);
     bench.frame(&hand, End::Vsync);
@@ -241,8 +203,18 @@ fn spoilt(spoil: Spoil) -> String {
     format!("{fault}; then {}", told(&mut bench))
 }
 
+/// As [`spoilt`], with a fault in the lines of the frame.
+fn spoilt_lines(spoil: fn(&mut Vec<Vec<u8>>)) -> String {
+    spoilt(|picture| {
+        spoil(&mut picture.lines);
+        End::Vsync
+    })
+}
+
 /// Sends frames to an engine that expects other pins than the image sensor has.
-fn wrong(expected: Polarity) -> String {
+fn wrong(change: fn(&mut Polarity)) -> String {
+    let mut expected = Polarity::default();
+    change(&mut expected);
     let mut bench = bench(asked(), expected);
     bench.camera.polarity = Polarity::default();
     bench.camera.is_noisy = false;

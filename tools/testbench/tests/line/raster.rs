@@ -3,7 +3,7 @@
 use glint_model::SIZES;
 use glint_model::line::Segment;
 use glint_model::triangle::setup::Bounds;
-use glint_testbench::{Bits, Layout, Module, Port, Sink, Source, Stalls, exchange};
+use glint_testbench::{Bits, Layout, Pipe, Port};
 use glint_vectors::segments::{difficult, of_50_pixels, random};
 use rand_pcg::Pcg64Mcg;
 
@@ -13,38 +13,34 @@ use crate::segments::{bands, piece, pixels};
 const LANES: u32 = 8;
 
 struct Bench {
-    module: Module,
-    source: Source,
-    sink: Sink,
+    pipe: Pipe,
     piece: Layout,
     idle: Port,
 }
 
 impl Bench {
-    fn new(seed: u32, [source_stalls, sink_stalls]: [f64; 2], size: usize) -> Self {
-        let mut module = Module::new("line_raster", seed);
-        module.drive("size", size as u32);
-        let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+    fn new(seed: u32, stalls: [f64; 2], size: usize) -> Self {
         let payload = ["row", "line", "column", "mask", "code", "colour"];
+        let (input, output) = (("in", &["piece"][..]), ("group", &payload[..]));
+        let mut pipe = Pipe::new("line_raster", seed, input, output, stalls);
+        pipe.module.drive("size", size as u32);
         Self {
-            source: Source::new(&module, "in", &["piece"], stalls(1, source_stalls)),
-            sink: Sink::new(&module, "group", &payload, stalls(2, sink_stalls)),
-            piece: module.packed_type("records_pkg::piece_t").clone(),
-            idle: module.port("idle"),
-            module,
+            piece: pipe.module.packed_type("records_pkg::piece_t").clone(),
+            idle: pipe.module.port("idle"),
+            pipe,
         }
     }
 
     /// Draws the pieces of segments in a band, and compares the groups with the model's pixels. Returns the clocks and the pixels.
     fn band(&mut self, size: usize, band: &Bounds, segments: &[Segment]) -> [u64; 2] {
         let stride = SIZES[size].0 / LANES;
-        self.module.drive("first_row", band.top);
+        self.pipe.module.drive("first_row", band.top);
         let mut expected = vec![];
         for segment in segments {
             let Some(piece) = piece(segment, &self.piece, size, band) else {
                 continue;
             };
-            self.source.push(vec![piece]);
+            self.pipe.source.push(vec![piece]);
             for pixel in pixels(segment, band) {
                 let [column, line] = [pixel.column as u32, (pixel.row - band.top) as u32];
                 let code = pixel.code(segment.depth);
@@ -59,28 +55,16 @@ impl Bench {
                 ]);
             }
         }
-        self.module.settle();
-        assert!(self.module.is_high(self.idle));
-        let start = self.module.cycles();
-        while !(self.source.is_empty() && self.module.is_high(self.idle)) {
-            assert!(
-                self.module.cycles() < start + 2_000_000,
-                "nothing after 2,000,000 clocks"
-            );
-            exchange(
-                &mut self.module,
-                &mut [&mut self.source],
-                &mut [&mut self.sink],
-            );
-            self.module.clock();
-            self.module.settle();
-        }
-        let found: Vec<[u32; 6]> = self.sink.take().iter().map(|item| group(item)).collect();
+        let (pipe, idle) = (&mut self.pipe, self.idle);
+        pipe.module.settle();
+        assert!(pipe.module.is_high(idle));
+        let clocks = pipe.drain(2_000_000, idle, |_| ());
+        let found: Vec<[u32; 6]> = pipe.sink.take().iter().map(|item| group(item)).collect();
         for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
             assert_eq!(found, expected, "pixel {i} in {band:?}");
         }
         assert_eq!(found.len(), expected.len(), "in {band:?}");
-        [self.module.cycles() - start, expected.len() as u64]
+        [clocks, expected.len() as u64]
     }
 
     fn picture(&mut self, size: usize, segments: &[Segment]) -> [u64; 2] {

@@ -3,45 +3,34 @@
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
 use glint_model::line::{LineDepth, Segment};
-use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, exchange};
+use glint_testbench::{Bits, Layout, Pipe};
 use glint_vectors::segments::{difficult, of_50_pixels, random};
 use rand_pcg::Pcg64Mcg;
 
 use crate::segments::{pieces, placed};
 
 /// Sends segments to the set-up, and compares its pieces with those of the model. Returns the clocks.
-fn check(
-    seed: u32,
-    [source_stalls, sink_stalls]: [f64; 2],
-    size: usize,
-    segments: &[Segment],
-) -> u64 {
-    let mut module = Module::new("line_setup", seed);
-    let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
-    let mut source = Source::new(&module, "in", &["segment"], stalls(1, source_stalls));
-    let mut sink = Sink::new(&module, "out", &["piece"], stalls(2, sink_stalls));
+fn check(seed: u32, stalls: [f64; 2], size: usize, segments: &[Segment]) -> u64 {
+    let (input, output) = (("in", &["segment"][..]), ("out", &["piece"][..]));
+    let mut pipe = Pipe::new("line_setup", seed, input, output, stalls);
     let layouts = ["line_pkg::segment_t", "records_pkg::piece_t"]
-        .map(|name| module.packed_type(name).clone());
-    module.drive("size", size as u32);
-    let start = module.cycles();
+        .map(|name| pipe.module.packed_type(name).clone());
+    pipe.module.drive("size", size as u32);
+    let start = pipe.module.cycles();
     for segment in segments {
-        module.drive("bias", placed(segment).1);
+        pipe.module.drive("bias", placed(segment).1);
         let expected = pieces(segment, &layouts[1], size);
-        source.push(vec![pack(&layouts[0], segment)]);
-        let begin = module.cycles();
-        while !source.is_empty() {
-            assert!(module.cycles() < begin + 30_000, "{segment:?} does not end");
-            exchange(&mut module, &mut [&mut source], &mut [&mut sink]);
-            module.clock();
-        }
-        let found: Vec<Bits> = sink.take().into_iter().map(|item| item[0]).collect();
+        pipe.source.push(vec![pack(&layouts[0], segment)]);
+        pipe.run(30_000, |pipe| pipe.source.is_empty());
+        pipe.module.clock();
+        let found: Vec<Bits> = pipe.sink.take().into_iter().map(|item| item[0]).collect();
         let show = |pieces: &[Bits]| -> Vec<String> {
             let record = |&bits| format!("{:?}", layouts[1].record_of(bits));
             pieces.iter().map(record).collect()
         };
         assert_eq!(show(&found), show(&expected), "{segment:?} at size {size}");
     }
-    module.cycles() - start
+    pipe.module.cycles() - start
 }
 
 fn pack(layout: &Layout, segment: &Segment) -> Bits {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glint_core::field::Primitive;
 use glint_model::raymarch::FieldSetup;
-use glint_testbench::{Bits, Layout, Module, Sink, Source, Stalls, step};
+use glint_testbench::{Bits, Layout, Pipe};
 
 use crate::scenes::{SPONGES, every_field, setup, setup_with};
 use glint_testbench::raymarch::{End, RayPlace, cone, ray, set_lane};
@@ -68,60 +68,39 @@ fn some_cones(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashM
     all
 }
 
-struct Bench {
-    module: Module,
-    source: Source,
-    sink: Sink,
-    /// Number of clocks in which the lane evaluated the field; `waited` counts those in which a ray waited for a free slot.
-    evaluated: u64,
-    waited: u64,
-}
+struct Bench(Pipe);
 
 impl Bench {
-    fn new(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        let module = Module::new(name, seed);
-        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
-        Self {
-            source: Source::new(&module, "in", &["ray"], stalls(1, source_stalls)),
-            sink: Sink::new(&module, "out", &["end"], stalls(2, sink_stalls)),
-            module,
-            evaluated: 0,
-            waited: 0,
-        }
+    fn new(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
+        Self(Pipe::new(
+            name,
+            seed,
+            ("in", &["ray"]),
+            ("out", &["end"]),
+            stalls,
+        ))
     }
 
     /// Returns the type of a ray at the module's input.
     fn ray(&self) -> Layout {
-        self.module.packed_type("raymarch_pkg::ray_t").clone()
+        self.0.module.packed_type("raymarch_pkg::ray_t").clone()
     }
 
     /// Sends rays or cones of a frame through the lane and compares their ends with the expected ones.
     fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<RayPlace, Sent>) {
-        set_lane(&mut self.module, setup);
-        self.module.drive("cones", cones);
-        let end = self.module.packed_type("raymarch_pkg::end_t").clone();
-        let [evaluates, waits] = ["evaluates", "waits"].map(|name| self.module.port(name));
+        let Self(pipe) = self;
+        set_lane(&mut pipe.module, setup);
+        pipe.module.drive("cones", cones);
+        let end = pipe.module.packed_type("raymarch_pkg::end_t").clone();
         let count = expected.len();
         let evaluations: u64 = expected.values().map(|sent| u64::from(sent.steps)).sum();
         for sent in expected.values() {
-            self.source.push(vec![sent.item]);
+            pipe.source.push(vec![sent.item]);
         }
-        let start = self.module.cycles();
-        while self.sink.items().len() < count {
-            let cycles = self.module.cycles() - start;
-            assert!(
-                cycles < 100_000 + 100 * evaluations,
-                "the lane stalls in {setup:?}"
-            );
-            step(
-                &mut self.module,
-                &mut [&mut self.source],
-                &mut [&mut self.sink],
-            );
-            self.evaluated += u64::from(self.module.is_high(evaluates));
-            self.waited += u64::from(self.module.is_high(waits));
-        }
-        for item in self.sink.take() {
+        let limit = 100_000 + 100 * evaluations;
+        pipe.run(limit, |pipe| pipe.sink.items().len() == count);
+        pipe.module.clock();
+        for item in pipe.sink.take() {
             let record = end.record_of(item[0]);
             let (place, found) = if cones {
                 End::of_cone(&record)
@@ -143,11 +122,10 @@ fn rays() -> usize {
 
 /// Creates benches of the module `name` with different shares of stalls.
 fn benches(name: &str) -> Vec<Bench> {
-    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.9, 0.0)];
-    (1..)
-        .zip(shares)
-        .map(|(seed, (source, sink))| Bench::new(name, seed, source, sink))
-        .collect()
+    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
+    let numbered = (1..).zip(shares);
+    let bench = |(seed, stalls)| Bench::new(name, seed, stalls);
+    numbered.map(bench).collect()
 }
 
 fn random_rays(name: &str, fields: &[impl AsRef<str>]) {

@@ -3,7 +3,7 @@
 use glint_core::field::Surface;
 use glint_model::raymarch::{FieldSetup, Palette, Ray, RayResult, State};
 use glint_model::triangle::descriptor::band_rows;
-use glint_testbench::{Module, Sink, Source, Stalls, step};
+use glint_testbench::Pipe;
 
 use crate::scenes::{FIELDS, setup};
 use glint_testbench::raymarch::{Pixel, RayPlace, end, pixel, set_paint};
@@ -54,21 +54,15 @@ fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
 fn ends_of_random_rays() {
     const COUNT: usize = 4_000;
     let mut random = Random(8);
-    let mut module = Module::new("ray_paint", 1);
-    let layout = module.packed_type("raymarch_pkg::end_t").clone();
+    let (input, output) = (("in", &["end"][..]), ("out", &Pixel::PAYLOAD[..]));
     for frame in 0..24 {
+        let share = [0.0, 0.5][frame as usize % 2];
+        let mut pipe = Pipe::new("ray_paint", frame, input, output, [share; 2]);
+        let layout = pipe.module.packed_type("raymarch_pkg::end_t").clone();
         let setup = setup(&mut random, &FIELDS);
         let palette = palette(&mut random);
-        set_paint(&mut module, &setup, &palette);
-        module.drive("stride", setup.width / 8);
-        let share = [0.0, 0.5][frame as usize % 2];
-        let mut source = Source::new(&module, "in", &["end"], Stalls::new(frame, share));
-        let mut sink = Sink::new(
-            &module,
-            "out",
-            &Pixel::PAYLOAD,
-            Stalls::new(frame + 100, share),
-        );
+        set_paint(&mut pipe.module, &setup, &palette);
+        pipe.module.drive("stride", setup.width / 8);
         let expected: Vec<_> = (0..COUNT)
             .map(|_| {
                 let column = random.integer(0, i64::from(setup.width) - 1) as u32;
@@ -81,7 +75,8 @@ fn ends_of_random_rays() {
                 };
                 let start = setup.ray(place.eye, column, place.line);
                 let outcome = ending(&mut random, &setup, &start);
-                source.push(vec![end(&layout, place, &start, &outcome)]);
+                pipe.source
+                    .push(vec![end(&layout, place, &start, &outcome)]);
                 (
                     pixel(&setup, &palette, place, &start, &outcome),
                     start,
@@ -89,14 +84,11 @@ fn ends_of_random_rays() {
                 )
             })
             .collect();
-        let begun = module.cycles();
-        while sink.items().len() < COUNT {
-            assert!(module.cycles() - begun < 20 * COUNT as u64, "standstill");
-            step(&mut module, &mut [&mut source], &mut [&mut sink]);
-        }
-        let clocks = module.cycles() - begun;
+        let limit = 20 * COUNT as u64;
+        let clocks = pipe.run(limit, |pipe| pipe.sink.items().len() == COUNT);
+        pipe.module.clock();
         assert!(share > 0.0 || clocks < COUNT as u64 + 40, "{clocks} clocks");
-        for (item, (wanted, start, outcome)) in sink.take().iter().zip(&expected) {
+        for (item, (wanted, start, outcome)) in pipe.sink.take().iter().zip(&expected) {
             let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
             assert_eq!(found, *wanted, "{outcome:?} of {start:?} in {setup:?}");
         }

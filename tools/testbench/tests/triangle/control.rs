@@ -10,7 +10,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::control::bench::{Bench, Events};
 use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, GEOMETRY, LATENCY, LINES, LIST, Limits, MEMORY, MESH,
-    NAMES, NONE, Pass, RASTER, SIZE, TRIANGLES, refusal, regions,
+    NAMES, NONE, Pass, RASTER, SIZE, TRIANGLES,
 };
 
 /// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
@@ -26,12 +26,7 @@ fn regions_are_wholly_in_memory() {
             let flags = &mut bench.passes[which].flags;
             flags.size = size;
             flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
-            for (port, bytes) in regions(
-                which,
-                &bench.passes[which],
-                bench.list_shift,
-                bench.descriptor,
-            ) {
+            for (port, bytes) in bench.regions(which) {
                 let right = bench.passes[which].get(port);
                 let last = BASE + MEMORY - bytes.next_multiple_of(16);
                 for (address, expected) in [
@@ -87,8 +82,7 @@ fn a_build_has_less_memory_and_fewer_sizes() {
         let ask = [which == GEOMETRY, which == RASTER];
         for size in 0..4 {
             bench.passes[which].flags.size = size;
-            let (list_shift, descriptor) = (bench.list_shift, bench.descriptor);
-            let regions = regions(which, &bench.passes[which], list_shift, descriptor);
+            let regions = bench.regions(which);
             for &(port, _) in &regions {
                 bench.passes[which].set(port, BASE);
             }
@@ -224,15 +218,7 @@ fn lengths_are_counted_to_the_last_word() {
                 bench.passes[RASTER].set(port, BASE);
             }
             bench.passes[GEOMETRY].set("geometry.lists", BASE);
-            let expected = [GEOMETRY, RASTER].map(|which| {
-                refusal(
-                    which,
-                    &bench.passes[which],
-                    shift,
-                    bench.descriptor,
-                    bench.limits,
-                )
-            });
+            let expected = [GEOMETRY, RASTER].map(|which| bench.refusal(which));
             assert_eq!(expected[GEOMETRY], expected[RASTER]);
             assert_eq!(
                 bench.ask([true, true]),
@@ -297,10 +283,7 @@ fn passes_end_as_the_engine_says() {
         }
     }
     for which in [GEOMETRY, RASTER] {
-        bench.clock(Events {
-            ask: [which == GEOMETRY, which == RASTER],
-            ..Events::default()
-        });
+        bench.clock(Events::ask([which == GEOMETRY, which == RASTER]));
         let start = bench.clocks;
         while bench.value(which, "start") == 0 {
             bench.clock(Events::default());
@@ -321,16 +304,9 @@ fn passes_wait_for_their_parameters() {
             assert_eq!(bench.ask(ask), [NONE; 2], "{loads:?}");
             for after in 0..60 {
                 bench.configure();
-                bench.clock(Events {
-                    ask,
-                    ..Events::default()
-                });
+                bench.clock(Events::ask(ask));
                 bench.wait(after);
-                bench.clock(Events {
-                    cancel: true,
-                    recovers: 3,
-                    ..Events::default()
-                });
+                bench.clock(Events::cancel(3));
                 assert_eq!(bench.ask([true, true]), [NONE; 2], "{loads:?}, {after}");
             }
         }
@@ -354,10 +330,7 @@ fn asks_in_between_are_refused() {
                         bench.passes[which].set(["geometry.mesh", "raster.frame"][which], 0);
                     }
                     bench.configure();
-                    let ask = Events {
-                        ask: mine,
-                        ..Events::default()
-                    };
+                    let ask = Events::ask(mine);
                     bench.clock(ask);
                     bench.wait(after);
                     let was_active = bench.is_active(which);
@@ -392,18 +365,10 @@ fn asks_after_a_cancel_wait_for_the_engine() {
         for after in 0..45 {
             for recovers in [0, 1, 2, 40] {
                 for again in [0, 1, 20, 60] {
-                    bench.clock(Events {
-                        ask: asks,
-                        ..Events::default()
-                    });
+                    bench.clock(Events::ask(asks));
                     bench.wait(after);
                     let active = [GEOMETRY, RASTER].map(|which| bench.is_active(which));
-                    let events = Events {
-                        cancel: true,
-                        recovers,
-                        ..Events::default()
-                    };
-                    bench.clock(events);
+                    bench.clock(Events::cancel(recovers));
                     for which in [GEOMETRY, RASTER] {
                         assert!(!active[which] || bench.errors[which] == CANCELLED);
                     }

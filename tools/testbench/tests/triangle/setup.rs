@@ -7,7 +7,7 @@ use glint_model::triangle::descriptor::Descriptor;
 use glint_model::triangle::setup::{Bounds, Facing, Oriented, Setup};
 use glint_model::triangle::shade::{Light, Lit, intensity, lit};
 use glint_model::{SIZES, ScreenVertex, Shading};
-use glint_testbench::{Bits, Layout, Module, Port, Record, Sink, Source, Stalls, exchange};
+use glint_testbench::{Bits, Layout, Module, Pipe, Port, Record};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
@@ -114,78 +114,60 @@ fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
 }
 
 struct Bench {
-    module: Module,
+    pipe: Pipe,
     ability: Shading,
-    source: Source,
-    sink: Sink,
     busy: Port,
     culled: Port,
     drawn: Port,
 }
 
 impl Bench {
-    fn new(ability: Shading, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
+    fn new(ability: Shading, seed: u32, stalls: [f64; 2]) -> Self {
         let name = match ability {
             Shading::Flat => "setup",
             Shading::Smooth => "setup_smooth",
         };
-        let module = Module::new(name, seed);
-        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
-        let payload = ["vertices", "colour", "normal", "light"];
+        let input = ("in", &["vertices", "colour", "normal", "light"][..]);
+        let output = ("out", &["descriptor", "planes"][..]);
+        let pipe = Pipe::new(name, seed, input, output, stalls);
+        let [busy, culled, drawn] = ["busy", "culled", "drawn"].map(|name| pipe.module.port(name));
         Self {
-            source: Source::new(&module, "in", &payload, stalls(1, source_stalls)),
-            sink: Sink::new(
-                &module,
-                "out",
-                &["descriptor", "planes"],
-                stalls(2, sink_stalls),
-            ),
+            pipe,
             ability,
-            busy: module.port("busy"),
-            culled: module.port("culled"),
-            drawn: module.port("drawn"),
-            module,
+            busy,
+            culled,
+            drawn,
         }
     }
 
     /// Sends the triangles of a frame through the setup, compares the descriptors and returns the number of
     /// clocks.
     fn check(&mut self, frame: &Frame, inputs: &[Input]) -> u64 {
-        self.module.drive("width", frame.size.0);
-        self.module.drive("height", frame.size.1);
-        self.module.drive("cull_back", frame.cull);
-        self.module.drive("mirror", frame.mirror);
+        let module = &mut self.pipe.module;
+        module.drive("width", frame.size.0);
+        module.drive("height", frame.size.1);
+        module.drive("cull_back", frame.cull);
+        module.drive("mirror", frame.mirror);
         let light = &frame.light;
-        self.module.drive_all("row_light", light.row);
-        self.module.drive_all("light_colour", light.colour);
-        self.module.drive_all("ambient", light.ambient);
-        self.module
-            .drive("smooth", frame.shading == Shading::Smooth);
-        let types = Types::of(&self.module);
+        module.drive_all("row_light", light.row);
+        module.drive_all("light_colour", light.colour);
+        module.drive_all("ambient", light.ambient);
+        module.drive("smooth", frame.shading == Shading::Smooth);
+        let planes_type = module.packed_type("records_pkg::planes_t").clone();
+        let types = Types::of(module);
         for input in inputs {
-            self.source.push(types.item(input, self.ability));
+            self.pipe.source.push(types.item(input, self.ability));
         }
-        let planes_type = self.module.packed_type("records_pkg::planes_t").clone();
-        let start = self.module.cycles();
-        let (mut culled, mut drawn) = (0, 0);
-        loop {
-            let cycles = self.module.cycles() - start;
-            let limit = 1000 + 500 * inputs.len() as u64;
-            assert!(cycles < limit, "the setup stalls in {frame:?}");
-            let all_taken = self.source.is_empty();
-            exchange(
-                &mut self.module,
-                &mut [&mut self.source],
-                &mut [&mut self.sink],
-            );
-            culled += usize::from(self.module.is_high(self.culled));
-            drawn += usize::from(self.module.is_high(self.drawn));
-            if all_taken && !self.module.is_high(self.busy) {
-                break;
-            }
-            self.module.clock();
-        }
-        let mut found = self.sink.take().into_iter();
+        let (mut culled, mut drawn, mut all_taken) = (0, 0, inputs.is_empty());
+        let (counted, busy) = ([self.culled, self.drawn], self.busy);
+        let clocks = self.pipe.run(1000 + 500 * inputs.len() as u64, |pipe| {
+            let [is_culled, is_drawn] = counted.map(|port| pipe.module.is_high(port));
+            culled += usize::from(is_culled);
+            drawn += usize::from(is_drawn);
+            let was_taken = std::mem::replace(&mut all_taken, pipe.source.is_empty());
+            was_taken && !pipe.module.is_high(busy)
+        });
+        let mut found = self.pipe.sink.take().into_iter();
         for input in inputs {
             if let Some(expected) = expected(frame, input) {
                 let mut descriptor = found.next().map(|item| [item[0], item[1]]);
@@ -203,7 +185,7 @@ impl Bench {
             .filter(|i| expected(frame, i).is_some())
             .count();
         assert_eq!((culled, drawn), (inputs.len() - visible, visible));
-        self.module.cycles() - start
+        clocks
     }
 }
 
@@ -290,11 +272,8 @@ fn random_triangles_smooth() {
 
 fn random_triangles_of(ability: Shading) {
     let mut random = Pcg64Mcg::new(1);
-    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.95, 0.0)];
-    let mut benches: Vec<Bench> = (0..)
-        .zip(shares)
-        .map(|(seed, (source, sink))| Bench::new(ability, seed, source, sink))
-        .collect();
+    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.95, 0.0]];
+    let mut benches = [0, 1, 2, 3].map(|seed| Bench::new(ability, seed, shares[seed as usize]));
     let (mut drawn, mut culled) = (0, 0);
     for round in 0..48 {
         let mut frame = frame(&mut random, round);
@@ -323,7 +302,7 @@ fn random_triangles_of(ability: Shading) {
 #[test]
 fn tiny_triangles() {
     let mut random = Pcg64Mcg::new(9);
-    let mut bench = Bench::new(Shading::Flat, 9, 0.3, 0.3);
+    let mut bench = Bench::new(Shading::Flat, 9, [0.3, 0.3]);
     let (mut drawn, mut dropped) = (0, 0);
     for round in 0..24 {
         let frame = Frame {
@@ -383,7 +362,7 @@ fn corners_of_the_guard_band_and_of_the_picture_smooth() {
 }
 
 fn corners(shading: Shading) {
-    let mut bench = Bench::new(shading, 7, 0.2, 0.2);
+    let mut bench = Bench::new(shading, 7, [0.2, 0.2]);
     for size in SIZES {
         let [w, h] = [size.0, size.1].map(|x| (x << 8) as i32);
         let corners = [
@@ -457,7 +436,7 @@ fn clocks_a_triangle_smooth() {
 
 fn clocks(shading: Shading) {
     const COUNT: u64 = 200;
-    let mut bench = Bench::new(shading, 3, 0.0, 0.0);
+    let mut bench = Bench::new(shading, 3, [0.0, 0.0]);
     let places = [[1000, 1000], [1000, 9000], [9000, 1000]];
     let front = input(places, [5000, 6000, 7000]);
     let back = input([places[0], places[2], places[1]], [5000, 6000, 7000]);

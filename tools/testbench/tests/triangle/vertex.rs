@@ -3,7 +3,7 @@
 use glint_core::camera::Projection;
 use glint_model::triangle::vertex::{project, transform};
 use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
-use glint_testbench::{Bits, Layout, Module, Record, Sink, Source, Stalls, step};
+use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::{Camera, Random};
 
 /// Computes the expected output of the vertex stage with the model; x and y are saturated to s12.8.
@@ -38,49 +38,34 @@ fn set_frame(module: &mut Module, frame: &MeshSetup) {
 }
 
 struct Bench {
-    module: Module,
+    pipe: Pipe,
     /// Type of a vertex at the module's output.
     vertex: Layout,
-    source: Source,
-    sink: Sink,
 }
 
 impl Bench {
-    fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        let module = Module::new("vertex_stage", seed);
-        let stalls = |number, share| Stalls::new(u64::from(seed) + number, share);
-        Self {
-            source: Source::new(&module, "in", &["position"], stalls(1, source_stalls)),
-            sink: Sink::new(&module, "out", &["vertex"], stalls(2, sink_stalls)),
-            vertex: module.record("out_vertex").layout().clone(),
-            module,
-        }
+    fn new(seed: u32, stalls: [f64; 2]) -> Self {
+        let (input, output) = (("in", &["position"][..]), ("out", &["vertex"][..]));
+        let pipe = Pipe::new("vertex_stage", seed, input, output, stalls);
+        let vertex = pipe.module.record("out_vertex").layout().clone();
+        Self { pipe, vertex }
     }
 
     /// Sends the vertices of a frame through the stage, compares the results and returns the number of clocks.
     fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
-        set_frame(&mut self.module, frame);
+        set_frame(&mut self.pipe.module, frame);
         for position in positions {
-            self.source.push(vec![Bits::pack(16, *position)]);
+            self.pipe.source.push(vec![Bits::pack(16, *position)]);
         }
-        let start = self.module.cycles();
-        while self.sink.items().len() < positions.len() {
-            let cycles = self.module.cycles() - start;
-            assert!(
-                cycles < 1000 + 200 * positions.len() as u64,
-                "the stage stalls"
-            );
-            step(
-                &mut self.module,
-                &mut [&mut self.source],
-                &mut [&mut self.sink],
-            );
-        }
-        for (&position, item) in positions.iter().zip(self.sink.take()) {
+        let limit = 1000 + 200 * positions.len() as u64;
+        let is_done = |pipe: &Pipe| pipe.sink.items().len() == positions.len();
+        let clocks = self.pipe.run(limit, is_done);
+        self.pipe.module.clock();
+        for (&position, item) in positions.iter().zip(self.pipe.sink.take()) {
             let expected = expected(&self.vertex, frame, position);
             assert_eq!(item[0], expected.bits(), "{position:?} in {frame:?}");
         }
-        self.module.cycles() - start
+        clocks
     }
 }
 
@@ -125,11 +110,8 @@ const RADIUS: u32 = 56_756;
 #[test]
 fn random_cameras_and_vertices() {
     let mut random = Random(1);
-    let shares = [(0.0, 0.0), (0.5, 0.5), (0.0, 0.95), (0.95, 0.0)];
-    let mut benches: Vec<Bench> = (0..)
-        .zip(shares)
-        .map(|(seed, (source, sink))| Bench::new(seed, source, sink))
-        .collect();
+    let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.95, 0.0]];
+    let mut benches = [0, 1, 2, 3].map(|seed| Bench::new(seed, shares[seed as usize]));
     // Numbers of the tested vertices that are behind the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
@@ -159,7 +141,7 @@ fn random_cameras_and_vertices() {
 #[test]
 fn edges() {
     let mut random = Random(2);
-    let mut bench = Bench::new(7, 0.1, 0.1);
+    let mut bench = Bench::new(7, [0.1, 0.1]);
     let (mut near_planes, mut guard_edges, mut full_depths) = (0, 0, 0);
     for round in 0..1200 {
         let (width, height) = SIZES[round as usize % 3];
@@ -233,7 +215,7 @@ fn edges() {
 #[test]
 fn orthographic_edges() {
     let mut random = Random(6);
-    let mut bench = Bench::new(11, 0.1, 0.1);
+    let mut bench = Bench::new(11, [0.1, 0.1]);
     let view = camera(&mut random, 4).rounded();
     let view = view.with_projection(Projection::Orthographic);
     let (mut scales, mut seen) = ([[false; 12]; 12], [0; 3]);
@@ -284,7 +266,7 @@ fn orthographic_edges() {
 #[test]
 fn mantissas_and_shifts() {
     let mut random = Random(4);
-    let mut bench = Bench::new(9, 0.0, 0.0);
+    let mut bench = Bench::new(9, [0.0, 0.0]);
     let view = camera(&mut random, 0).rounded();
     let mut seen = [false; 19];
     for round in 0..3072 {
@@ -322,6 +304,6 @@ fn a_vertex_in_six_clocks() {
     let view = camera(&mut random, 2).rounded();
     let frame = MeshSetup::new(&view, 640, 360, RADIUS).unwrap();
     let positions: Vec<_> = (0..200).map(|_| position(&mut random)).collect();
-    let clocks = Bench::new(5, 0.0, 0.0).check(&frame, &positions);
+    let clocks = Bench::new(5, [0.0, 0.0]).check(&frame, &positions);
     assert!(clocks <= 6 * 200 + 45, "{clocks} clocks");
 }

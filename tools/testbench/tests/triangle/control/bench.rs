@@ -4,7 +4,7 @@ use glint_testbench::{Module, Port};
 
 use crate::control::passes::{
     ADDRESS, BASE, BUSY, CANCELLED, FULL, Flags, GEOMETRY, LATENCY, LIST, Limits, MEMORY, MESH,
-    NAMES, NONE, Pass, RASTER, refusal,
+    NAMES, NONE, Pass, RASTER, refusal, regions,
 };
 
 /// Expected state of a pass.
@@ -59,6 +59,25 @@ pub struct Events {
     pub cancel: bool,
     /// With `cancel`: clocks until the engine is ready again.
     pub recovers: u64,
+}
+
+impl Events {
+    /// Software asks for passes.
+    pub fn ask(ask: [bool; 2]) -> Self {
+        Self {
+            ask,
+            ..Self::default()
+        }
+    }
+
+    /// Software cancels passes, and the engine is ready again after some clocks.
+    pub fn cancel(recovers: u64) -> Self {
+        Self {
+            cancel: true,
+            recovers,
+            ..Self::default()
+        }
+    }
 }
 
 impl Bench {
@@ -165,9 +184,8 @@ impl Bench {
 
     /// Drives the addresses and lengths of a pass.
     fn drive_regions(&mut self, which: usize) {
-        for (name, value) in self.passes[which].ports.clone() {
-            let port = self.module.port(name);
-            self.module.set(port, value);
+        for (name, value) in &self.passes[which].ports {
+            self.module.drive_bits(name, *value);
         }
     }
 
@@ -175,11 +193,21 @@ impl Bench {
     fn load(&mut self, which: usize) {
         self.loading[which] = self.loads[which];
         if self.loads[which] > 0 {
-            for (name, _) in self.passes[which].ports.clone() {
-                let port = self.module.port(name);
-                self.module.set(port, 1);
+            for (name, _) in &self.passes[which].ports {
+                self.module.drive(name, 1);
             }
         }
+    }
+
+    /// The error with which the module must refuse a pass, or `NONE`.
+    pub fn refusal(&self, which: usize) -> u64 {
+        let (pass, shift) = (&self.passes[which], self.list_shift);
+        refusal(which, pass, shift, self.descriptor, self.limits)
+    }
+
+    /// The regions of memory of a pass: for each, the port with its address, and its length in bytes.
+    pub fn regions(&self, which: usize) -> Vec<(&'static str, u64)> {
+        regions(which, &self.passes[which], self.list_shift, self.descriptor)
     }
 
     pub fn is_active(&self, which: usize) -> bool {
@@ -190,10 +218,8 @@ impl Bench {
     pub fn clock(&mut self, events: Events) {
         let now = self.clocks;
         let ready = self.ready_in == 0;
-        let port = self.module.port("engine.ready");
-        self.module.set(port, u64::from(ready));
-        let port = self.module.port("cancel");
-        self.module.set(port, u64::from(events.cancel));
+        self.module.drive("engine.ready", ready);
+        self.module.drive("cancel", events.cancel);
         for which in [GEOMETRY, RASTER] {
             self.set(which, "ask", events.ask[which].into());
             self.set(which, "loading", u64::from(self.loading[which] > 0));
@@ -220,13 +246,7 @@ impl Bench {
                 if self.is_active(which) {
                     self.errors[which] = BUSY;
                 } else {
-                    let refusal = refusal(
-                        which,
-                        &self.passes[which],
-                        self.list_shift,
-                        self.descriptor,
-                        self.limits,
-                    );
+                    let refusal = self.refusal(which);
                     self.load(which);
                     self.states[which] = State::Asked(now + self.loads[which], refusal);
                     self.errors[which] = NONE;
@@ -335,19 +355,16 @@ impl Bench {
                 _ => &[("engine.list_error", says(LIST))],
             };
             for &(port, value) in ports {
-                let port = self.module.port(port);
-                self.module.set(port, value);
+                self.module.drive(port, value);
             }
         }
         self.module.settle();
     }
+
     /// Asks for passes and waits for their ends; returns the errors of both passes.
     pub fn ask(&mut self, ask: [bool; 2]) -> [u64; 2] {
         self.configure();
-        self.clock(Events {
-            ask,
-            ..Events::default()
-        });
+        self.clock(Events::ask(ask));
         self.finish();
         self.errors
     }

@@ -3,7 +3,7 @@
 use glint_model::triangle::descriptor::{Descriptor, band_rows};
 use glint_model::triangle::raster::draw;
 use glint_model::{FrameBuffer, Shading};
-use glint_testbench::{Bits, Module, Port, Sink, Source, Stalls, exchange};
+use glint_testbench::{Bits, Pipe, Port};
 
 use crate::raster::triangles::{LANES, Triangle};
 
@@ -29,48 +29,36 @@ pub struct Counts {
 }
 
 pub struct Bench {
-    pub module: Module,
-    pub source: Source,
-    pub sink: Sink,
-    pub band: [Port; 3],
-    pub idle: Port,
-    pub walking: Port,
-    pub empty: Port,
+    pipe: Pipe,
+    band: [Port; 3],
+    idle: Port,
+    walking: Port,
+    empty: Port,
     pub counts: Counts,
 }
 
 impl Bench {
     /// Creates a bench of the module variant for flat triangles, which are identified by their colours.
-    pub fn new(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        Self::of("triangle_raster", seed, source_stalls, sink_stalls)
+    pub fn new(seed: u32, stalls: [f64; 2]) -> Self {
+        Self::of("triangle_raster", seed, stalls)
     }
 
     /// Creates a bench of the module variant for flat and smooth triangles.
-    pub fn smooth(seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        Self::of("triangle_raster_smooth", seed, source_stalls, sink_stalls)
+    pub fn smooth(seed: u32, stalls: [f64; 2]) -> Self {
+        Self::of("triangle_raster_smooth", seed, stalls)
     }
 
-    pub fn of(name: &str, seed: u32, source_stalls: f64, sink_stalls: f64) -> Self {
-        let module = Module::new(name, seed);
-        let stalls = |offset, share| Stalls::new(u64::from(seed) + offset, share);
+    fn of(name: &str, seed: u32, stalls: [f64; 2]) -> Self {
+        let payload = ["row", "mask", "codes", "colours", "line", "column"];
+        let input = ("triangle", &["descriptor", "planes"][..]);
+        let pipe = Pipe::new(name, seed, input, ("group", &payload), stalls);
+        let port = |name| pipe.module.port(name);
         Self {
-            source: Source::new(
-                &module,
-                "triangle",
-                &["descriptor", "planes"],
-                stalls(1, source_stalls),
-            ),
-            sink: Sink::new(
-                &module,
-                "group",
-                &["row", "mask", "codes", "colours", "line", "column"],
-                stalls(2, sink_stalls),
-            ),
-            band: ["triangle_y0", "rows", "stride"].map(|name| module.port(name)),
-            idle: module.port("idle"),
-            walking: module.port("events.cycles_walking"),
-            empty: module.port("events.cycles_empty"),
-            module,
+            band: ["triangle_y0", "rows", "stride"].map(port),
+            idle: port("idle"),
+            walking: port("events.cycles_walking"),
+            empty: port("events.cycles_empty"),
+            pipe,
             counts: Counts::default(),
         }
     }
@@ -81,32 +69,23 @@ impl Bench {
         [y0, rows, stride]: [u32; 3],
         triangles: impl Iterator<Item = &'a Triangle>,
     ) -> Vec<Vec<Bits>> {
-        assert!(self.module.is_high(self.idle));
+        let Self { pipe, counts, .. } = self;
+        assert!(pipe.module.is_high(self.idle));
         for (port, value) in self.band.into_iter().zip([y0, rows, stride]) {
-            self.module.set(port, u64::from(value));
+            pipe.module.set(port, u64::from(value));
         }
         for triangle in triangles {
             let descriptor = Descriptor::new(&triangle.setup, triangle.colour);
             let (first, planes) = descriptor.words(Shading::Smooth).split_at(12);
-            self.source
-                .push([first, planes].map(Bits::from_words).to_vec());
-            self.counts.entries += 1;
+            let item = [first, planes].map(Bits::from_words);
+            pipe.source.push(item.to_vec());
+            counts.entries += 1;
         }
-        let start = self.module.cycles();
-        while !(self.source.is_empty() && self.module.is_high(self.idle)) {
-            let clocks = self.module.cycles() - start;
-            assert!(clocks < 2_000_000, "nothing after {clocks} clocks");
-            exchange(
-                &mut self.module,
-                &mut [&mut self.source],
-                &mut [&mut self.sink],
-            );
-            self.counts.walked += self.module.value(self.walking);
-            self.counts.empty += self.module.value(self.empty);
-            self.module.clock();
-        }
-        self.counts.clocks += self.module.cycles() - start;
-        self.sink.take()
+        counts.clocks += pipe.drain(2_000_000, self.idle, |pipe| {
+            counts.walked += pipe.module.value(self.walking);
+            counts.empty += pipe.module.value(self.empty);
+        });
+        pipe.sink.take()
     }
 
     /// Draws triangles in all bands that they touch, and compares the picture with the model's.
