@@ -6,35 +6,25 @@ use std::rc::Rc;
 use emulated_board::{Device, MainMemory, TriangleEngine};
 use glint_core::appearance::Appearance;
 use glint_core::camera::View;
-use glint_core::colour::Rgb565;
 use glint_core::field::{Field, Primitive};
 use glint_core::light::{Background, Material};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use glint_engines::raymarch::{ray_counts, set_field};
-use glint_engines::triangle::{MeshPass, size_code};
+use glint_engines::triangle::size_code;
 use glint_hal::raymarch::Raymarcher;
-use glint_hal::triangle::{EngineError, Lists, Raster, Set, TriangleEngine as Driver};
-use glint_model::raymarch::{Ray, RayResult, State, render_field};
-use glint_model::triangle::{PreparedMesh, draw_parts};
-use glint_model::{
-    FieldConstants, FieldSubject, Frame, MeshSubject, Options, Projected, Shading, Subject,
-};
+use glint_hal::triangle::{EngineError, Raster, TriangleEngine as Driver};
+use glint_model::{FieldSubject, Frame, Subject};
 use glint_vectors::picture::CLEAR;
-use glint_vectors::{Camera, Model, Picture};
+use glint_vectors::{Camera, Picture};
 use litex_pac::bus::{Bus, connect};
 use litex_pac::raymarch::{self, Raymarch};
 use litex_pac::register::Value;
-use litex_pac::triangle::{Geometry, Triangle, offset};
+use litex_pac::triangle::Triangle;
 
 const FRAME: u32 = 0x4100_0000;
 const DEPTH: u32 = 0x4140_0000;
-const MESH: u32 = 0x4200_0000;
-const DESCRIPTORS: u32 = 0x4600_0000;
-const LISTS: u32 = 0x4700_0000;
-const LIST_SHIFT: u8 = 8;
 
 /// Both engines at their addresses.
 struct Machine {
@@ -110,13 +100,8 @@ impl Bench {
         }
     }
 
-    /// Draws the lists of a number of descriptors, and the field. Returns colours and depths.
-    fn raster(&mut self, size: Size, descriptors: Option<u32>) -> (Vec<u16>, Vec<u32>) {
-        let set = descriptors.map(|count| Set {
-            descriptors: DESCRIPTORS,
-            count,
-            lists: LISTS,
-        });
+    /// Draws the field. Returns colours and depths.
+    fn raster(&mut self, size: Size) -> (Vec<u16>, Vec<u32>) {
         let pass = Raster {
             size: size_code(size),
             frame: FRAME,
@@ -124,8 +109,8 @@ impl Bench {
             whole: true,
             depth: Some(DEPTH),
             clear: CLEAR,
-            list_shift: LIST_SHIFT,
-            sets: [set, None],
+            list_shift: 8,
+            sets: [None; 2],
         };
         // SAFETY: the memory is that of the bench, which waits for the end of the pass.
         unsafe { self.engine.start_raster(&pass) };
@@ -163,7 +148,7 @@ fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size:
     set_field(&mut bench.raymarcher, &field.setup, &field.palette, false).unwrap();
     let before = bench.raymarcher.counters();
     let drawn = bench.engine.counters().pixels_drawn;
-    let (colour, depth) = bench.raster(size, None);
+    let (colour, depth) = bench.raster(size);
     assert!(colour == expected.colour, "{name}: colours");
     assert!(depth == expected.depth, "{name}: depths");
     let grown = bench.raymarcher.counters().since(&before);
@@ -241,107 +226,6 @@ fn random_fields() {
     }
 }
 
-/// A mesh in a field: one scale of depths, triangles first.
-#[test]
-fn a_mesh_in_a_field() {
-    let mut bench = Bench::new();
-    let bytes = Model::sphere(0.9, 10).encoded();
-    let mesh = MeshSubject::new(Mesh::new_checked(&bytes).unwrap());
-    let field = Field::parse("box:1,0.4,0.4").unwrap();
-    let subject = FieldSubject {
-        field: &field,
-        appearance: &Appearance::default(),
-        quality: Quality::default(),
-        prepass: false,
-    };
-    let frame = Frame {
-        clear: Rgb565(CLEAR),
-        ..Frame::new(Subject::MeshInField(mesh, subject), view(), Size::W320)
-    };
-    let constants = frame.constants().unwrap();
-    let mut expected = Picture::blank((320, 180));
-    let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-    frame
-        .draw(&constants, &mut expected.target(), &mut scratch, &mut || {})
-        .unwrap();
-
-    bench
-        .machine
-        .0
-        .borrow_mut()
-        .ram
-        .bytes_mut(MESH, bytes.len())
-        .unwrap()
-        .copy_from_slice(&bytes);
-    let pass = MeshPass {
-        mesh: &mesh.mesh,
-        size: Size::W320,
-        frame: constants.mesh().unwrap(),
-        light: constants.light(),
-        cull: true,
-        shading: Shading::Flat,
-        colour: None,
-        lists: Some(Lists {
-            descriptors: DESCRIPTORS,
-            descriptor_limit: 1000,
-            lists: LISTS,
-            list_shift: LIST_SHIFT,
-            exceptions: LISTS + (1 << 20),
-            exception_limit: 1000,
-        }),
-    };
-    let _ = pass.prepare(&mut bench.engine);
-    {
-        // The mesh is at another position than that of the host.
-        let Machine { engine, ram, now } = &mut *bench.machine.0.borrow_mut();
-        let place = ram.bytes_mut(MESH, bytes.len()).unwrap();
-        place.copy_from_slice(&bytes);
-        engine.write(offset::MESH, MESH + 32, *now, ram);
-        let flags = Geometry::default().with_start(true).with_cull(true);
-        engine.write(offset::GEOMETRY, flags.bits(), *now, ram);
-    }
-    bench.wait();
-    assert_eq!(bench.engine.geometry(), Some(Ok(())));
-    let counts = bench.engine.counts();
-    assert_eq!(counts.exceptions, 0);
-
-    let FieldConstants { setup, palette } = constants.field().unwrap();
-    set_field(&mut bench.raymarcher, setup, palette, false).unwrap();
-    let before = bench.engine.counters().pixels_drawn;
-    let (colour, depth) = bench.raster(Size::W320, Some(counts.descriptors));
-    assert!(colour == expected.colour && depth == expected.depth);
-    let drawn = bench.engine.counters().pixels_drawn - before;
-    let stored: Vec<u32> = {
-        let mut alone = Picture::blank((320, 180));
-        let part = PreparedMesh {
-            mesh: mesh.mesh,
-            frame: *constants.mesh().unwrap(),
-            options: Options::default(),
-        };
-        let mut part = |number| (number == 0).then_some(part);
-        let target = &mut alone.target();
-        draw_parts(&mut part, 0, target, &mut scratch, &mut |_| {}).unwrap();
-        alone.depth
-    };
-    let mut visible = 0;
-    let mut show = |x: u32, y: u32, ray: &Ray, outcome: &RayResult| {
-        let code = match outcome.state {
-            State::Hit(_) => setup.depth_code(ray, outcome.reached()),
-            _ => 0,
-        };
-        visible += u32::from(code >= stored[(320 * y + x) as usize]);
-    };
-    let mut alone = Picture::blank((320, 180));
-    render_field(setup, palette, &mut alone.target(), &mut show).unwrap();
-    let triangles = stored.iter().filter(|code| **code > 0).count() as u32;
-    // The sphere's front faces do not overlap.
-    assert_eq!(drawn, triangles + visible);
-    assert!((1000..57_000).contains(&visible));
-    bench.raymarcher.clear_field();
-    let (without, _) = bench.raster(Size::W320, Some(counts.descriptors));
-    assert!(without != expected.colour);
-}
-
 /// Any contents of the registers draw a picture.
 #[test]
 fn random_registers_do_no_harm() {
@@ -368,6 +252,6 @@ fn random_registers_do_no_harm() {
             let control = random() | 1;
             block.write(raymarch::offset::CONTROL, control, *now, ram);
         }
-        bench.raster(Size::W320, None);
+        bench.raster(Size::W320);
     }
 }
