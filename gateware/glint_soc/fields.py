@@ -8,6 +8,7 @@ and whose size is measured. docs/adding-a-field.md lists the steps to add a fiel
 
 from dataclasses import dataclass, field
 
+from .packed import generated, number, package
 from .rtl import RTL
 
 
@@ -46,8 +47,6 @@ NAMES = tuple(flat.name for flat in FLAT_FIELDS)
 KIND_BITS = max(1, (len(FLAT_FIELDS) - 1).bit_length())
 """Width of `solid.kind` in bits."""
 
-_HEADER = "// Generated from gateware/glint_soc/fields.py by `gateware/tests/run.py --packages`. Do not edit."
-
 
 def mask(names):
     """Returns the parameter FIELDS of a build with the fields `names`: bit k is set if field k is built."""
@@ -73,42 +72,29 @@ def _package():
         f"flat_clocks = {flat.clocks.replace('LEVELS', 'levels')};" for number, flat in enumerate(FLAT_FIELDS))
     octants = [number for number, flat in enumerate(FLAT_FIELDS) if flat.octants]
     is_octant = " || ".join(f"kind == {_number(number)}" for number in octants) or "1'b0 && kind == '0"
-    return f"""{_HEADER}
-// Properties of the flat fields, by number.
-
-`default_nettype none
-
-package fields_pkg;
-    // Each module uses a part of the constants.
-    /* verilator lint_off UNUSEDPARAM */
-    localparam int unsigned KIND_BITS = {KIND_BITS};
-    // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
-    localparam int unsigned ALL       = {mask(NAMES)};
-    localparam int unsigned OCTANTS   = {sum(1 << number for number in octants)};
-    /* verilator lint_on UNUSEDPARAM */
-
-    // Whether the faces of a kind of field are perpendicular to the diagonals.
+    return package("fields_pkg", "fields.py", "Properties of the flat fields, by number.", [
+        "\n".join([
+            number("KIND_BITS", KIND_BITS),
+            number("ALL", mask(NAMES), "Masks of all fields, and of the fields whose faces are perpendicular to the diagonals."),
+            number("OCTANTS", sum(1 << field for field in octants)),
+        ]),
+        f"""    // Whether the faces of a kind of field are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
         has_octants = {is_octant};
-    endfunction
-
-    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
+    endfunction""",
+        f"""    // Returns the mask of the fields with an instance of their own in a build with the fields of a mask: the module of another
     // field serves the rest.
     function automatic int unsigned instances(input int unsigned fields);
         instances = fields;
 {inside}
-    endfunction
-
-    // Clocks from a point to its distance, including the choice between several instances.
+    endfunction""",
+        f"""    // Clocks from a point to its distance, including the choice between several instances.
     function automatic int unsigned flat_clocks(input int unsigned levels, input int unsigned fields);
         flat_clocks = 0;
 {clocks}
         if ((instances(fields) & (instances(fields) - 1)) != 0) flat_clocks = flat_clocks + 1;
-    endfunction
-endpackage
-
-`default_nettype wire
-"""
+    endfunction""",
+    ])
 
 
 def _host(flat):
@@ -153,7 +139,7 @@ def _module():
     instances = "".join(_instance(number, flat) for number, flat in enumerate(FLAT_FIELDS))
     choice = "\n".join(f"        if ({_is_kind(number)}) chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
     single = "\n".join(f"        chosen = chosen | found[{number}];" for number in range(len(FLAT_FIELDS)))
-    return f"""{_HEADER}
+    return f"""{generated("//", "fields.py")}
 // The flat fields that a lane is built with, side by side, and the choice of one of them by `solid.kind`.
 //
 // FIELDS has a bit for each field by its number. A field that is not built costs nothing; a single instance needs no choice.

@@ -4,13 +4,12 @@
 `default_nettype none
 
 package fields_pkg;
-    // Each module uses a part of the constants.
+    // A module uses only some of these constants.
     /* verilator lint_off UNUSEDPARAM */
     localparam int unsigned KIND_BITS = 2;
     // Masks of all fields, and of the fields whose faces are perpendicular to the diagonals.
-    localparam int unsigned ALL       = 7;
-    localparam int unsigned OCTANTS   = 4;
-    /* verilator lint_on UNUSEDPARAM */
+    localparam int unsigned ALL = 7;
+    localparam int unsigned OCTANTS = 4;
 
     // Whether the faces of a kind of field are perpendicular to the diagonals.
     function automatic logic has_octants(input logic [KIND_BITS-1:0] kind);
@@ -32,6 +31,7 @@ package fields_pkg;
         if ((instances(fields) & 4) != 0 && 5 > flat_clocks) flat_clocks = 5;
         if ((instances(fields) & (instances(fields) - 1)) != 0) flat_clocks = flat_clocks + 1;
     endfunction
+    /* verilator lint_on UNUSEDPARAM */
 endpackage
 
 `default_nettype wire
