@@ -1,6 +1,7 @@
 //! The set-up of segments: every field of every piece.
 
 use glint_core::colour::Rgb565;
+use glint_core::picture::Size;
 use glint_model::ScreenVertex;
 use glint_model::line::{LineDepth, Segment};
 use glint_testbench::{Bits, Layout, Pipe};
@@ -89,7 +90,13 @@ fn segments_of_50_pixels_take_less_than_a_frame_allows() {
 /// 31 clocks, or 59 with a depth step, one for each of 10 pixels, one for the piece, and one for each band above.
 #[test]
 fn clocks_of_a_segment() {
-    for (row, depth, clocks) in [(5, 0, 42), (5, 64_000, 70), (100, 0, 46), (100, 64_000, 70)] {
+    let above = u64::from(100 / Size::W640.band_lines());
+    for (row, depth, clocks) in [
+        (5, 0, 42),
+        (5, 64_000, 70),
+        (100, 0, 42 + above),
+        (100, 64_000, 70),
+    ] {
         let place = |x: i32, w| ScreenVertex {
             x: 256 * x + 128,
             y: 256 * row + 128,
