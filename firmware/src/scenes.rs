@@ -72,7 +72,7 @@ impl List {
     pub fn built_in() -> Self {
         match named(ALONE).map(|built_in| &built_in.content) {
             Some(Content::Scenes(names)) => Self::BuiltIn(names),
-            _ => Self::BuiltIn(&[]),
+            Some(Content::Lines(_)) | None => Self::BuiltIn(&[]),
         }
     }
 

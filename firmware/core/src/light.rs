@@ -387,7 +387,9 @@ impl Material {
     pub fn light(self) -> Lighting {
         match self {
             Self::Normal => Lighting::PLAIN,
-            _ => Lighting::day(),
+            Self::Clay | Self::Jade | Self::Sky | Self::Gold | Self::Ivory | Self::Slate => {
+                Lighting::day()
+            }
         }
     }
 }

@@ -136,7 +136,7 @@ impl TestPicture {
         match self {
             Self::Triangle => Some(Shading::Flat),
             Self::Smooth => Some(Shading::Smooth),
-            _ => None,
+            Self::Line | Self::Sponge | Self::Cubes | Self::Spheres | Self::Stereo => None,
         }
     }
 

@@ -60,7 +60,17 @@ impl From<RenderError> for Fallback {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Eye(_) => Self::Eye,
-            _ => EngineError::from(Error::Size).into(),
+            RenderError::Size { .. }
+            | RenderError::Buffer { .. }
+            | RenderError::Scratch { .. }
+            | RenderError::Edges { .. }
+            | RenderError::Near { .. }
+            | RenderError::Far(_)
+            | RenderError::Width { .. }
+            | RenderError::Orthographic
+            | RenderError::HalfWidth(_)
+            | RenderError::Objects(_)
+            | RenderError::Stereo => EngineError::from(Error::Size).into(),
         }
     }
 }

@@ -233,7 +233,7 @@ impl GatewareRenderer {
                     runs.map(|runs| self.after_geometry(runs, frame))
                 }
             },
-            _ => match self.engine.raster() {
+            (Stage::Raster | Stage::Project, _) => match self.engine.raster() {
                 None => return self.check_progress(output).err().map(Err),
                 Some(Ok(())) => {
                     self.stage = Stage::Idle;

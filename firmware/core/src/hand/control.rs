@@ -310,7 +310,7 @@ impl Control {
         }
         match self.state {
             State::Tracked(Last { count, .. }) | State::Held(count, _) => self.hold(count, size),
-            _ => self.seen = self.appear(size),
+            State::Absent | State::Appearing(..) => self.seen = self.appear(size),
         }
     }
 

@@ -140,10 +140,8 @@ impl FrameConstants {
     fn compute(&mut self, frame: &Frame) -> Result<(), RenderError> {
         (self.light, self.field) = (None, None);
         let (view, size) = (&frame.view, frame.size.pixels().into());
-        match &frame.subject {
-            Subject::Field(_) => {}
-            _ if frame.stereo.is_some() => return Err(RenderError::Stereo),
-            _ => {}
+        if frame.stereo.is_some() && !matches!(frame.subject, Subject::Field(_)) {
+            return Err(RenderError::Stereo);
         }
         match &frame.subject {
             Subject::Mesh(subject) | Subject::Edges(subject, _) if MESH.is_built => {
@@ -174,7 +172,12 @@ impl FrameConstants {
                 camera.set_depths(depths(objects, camera));
             }
             // A wireframe, or a subject that this build leaves out.
-            _ => self.mesh = None,
+            Subject::Wireframe(_)
+            | Subject::Mesh(_)
+            | Subject::Edges(..)
+            | Subject::Field(_)
+            | Subject::MeshInField(..)
+            | Subject::Objects(_) => self.mesh = None,
         }
         let lighting = frame.mesh_lighting();
         if MESH.is_built

@@ -30,9 +30,10 @@ impl Lights {
     /// are daylight, because unshaded spheres look flat.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
         let day = Lighting::day();
-        let lighting = match material {
-            Material::Normal if lighting.lights.is_empty() => &day,
-            _ => lighting,
+        let lighting = if material == Material::Normal && lighting.lights.is_empty() {
+            &day
+        } else {
+            lighting
         };
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {

@@ -215,7 +215,7 @@ impl FieldSetup {
                         (t, gap, slope)
                     }
                     State::Hit(Surface::Round { .. } | Surface::Blended { .. }) => (next, 0, 0x3FF),
-                    _ => (t, 0, 0),
+                    State::Miss | State::Undecided => (t, 0, 0),
                 };
                 return RayResult {
                     state,

@@ -89,7 +89,7 @@ pub fn render_rows(
         show(x, y, &ray, &outcome);
         let code = match outcome.state {
             State::Hit(_) => setup.depth_code(&ray, outcome.reached()),
-            _ => 0,
+            State::Miss | State::Undecided => 0,
         };
         (paint(setup, palette, &ray, &outcome), code)
     };

@@ -107,7 +107,7 @@ fn every_command_is_understood() {
         },
     );
     assert_parses("object", Command::Show(OptionName::Object));
-    let object = |line, action| assert_parses(line, Setting::Object { action: action });
+    let object = |line, action| assert_parses(line, Setting::Object { action });
     let place = |text| Place::parse(&mut Words::new(text)).expect("a place");
     object("object list", ObjectAction::List);
     object(
@@ -154,10 +154,7 @@ fn every_command_is_understood() {
     assert_parses("mesh on", Setting::Mesh { on: true });
     assert_parses("material", Command::Show(OptionName::Material));
     for (name, material) in Material::NAMES.into_iter().zip(Material::ALL) {
-        assert_parses(
-            &format!("material {name}"),
-            Setting::Material { material: material },
-        );
+        assert_parses(&format!("material {name}"), Setting::Material { material });
     }
     assert_parses("light", Command::Show(OptionName::Light));
     assert_parses("light default", Setting::Light { light: None });
@@ -180,9 +177,7 @@ fn every_command_is_understood() {
     ] {
         assert_parses(
             &format!("background {name}"),
-            Setting::Background {
-                background: background,
-            },
+            Setting::Background { background },
         );
     }
     assert_parses("fog", Command::Show(OptionName::Fog));
@@ -294,10 +289,7 @@ fn every_command_is_understood() {
     assert_parses("orbit 48", Command::Orbit { frames: Some(48) });
     assert_parses("quality", Command::Show(OptionName::Quality));
     for quality in Quality::ALL {
-        assert_parses(
-            &format!("quality {quality}"),
-            Setting::Quality { quality: quality },
-        );
+        assert_parses(&format!("quality {quality}"), Setting::Quality { quality });
     }
     assert_parses("size 320 180", Setting::Size { size: Size::W320 });
     assert_parses("size 640 360", Setting::Size { size: Size::W640 });
