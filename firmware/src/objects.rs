@@ -114,7 +114,7 @@ impl Objects {
             let source = Source { mesh, copy: None };
             // Both lists have room for all objects of a scene.
             let _ = self.sources.push(source);
-            let _ = self.objects.push(scene.object(placed, mesh));
+            let _ = self.objects.push(scene.object(&placed.place, mesh));
             self.is_turned = false;
             return;
         };
@@ -124,7 +124,7 @@ impl Objects {
             old.subject = scene.options.subject(old.subject.mesh);
             return;
         }
-        let mut object = scene.object(placed, mesh);
+        let mut object = scene.object(&placed.place, mesh);
         match source.copy.take() {
             // The object has moved, and its normals have not turned.
             Some(copy) if is_same && object.placement.normals() == Some(&copy.normals) => {

@@ -3,7 +3,7 @@
 //! [`LineEditor`] turns the bytes of a terminal into lines, [`Command::parse`] turns a line into a command, and
 //! [`Command::execute`] calls the machine's method for this command. One table defines the commands; the parser, the help, the
 //! completion and the traits that the machine implements are generated from this table. The table also states the options of a scene, with
-//! the keys of scene files.
+//! the keys of scene files and the options of the command line of `glint`.
 
 mod argument;
 mod command;
@@ -19,11 +19,11 @@ mod values;
 
 pub use command::{
     Command, DemoCommands, Executor, FORMS, FrameCommands, GestureCommands, ImuCommands,
-    MachineCommands, OptionName, OrbitCommands, SceneCommands, Setting, write_help,
+    MachineCommands, OptionName, OrbitCommands, SceneCommands, Setting, accepted_words, write_help,
 };
 pub use editor::{Event, HISTORY, LINE_MAX, LineEditor, PROMPT};
 pub use effect::Effect;
 pub use error::ParseError;
-pub use forms::{Forms, Row, Turn};
+pub use forms::{FIELD, Forms, HostOption, Row, Turn};
 pub use object::ObjectAction;
 pub use values::{DemoAction, GestureAction, ImuAction};

@@ -473,8 +473,8 @@ impl Scene {
         }
     }
 
-    /// The object of an entry of the list and its mesh.
-    pub fn object<'a>(&self, PlacedMesh { place, .. }: &PlacedMesh, mesh: Mesh<'a>) -> Object<'a> {
+    /// The object with this mesh at a place.
+    pub fn object<'a>(&self, place: &Place, mesh: Mesh<'a>) -> Object<'a> {
         Object {
             subject: self.options.subject(mesh),
             placement: Placement::new(place.matrix),

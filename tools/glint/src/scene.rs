@@ -52,6 +52,15 @@ pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
     }
 }
 
+/// The wireframe program that every board has.
+///
+/// # Errors
+/// None: the program is valid.
+pub fn program() -> Result<Program<'static>, InputError> {
+    let program = Program::new_checked(CUBE.as_flattened());
+    program.map_err(|error| refuse(error).in_file("program"))
+}
+
 /// Calls `draw` with the frame of a scene, with `changes`.
 ///
 /// # Errors
@@ -79,15 +88,14 @@ pub fn draw<T>(
         .flat_map(|placed| {
             let known = names.iter().position(|known| *known == *placed.mesh);
             let mesh = known.and_then(|known| meshes.get(known));
-            mesh.map(|mesh| scene.object(placed, *mesh))
+            mesh.map(|mesh| scene.object(&placed.place, *mesh))
         })
         .collect();
-    let program = Program::new_checked(CUBE.as_flattened());
     Ok(draw(&scene.frame(Content {
         // A scene without objects has one mesh at most.
         mesh: meshes.first().copied(),
         objects: &objects,
-        program: program.map_err(|error| in_scene(refuse(error)))?,
+        program: program()?,
     })))
 }
 

@@ -4,9 +4,9 @@ use core::fmt;
 
 use super::argument::{Argument, Default, Flag, Off, Or, Reader, WordArgument};
 use super::error::{ParseError, ParseErrorKind};
-use super::forms::{FIELD, LIT, MESHES, Row, Turn, key};
+use super::forms::{FIELD, LIT, MESHES, Row, Turn, key, option, switch};
 use super::object::Object;
-use super::syntax::{Kind, Parameter, Syntax};
+use super::syntax::{Kind, Parameter, Shape, Syntax};
 use super::table::{commands, part, shows};
 use super::values::{
     Benchmark, DemoAction, FieldOfView, Fit, GestureAction, HalfTurn, Imu, LookAt, MeshName,
@@ -16,10 +16,10 @@ use crate::colour::{Shading, Winding};
 use crate::feature::Feature;
 use crate::field::Field;
 use crate::fixed::{Q32_32, Turns, U4_28, U8_28};
-use crate::light::{Background, Light, Material, Rgb};
+use crate::light::{self, Background, Light, Material, Rgb};
 use crate::picture::{Backend, Edges};
 use crate::quality::Quality;
-use crate::stereo::Stereo;
+use crate::stereo::{self, Stereo};
 use crate::wireframe::Key;
 use crate::words::Words;
 
@@ -67,7 +67,9 @@ commands! {
             => key(Turn::Subject).without(&["program"]);
         mesh Mesh(on: bool) or show in MESH_IN_FIELD: "turn the mesh in a field on or off, or show the setting";
         stereo Stereo(eyes: Or<Off, Stereo>) or show in STEREO: "show or set two eyes: E to each side of the camera, zero parallax at ZERO; off is one eye"
-            => key(Turn::Option).with(LIT).without(&["orthographic"]);
+            => key(Turn::Option).with(LIT).without(&["orthographic"])
+                .host(option("stereo", stereo::FORM, "Stereo: one eye E to the left of the camera and one E to the right (0 to 1), with zero parallax at the distance ZERO; lengths in world units. The left eye is red, the right one blue or cyan [default tint: red-blue]")
+                    .expects("two eyes"));
     }
 
     /// Commands of the demo.
@@ -78,18 +80,31 @@ commands! {
         object Object(action: Object) or show in OBJECT: "list or show the objects, add one, change its place or colour, or remove it"
             => key(Turn::Subject).action("add").list().without(&["field", "program"]);
         material Material(material: Material) or show in FIELD: "show or set the material of a field; normal colours faces by direction"
-            => key(Turn::Option).with(FIELD);
+            => key(Turn::Option).with(FIELD)
+                .host(option("material", "MATERIAL", "Material of a field; `normal` colours each face by its normal [default: normal]. Without a field, the colour of meshes instead of their own ones")
+                    .free());
         light Light(light: Or<Default, Light>) or show in LIGHT: "show the lights, add one by its direction or at the camera, or restore the default"
-            => key(Turn::Option).list().with(LIT);
+            => key(Turn::Option).list().with(LIT)
+                .host(option("light", light::FORM, "A light: the direction to it, or `camera` for a light at the camera, and its colour [default colour: white]. Up to four on a field [default: none on `normal`, sun and sky on other materials], one on meshes [default: camera]; of several, the first one lights the mesh in a field")
+                    .expects("a light"));
         ambient Ambient(colour: Or<Default, Rgb>) or show in LIGHT: "show or set the ambient light"
-            => key(Turn::Option).with(LIT);
+            => key(Turn::Option).with(LIT)
+                .host(option("ambient", "RRGGBB", "Ambient light [default: 404040 with a --light; without, white on a field and black on meshes]")
+                    .expects("a colour RRGGBB"));
         background Background(background: Or<Default, Background>) or show: "show or set the background; default is white for a field and black for meshes, which have one colour"
-            => key(Turn::Option).with(LIT);
+            => key(Turn::Option).with(LIT)
+                .host(option("background", "white|sky|RRGGBB", "Background: `white`, `sky` or a colour RRGGBB [default: white behind a field, black behind meshes]. Meshes have the sky's colour at the horizon")
+                    .expects("white, sky or a colour RRGGBB"));
         fog Fog(density: Or<Off, U4_28>) or show in FOG: "show or set the fog of a field: transmittance is exp(-distance * DENSITY)"
-            => key(Turn::Option).with(FIELD);
+            => key(Turn::Option).with(FIELD)
+                .host(option("fog", "DENSITY", "Fog in the background's colour: transmittance is exp(-distance * DENSITY), with the distance in world units. DENSITY is from 0 to below 16")
+                    .expects("a density of at least 0 and below 16"));
         occlusion Occlusion(on: bool) or show in FIELD: "turn ambient occlusion of a field on or off, or show the setting"
-            => key(Turn::Option).with(FIELD);
-        undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting";
+            => key(Turn::Option).with(FIELD)
+                .host(switch("occlusion", "on", "Ambient occlusion: darken a field's surface where other surfaces are close"));
+        undecided Undecided(on: bool) or show in FIELD: "turn magenta for rays at the step limit of a field on or off, or show the setting"
+            => key(Turn::Option).with(FIELD)
+                .host(switch("undecided", "on", "Draw the rays of a field that reach their step limit magenta, instead of the horizon's colour"));
         camera Camera(r: Q32_32, theta: Turns, phi: HalfTurn): "face the origin from distance R (2 to 5), azimuth THETA, angle PHI from the z axis"
             => key(Turn::Camera).with(LIT).without(&["lookat"]);
         view View(view: View) or show: "show or set the camera: eye, basis (right, down, forward), half width, near plane, projection"
@@ -132,18 +147,25 @@ commands! {
         backend Backend(backend: Backend) or show: "show or set the backend that draws frames"
             => key(Turn::Size);
         shading Shading(shading: Shading) or show in MESH: "show or set the shading: flat (one colour per triangle) or smooth (interpolated)"
-            => key(Turn::Option).with(MESHES);
+            => key(Turn::Option).with(MESHES)
+                .host(option("shading", "SHADING", "Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated) [default: flat]"));
         cull Cull(on: bool) in MESH: "turn culling of back faces on or off"
-            => key(Turn::Option).with(MESHES);
+            => key(Turn::Option).with(MESHES)
+                .host(switch("no-cull", "off", "Draw back faces too"));
         clip Clip(far: Or<Off, U8_28>) in MESH: "clip triangles to the picture and a far plane at distance FAR; off clips to the guard band"
-            => key(Turn::Option).with(MESHES);
+            => key(Turn::Option).with(MESHES)
+                .host(option("far", "DISTANCE", "Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's guard band")
+                    .expects("a distance from 0 to below 256"));
         winding Winding(rule: Winding) in MESH: "set the rule for the seen side of a triangle: mesh (order of its vertices) or screen (all are seen)"
-            => key(Turn::Option).with(MESHES);
+            => key(Turn::Option).with(MESHES)
+                .host(option("winding", "WINDING", "The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the upper left vertex: all triangles are seen, and none is culled) [default: mesh]"));
         edges Edges(edges: Or<Off, Edges>) or show in EDGES: "show or set the edges of a mesh alone: hidden (by faces, which are not drawn) or over the shaded faces"
-            => key(Turn::Option).with(&["model"]).without(FIELD);
+            => key(Turn::Option).with(&["model"]).without(FIELD)
+                .host(option("wireframe", "WIREFRAME", "Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded faces)"));
         overlay Overlay(on: bool) or show in OVERLAY: "turn the text over the picture on or off, or show the setting";
         prepass Prepass(on: bool) in PREPASS: "turn the cone prepass of a field on or off"
-            => key(Turn::Option).with(FIELD);
+            => key(Turn::Option).with(FIELD)
+                .host(switch("prepass", "on", "Before the rays, march a cone around the rays of each block of pixels; the block's rays start where its cone ends. This saves evaluations of the field"));
     }
 
     /// Commands for drawing frames.
@@ -237,6 +259,16 @@ fn entry(name: &str) -> Option<&'static Entry> {
 /// Returns the syntax of the command with this name; `None` for an unknown name, and for a command that this build leaves out.
 pub(super) fn find(name: &str) -> Option<&'static Syntax> {
     entry(name)?.syntax()
+}
+
+/// The words that the command accepts as its argument, without keywords for none; `None` if it accepts other texts.
+pub fn accepted_words(command: &str) -> Option<&'static [&'static str]> {
+    match &find(command)?.parameters.first()?.shape {
+        Shape::Word(Kind::Words(words) | Kind::Either(_, Kind::Words(words))) => Some(words),
+        Shape::Word(Kind::Either(..) | Kind::Text(_) | Kind::Command)
+        | Shape::Flag
+        | Shape::Group(_) => None,
+    }
 }
 
 /// Returns the syntax of every command of this build, in the order of the help.

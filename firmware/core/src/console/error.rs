@@ -76,6 +76,20 @@ pub enum ValueError<'a> {
     Place(PlaceError<'a>),
 }
 
+impl<'a> ParseError<'a> {
+    /// The reason why the value of the command is rejected, unless that is its form.
+    pub fn value(&self) -> Option<impl Display + 'a> {
+        match self.0 {
+            ParseErrorKind::Value { error, .. } => Some(error),
+            ParseErrorKind::Unknown { .. }
+            | ParseErrorKind::LeftOut { .. }
+            | ParseErrorKind::Missing { .. }
+            | ParseErrorKind::Word { .. }
+            | ParseErrorKind::Surplus { .. } => None,
+        }
+    }
+}
+
 impl Display for ParseError<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self.0 {

@@ -1,6 +1,6 @@
 //! Forms of a scene's options outside of the console.
 
-/// A command of the console, and how other programs state what it sets.
+/// A command of the console, and how scene files and the command line of `glint` state what it sets.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Name of the command.
@@ -9,7 +9,7 @@ pub struct Row {
     pub forms: Forms,
 }
 
-/// How scene files state what a command sets.
+/// How scene files and the command line of `glint` state what a command sets.
 #[derive(Clone, Copy, Debug)]
 pub struct Forms {
     /// Name of the key, if it is not that of the command.
@@ -24,6 +24,25 @@ pub struct Forms {
     pub with: &'static [&'static str],
     /// Keys that exclude it.
     pub without: &'static [&'static str],
+    /// The option of `glint render` and `glint orbit`, if there is one.
+    pub host: Option<HostOption>,
+}
+
+/// An option of `glint render` and `glint orbit`. Its value is the argument of the command.
+#[derive(Clone, Copy, Debug)]
+pub struct HostOption {
+    /// Name, without the dashes.
+    pub name: &'static str,
+    /// Name of the value in the help.
+    pub value: &'static str,
+    /// The value of an option that is given without one.
+    pub switch: Option<&'static str>,
+    /// Help.
+    pub help: &'static str,
+    /// The expected value, for errors.
+    pub expected: &'static str,
+    /// Whether the option has a meaning without the keys that the command needs.
+    pub is_free: bool,
 }
 
 /// The order in which the commands of a scene file are executed.
@@ -50,6 +69,42 @@ pub const fn key(turn: Turn) -> Forms {
         is_list: false,
         with: &[],
         without: &[],
+        host: None,
+    }
+}
+
+/// An option of the command line with this name, name of its value, and help.
+pub const fn option(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
+    HostOption {
+        name,
+        value,
+        switch: None,
+        help,
+        expected: "",
+        is_free: false,
+    }
+}
+
+/// An option of the command line that stands for this value.
+pub const fn switch(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
+    HostOption {
+        switch: Some(value),
+        ..option(name, "", help)
+    }
+}
+
+impl HostOption {
+    /// With this description of the value in errors.
+    pub const fn expects(self, expected: &'static str) -> Self {
+        Self { expected, ..self }
+    }
+
+    /// With a meaning without the keys that the command needs.
+    pub const fn free(self) -> Self {
+        Self {
+            is_free: true,
+            ..self
+        }
     }
 }
 
@@ -81,6 +136,14 @@ impl Forms {
     /// Beside one of these keys alone.
     pub const fn with(self, with: &'static [&'static str]) -> Self {
         Self { with, ..self }
+    }
+
+    /// With this option of the command line.
+    pub const fn host(self, option: HostOption) -> Self {
+        Self {
+            host: Some(option),
+            ..self
+        }
     }
 
     /// Without these keys.

@@ -14,21 +14,6 @@ use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
 use std::path::PathBuf;
 
-/// Arguments that set what a scene sets; they are refused together with a scene.
-pub const STATED: [&str; 11] = [
-    "model",
-    "field",
-    "stereo",
-    "material",
-    "light",
-    "ambient",
-    "background",
-    "fog",
-    "occlusion",
-    "undecided",
-    "prepass",
-];
-
 /// Quality and size of pictures.
 #[derive(clap::Args)]
 pub struct SizeArguments {

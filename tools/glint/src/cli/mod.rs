@@ -15,6 +15,7 @@ mod imu;
 mod info;
 mod man;
 mod messages;
+mod options;
 mod orbit;
 mod output;
 mod ports;

@@ -1,28 +1,24 @@
 //! `glint orbit`.
 
 use super::camera::{CameraArguments, Shown, turn};
-use super::common::{STATED, SizeArguments, TransferArguments, bad_value, named};
+use super::common::{SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
 use super::output::{ANIMATION, Output};
 use super::progress::count_bar;
-use super::render::{nothing, subject};
+use super::render::{nothing, shown};
 use anyhow::Context;
 use clap::Args;
 use glint::board::{BoardName, ModelOrBoard};
 use glint::console::Console;
 use glint::picture::{Animation, Image};
-use glint::render::{
-    BoardRenderer, FieldSubject, Frame, MeshSubject, Rendered, Route, Subject, on_model, remarks,
-};
+use glint::render::{BoardRenderer, Frame, Rendered, Route, Subject, on_model, remarks};
 use glint::scene;
 use glint_core::camera::View;
-use glint_core::colour::Shading;
-use glint_core::matrix::Matrix;
 use glint_core::mesh::Mesh;
+use glint_core::object::Place;
 use glint_core::picture::Backend;
-use glint_model::{Object, Placement};
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::io::{self, BufWriter, Seek, Write};
@@ -38,7 +34,7 @@ pub struct OrbitArguments {
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
     /// states camera, quality and size, which the options of the camera, --quality and --size replace.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
     scene: Option<String>,
     #[command(flatten)]
     field: FieldArguments,
@@ -62,12 +58,6 @@ pub struct OrbitArguments {
     backend: Option<Backend>,
     #[command(flatten)]
     size: SizeArguments,
-    /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
-    #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
-    shading: Shading,
-    /// Draw back faces too.
-    #[arg(long, requires = "model")]
-    no_cull: bool,
     #[command(flatten)]
     transfer: TransferArguments,
 }
@@ -112,47 +102,30 @@ impl OrbitArguments {
 
     fn run_subject(&self) -> anyhow::Result<()> {
         let out = self.open(None)?;
-        let (quality, size) = self.size.of_subject()?;
-        let field = self.field.field()?;
-        let appearance = self.field.appearance()?;
-        let field = field.as_ref().map(|field| FieldSubject {
-            field,
-            appearance: &appearance,
-            quality,
-            prepass: self.field.prepass(),
-        });
+        let mut scene = self.field.scene(&self.size)?;
         let model = self.model.as_deref().map(|name| load(name, false));
         let model = model.transpose()?;
         let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
-        let mesh = mesh.transpose()?.map(|mesh| MeshSubject {
-            cull: !self.no_cull,
-            shading: self.shading,
-            ..MeshSubject::new(mesh)
-        });
-        let colour = self.field.mesh_colour()?;
-        let objects = mesh.filter(|_| colour.is_some()).map(|subject| Object {
-            subject,
-            placement: Placement::new(Matrix::IDENTITY),
+        let mesh = mesh.transpose()?;
+        let colour = self.field.mesh_colour(&scene)?;
+        let place = Place {
             colour,
-        });
-        let subject = subject(mesh, field, objects.as_slice());
-        let subject = subject.ok_or_else(|| nothing("--field or --scene"))?;
-        let stereo = self.field.stereo()?;
+            ..Place::default()
+        };
+        let object = mesh.filter(|_| colour.is_some());
+        let object = object.map(|mesh| scene.object(&place, mesh));
+        let frame = shown(&mut scene, mesh, object.as_slice());
+        let frame = frame?.ok_or_else(|| nothing("--field or --scene"))?;
         let views = self.camera.turn(
             &Shown {
-                sphere: subject.sphere(),
+                sphere: frame.subject.sphere(),
                 model: self.model.as_deref(),
-                has_mesh: self.model.is_some(),
-                has_field: field.is_some(),
-                stereo,
+                has_mesh: mesh.is_some(),
+                has_field: frame.subject.field_part().is_some(),
+                stereo: frame.stereo,
             },
             self.frames,
         )?;
-        let first = views.first().context("expected a frame")?;
-        let frame = Frame {
-            stereo,
-            ..Frame::in_appearance(subject, *first, size, &appearance)
-        };
         self.write(out, &frame, &views, None)
     }
 

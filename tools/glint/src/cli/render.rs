@@ -1,7 +1,7 @@
 //! `glint render`.
 
 use super::camera::{CameraArguments, Shown};
-use super::common::{STATED, SizeArguments, TransferArguments, bad_value, named};
+use super::common::{SizeArguments, TransferArguments, bad_value, named};
 use super::convert::load;
 use super::field::FieldArguments;
 use super::messages::{print_json, say, warn};
@@ -12,20 +12,18 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use glint::board::{Board, BoardName, ModelOrBoard, SimulatedBoard, Simulation};
 use glint::console::Console;
-use glint::model::Model;
 use glint::object::Description;
 use glint::render::{
-    BoardRenderer, FieldSubject, Frame, MeshSubject, ModelRenderer, Parts, RayCounts, Rendered,
-    Renderer, Route, Stats, Subject, remarks,
+    BoardRenderer, Frame, ModelRenderer, Parts, RayCounts, Rendered, Renderer, Route, Stats,
+    remarks,
 };
 use glint::scene;
 use glint::transfer::Progress;
-use glint_core::colour::{Shading, Winding};
-use glint_core::fixed::U8_28;
-use glint_core::matrix::Matrix;
-use glint_core::mesh::{Mesh, MeshError};
-use glint_core::picture::{Backend, Edges, Size};
-use glint_model::{Clip, Object, Placement};
+use glint_core::mesh::Mesh;
+use glint_core::object::Place;
+use glint_core::picture::{Backend, Size};
+use glint_model::Object;
+use glint_scene::{Content, Kind, Scene};
 use glint_scene_file::SceneFile;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -37,7 +35,7 @@ pub struct RenderArguments {
     model: Option<String>,
     /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
     /// states camera, quality and size, which the options of the camera, --quality and --size replace.
-    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with_all = STATED)]
+    #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
     scene: Option<String>,
     /// A further model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
     /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
@@ -70,24 +68,6 @@ pub struct RenderArguments {
     /// Write as JSON: clock cycles, the clock's frequency in Hz, and counts of triangles, pixels and rays.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
-    /// Draw back faces too.
-    #[arg(long, requires = "model")]
-    no_cull: bool,
-    /// Source of a mesh's colours: `flat` (triangles), or `smooth` (vertices, interpolated).
-    #[arg(long, value_parser = named(Shading::ALL, Shading::name), default_value_t, requires = "model")]
-    shading: Shading,
-    /// Clip triangles to the picture, the near plane and a far plane at this distance, instead of to the near plane and the engine's
-    /// guard band.
-    #[arg(long, value_name = "DISTANCE", requires = "model")]
-    far: Option<String>,
-    /// The rule for the seen side of a triangle: `mesh` (the order of its vertices), or `screen` (clockwise on the screen from the
-    /// upper left vertex: all triangles are seen, and none is culled).
-    #[arg(long, value_parser = named(Winding::ALL, Winding::name), default_value_t, requires = "model")]
-    winding: Winding,
-    /// Draw the edges of the model, white, each once: `hidden` (only the edges that no face hides), or `over` (over the shaded
-    /// faces).
-    #[arg(long, value_parser = named(Edges::ALL, Edges::name), requires = "model", conflicts_with_all = ["field", "object"])]
-    wireframe: Option<Edges>,
     /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
     #[arg(long, requires = "model")]
     keep_scale: bool,
@@ -138,65 +118,43 @@ impl RenderArguments {
                 self.write(&Frame { view, ..*frame }, Some(&scene))
             })?;
         }
-        let (quality, size) = self.size.of_subject()?;
-        let field = self.field.field()?;
-        let appearance = self.field.appearance()?;
-        let stereo = self.field.stereo()?;
-        let clip = self.clip()?;
+        let mut scene = self.field.scene(&self.size)?;
         let model = self.model.as_deref();
         let model = model.map(|name| load(name, self.keep_scale)).transpose()?;
-        let mesh: Option<Result<_, MeshError>> =
-            model.as_ref().map(|model| self.subject(model, clip));
+        let mesh = model.as_ref().map(|model| Mesh::new_checked(&model.mesh));
+        let mesh = mesh.transpose()?;
         let descriptions = self.objects()?;
         let models = descriptions
             .iter()
             .map(|object| load(&object.model, self.keep_scale))
             .collect::<anyhow::Result<Vec<_>>>()?;
-        let field = field.as_ref().map(|field| FieldSubject {
-            field,
-            appearance: &appearance,
-            quality,
-            prepass: self.field.prepass(),
-        });
-        let mesh = mesh.transpose()?;
-        let colour = self.field.mesh_colour()?;
-        if colour.is_some() && self.wireframe.is_some() {
-            return Err(bad_value("--material", "a mesh with faces", "--wireframe").into());
-        }
-        let objects = mesh
-            .filter(|_| !descriptions.is_empty() || colour.is_some())
-            .map(|subject| Ok((subject, Matrix::IDENTITY, colour)))
+        let colour = self.field.mesh_colour(&scene)?;
+        let place = Place {
+            colour,
+            ..Place::default()
+        };
+        let model = mesh.filter(|_| !descriptions.is_empty() || colour.is_some());
+        let mut objects: Vec<_> = model
             .into_iter()
-            .chain(descriptions.iter().zip(&models).map(|(object, model)| {
-                self.subject(model, clip)
-                    .map(|subject| (subject, object.place.matrix, object.place.colour.or(colour)))
-            }))
-            .map(|object| {
-                object.map(|(subject, matrix, colour)| Object {
-                    subject,
-                    placement: Placement::new(matrix),
-                    colour,
-                })
-            })
-            .collect::<Result<Vec<_>, MeshError>>()?;
-        let subject = match (mesh, self.wireframe) {
-            (Some(mesh), Some(edges)) => Some(Subject::edges(mesh, edges)),
-            _ => subject(mesh, field, &objects),
-        };
-        let subject = subject.ok_or_else(|| nothing("--field, --object or --scene"))?;
-        let shown = Shown {
-            sphere: subject.sphere(),
+            .map(|mesh| scene.object(&place, mesh))
+            .collect();
+        for (Description { place, .. }, model) in descriptions.iter().zip(&models) {
+            let place = Place {
+                colour: place.colour.or(colour),
+                ..*place
+            };
+            objects.push(scene.object(&place, Mesh::new_checked(&model.mesh)?));
+        }
+        let frame = shown(&mut scene, mesh, &objects);
+        let frame = frame?.ok_or_else(|| nothing("--field, --object or --scene"))?;
+        let view = self.camera.view(&Shown {
+            sphere: frame.subject.sphere(),
             model: self.model.as_deref(),
-            has_mesh: self.model.is_some(),
-            has_field: field.is_some(),
-            stereo,
-        };
-        let view = self.camera.view(&shown)?;
-        let frame = Frame {
-            stereo,
-            ..Frame::in_appearance(subject, view, size, &appearance)
-        };
-        self.write(&frame, None)
+            has_mesh: mesh.is_some(),
+            has_field: frame.subject.field_part().is_some(),
+            stereo: frame.stereo,
+        })?;
+        self.write(&Frame { view, ..frame }, None)
     }
 
     /// Renders a frame, of a scene or not, and writes pictures and statistics.
@@ -279,34 +237,12 @@ impl RenderArguments {
         Ok(files.chain(self.camera.file().map(PathBuf::from)).collect())
     }
 
-    fn subject<'m>(&self, model: &'m Model, clip: Clip) -> Result<MeshSubject<'m>, MeshError> {
-        Ok(MeshSubject {
-            mesh: Mesh::new_checked(&model.mesh)?,
-            cull: !self.no_cull,
-            shading: self.shading,
-            clip,
-            winding: self.winding,
-        })
-    }
-
     fn objects(&self) -> anyhow::Result<Vec<Description>> {
         let objects = self
             .object
             .iter()
             .map(|text| Description::parse(text).map_err(|error| error.in_file("--object").into()));
         objects.collect()
-    }
-
-    fn clip(&self) -> anyhow::Result<Clip> {
-        let Some(text) = &self.far else {
-            return Ok(Clip::Guard);
-        };
-        let number: Option<U8_28> = text.parse().ok();
-        let far = number.filter(|far| *far < 256).ok_or_else(|| {
-            let found = glint::error::quote(text.as_bytes());
-            bad_value("--far", "a distance from 0 to below 256", found)
-        })?;
-        Ok(Clip::View { far })
     }
 
     fn render(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<Rendered> {
@@ -381,19 +317,25 @@ impl RenderArguments {
     }
 }
 
-/// The subject of a frame with objects, with a mesh, with a field or with both; `None` without any.
-pub fn subject<'a>(
-    mesh: Option<MeshSubject<'a>>,
-    field: Option<FieldSubject<'a>>,
+/// The frame of a scene with its field, a mesh, or objects if there are some; `None` without any.
+pub fn shown<'a>(
+    scene: &'a mut Scene,
+    mesh: Option<Mesh<'a>>,
     objects: &'a [Object<'a>],
-) -> Option<Subject<'a>> {
-    match (mesh, field) {
-        _ if !objects.is_empty() => Some(Subject::Objects(objects)),
-        (Some(mesh), Some(field)) => Some(Subject::MeshInField(mesh, field)),
-        (Some(mesh), None) => Some(Subject::Mesh(mesh)),
-        (None, Some(field)) => Some(Subject::Field(field)),
-        (None, None) => None,
+) -> anyhow::Result<Option<Frame<'a>>> {
+    if !objects.is_empty() {
+        scene.kind = Kind::Objects;
     }
+    scene.with_mesh = mesh.is_some();
+    let is_empty = objects.is_empty() && mesh.is_none() && scene.field.is_none();
+    let program = scene::program()?;
+    Ok((!is_empty).then(|| {
+        scene.frame(Content {
+            mesh,
+            objects,
+            program,
+        })
+    }))
 }
 
 /// The error for a command that has nothing to draw, with the options that stand instead of a model.

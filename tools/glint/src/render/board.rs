@@ -1,9 +1,6 @@
 //! A renderer that draws frames on a board, by console commands.
 
-use super::commands::{
-    background_command, edges_command, field_commands, lighting_commands, mesh_commands,
-    object_command, quality_commands, size_command, stereo_command, view_command,
-};
+use super::commands::{commands, size_command, view_command};
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use super::stats::{Stats, stats_of};
 use crate::board::{Board, Route};
@@ -13,10 +10,9 @@ use crate::scene;
 use crate::transfer::{self, Progress};
 use crate::wireframe::Action;
 use glint_core::camera::View;
-use glint_core::light::Background;
 use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
-use glint_model::{Frame, Object, Subject};
+use glint_model::Frame;
 use glint_scene_file::SceneFile;
 
 /// A renderer that draws frames on a board.
@@ -91,42 +87,31 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         if let Some(backend) = self.backend {
             self.console.command(&format!("backend {backend}"))?;
         }
-        // The board draws a frame after every change, so the mesh or field, which takes the longest to draw, is set last.
         if let Some(scene) = self.scene.take() {
             let stats = self.show_scene(&scene, frame, route, progress);
             self.scene = Some(scene);
             return stats;
         }
-        for command in quality_commands(frame) {
-            self.console.command(&command)?;
+        const MESH: &str = "model";
+        if let Some(subject) = frame.subject.mesh_part() {
+            self.upload(subject.mesh.bytes(), Some(MESH), route, progress)?;
         }
-        self.console.command(&view_command(&frame.view))?;
-        self.console.command(&stereo_command(frame.stereo))?;
-        let has_meshes = frame.subject.mesh_part().is_some() || frame.subject.objects().is_some();
-        if has_meshes && frame.subject.field_part().is_none() {
-            for command in lighting_commands(&frame.lighting) {
-                self.console.command(&command)?;
-            }
-            let colour = Background::Colour(frame.clear.to_rgb888());
-            self.console.command(&background_command(Some(colour)))?;
-        }
-        if let Some(mesh) = frame.subject.mesh_part() {
-            for command in mesh_commands(mesh) {
-                self.console.command(&command)?;
-            }
-            self.upload(mesh.mesh.bytes(), None, route, progress)?;
-            if let Subject::Edges(_, edges) = frame.subject {
-                self.console.command(&edges_command(edges))?;
+        // Each mesh is uploaded once.
+        let objects = frame.subject.objects().unwrap_or_default().iter();
+        let objects: Vec<&Mesh> = objects.map(|object| &object.subject.mesh).collect();
+        let first = |number: usize| {
+            let mesh = objects.get(number);
+            let first = objects.iter().position(|first| Some(first) == mesh);
+            first.unwrap_or(number)
+        };
+        let name = |number| format!("object{}", first(number) + 1);
+        for (number, mesh) in objects.iter().enumerate() {
+            if first(number) == number {
+                self.upload(mesh.bytes(), Some(&name(number)), route, progress)?;
             }
         }
-        if let Some(objects) = frame.subject.objects() {
-            self.show_objects(objects, route, progress)?;
-        }
-        if let Some(field) = frame.subject.field_part() {
-            let with_mesh = frame.subject.mesh_part().is_some();
-            for command in field_commands(field, with_mesh) {
-                self.console.command(&command)?;
-            }
+        for line in commands(frame, MESH, name)? {
+            self.console.command(&line)?;
         }
         self.redraw()
     }
@@ -151,8 +136,11 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             self.console.command(line)?;
         }
         let backend = self.backend.map(|backend| format!("backend {backend}"));
-        let last = backend.into_iter().chain(quality_commands(frame));
-        let last: Vec<_> = last.chain([view_command(&frame.view)]).collect();
+        let field = frame.subject.field_part();
+        let quality = field.map(|field| format!("quality {}", field.quality));
+        let last = backend.into_iter().chain(quality);
+        let last = last.chain([size_command(frame.size), view_command(&frame.view)]);
+        let last: Vec<_> = last.collect();
         self.render_after(&last.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
@@ -194,33 +182,6 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             ..Image::empty(size)
         };
         Ok(Rendered { image, stats })
-    }
-
-    /// Replaces the board's objects, whose meshes are uploaded once each, and shows them.
-    fn show_objects(
-        &mut self,
-        objects: &[Object],
-        route: Route,
-        progress: &mut Progress,
-    ) -> Result<(), Error> {
-        self.console.command("object remove all")?;
-        let options = objects.first().map(|object| mesh_commands(&object.subject));
-        for command in options.iter().flatten() {
-            self.console.command(command)?;
-        }
-        let mut uploaded: Vec<Mesh> = Vec::new();
-        for object in objects {
-            let mesh = object.subject.mesh;
-            let known = uploaded.iter().position(|known| *known == mesh);
-            let number = known.unwrap_or(uploaded.len()) + 1;
-            let name = format!("object{number}");
-            if known.is_none() {
-                self.upload(mesh.bytes(), Some(&name), route, progress)?;
-                uploaded.push(mesh);
-            }
-            self.console.command(&object_command(&name, object))?;
-        }
-        Ok(())
     }
 
     /// Uploads a mesh under a name, by default `model`, and shows it.

@@ -12,9 +12,7 @@ mod stats;
 
 pub use crate::board::Route;
 pub use board::BoardRenderer;
-pub use commands::{
-    field_commands, lighting_commands, mesh_commands, size_command, stereo_command, view_command,
-};
+pub use commands::{commands, size_command, view_command};
 pub use glint_model::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 pub use model::{ModelRenderer, on_model};
 pub use remarks::remarks;

@@ -69,8 +69,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));
     console.command("render").unwrap();
-    let mut lines = vec![render::view_command(&frame.view), "backend cpu".to_owned()];
-    lines.extend(render::field_commands(&field, true));
+    let mut lines = vec!["backend cpu".to_owned()];
+    lines.extend(render::commands(&frame, "model", |_| String::new()).unwrap());
     let memory = console.board().memory().unwrap();
     for place in [colour, depth] {
         memory

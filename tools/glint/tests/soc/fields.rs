@@ -103,15 +103,7 @@ fn compare(console: &mut Console<SimulatedBoard>, frame: &Frame, with_depth: boo
 /// Returns the console commands that draw `frame`; if the frame has a mesh, it must be loaded already. The commands are to
 /// be sent in one write, so that the firmware does not draw a frame between two of them.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
-    let mut lines = vec![
-        render::size_command(frame.size),
-        render::view_command(&frame.view),
-        render::stereo_command(frame.stereo),
-    ];
-    if let Some(field) = frame.subject.field_part() {
-        let with_mesh = frame.subject.mesh_part().is_some();
-        lines.extend(render::field_commands(field, with_mesh));
-    }
+    let mut lines = render::commands(frame, "model", |_| String::new()).unwrap();
     lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
     lines.push("info".to_owned());
     lines

@@ -81,13 +81,18 @@ fn the_soc_draws_objects() {
                 let name = format!("{} objects at {size}, frame {place}", number + 1);
                 let frame = Frame::new(Subject::Objects(&objects), view.rounded(), size);
                 let Rendered { image, stats } = on_model(&frame).unwrap();
-                let mut lines = render::mesh_commands(&objects[0].subject).to_vec();
-                lines.extend([
+                let clip = match clip {
+                    Clip::Guard => "off".to_owned(),
+                    Clip::View { far } => far.to_string(),
+                };
+                let lines = [
+                    format!("clip {clip}"),
+                    format!("winding {winding}"),
                     render::size_command(size),
                     render::view_command(&frame.view),
                     "render depth".to_owned(),
                     "info".to_owned(),
-                ]);
+                ];
                 let replies = send(&mut console, &lines);
                 assert_eq!(
                     replies.text("backend"),
