@@ -11,19 +11,25 @@ fn scenes_that_cannot_be_shown() {
     let folder = folder("scenes-refused");
     let near = LAMP.replace("4 30 70", "1 30 70");
     let missing = "title = \"A\"\nmodel = \"missing.obj\"\ncamera = \"3 30 60\"\n";
+    let commands = [
+        "render --scene FILE --out a.png",
+        "orbit --scene FILE --out a.png",
+        "scene check FILE",
+    ];
     files_refused(
         &folder,
-        [
-            "render --scene FILE --out a.png",
-            "orbit --scene FILE --out a.png",
-            "scene check FILE",
-        ],
-        &[("near.toml", near.into()), ("missing.toml", missing.into())],
-        "
-        near.toml: line 3: camera = `1 30 70`: radius 1: expected 2 to 5
-        missing.obj: expected a file to read, found No such file or directory (os error 2)
-        ",
+        commands,
+        &[("missing.toml", missing.into())],
+        "missing.obj: expected a file to read, found No such file or directory (os error 2)",
     );
+    std::fs::write(folder.join("near.toml"), near).unwrap();
+    for command in commands {
+        let output = glint(&folder, &command.replace("FILE", "near.toml"));
+        let error = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{command}: {error}");
+        let expected = "error: near.toml: line 3: camera = `1 30 70`: radius 1: expected 2 to 5\n";
+        assert_eq!(error, expected, "{command}");
+    }
     assert!(!folder.join("a.png").exists());
 }
 
