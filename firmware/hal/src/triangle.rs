@@ -261,7 +261,7 @@ impl TriangleEngine {
     }
 
     /// Writes the registers of a geometry pass of lines, as [`prepare_geometry`](Self::prepare_geometry) does of a mesh. `segments`
-    /// begins with their [`header`](Segment::header).
+    /// begins with the header of their list (docs/formats).
     pub fn prepare_lines(&mut self, segments: &[Segment], size: Size, lists: &Lists) -> Prepared {
         let registers = &self.registers;
         registers.mesh().write(segments.as_ptr().addr() as u32);
