@@ -31,7 +31,8 @@ pub fn find(file: &str, command: &'static str) -> Result<PathBuf, NotBuilt> {
     if let Some(home) = env::var_os(HOME) {
         return find_in(&[Path::new(&home)], file, command);
     }
-    let starts = [env::current_exe(), env::current_dir()];
+    let program = env::current_exe().map(|program| program.with_file_name(""));
+    let starts = [program, env::current_dir()];
     let folders = starts.iter().flatten().flat_map(|start| start.ancestors());
     find_in(&folders.collect::<Vec<_>>(), file, command)
 }
