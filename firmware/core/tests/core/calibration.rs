@@ -77,7 +77,8 @@ fn the_mean_is_kept_to_a_256th() {
 
 #[test]
 fn whatever_moves_is_refused_with_its_reason() {
-    let cases: [(fn(u32, &mut Sample), &str); 5] = [
+    type Move = fn(u32, &mut Sample);
+    let cases: [(Move, &str); 5] = [
         (
             |i, sample| sample.gyro[1] += if i == 700 { 60 } else { 0 },
             "gyroscope y of sample 700 is 61 LSB from the first: expected at most 33, keep it still",
