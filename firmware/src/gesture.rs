@@ -8,7 +8,7 @@ use core::time::Duration;
 
 use critical_section::Mutex;
 use glint_core::colour::Rgb565;
-use glint_core::hand::{
+use glint_core::gesture::{
     Blob, Calibrated, CalibrationError, Control, Doubt, Pose, Presence, Window, calibrate,
 };
 use glint_core::image_sensor::{FrameSize, Model};

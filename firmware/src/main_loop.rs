@@ -10,7 +10,7 @@ use core::time::Duration;
 
 use glint_core::calibration::SAMPLES;
 use glint_core::feature::{DEMO, GESTURE, IMU, WIREFRAME};
-use glint_core::hand::Pose;
+use glint_core::gesture::Pose;
 use glint_core::mpu6050::Stream;
 use glint_core::tasks::{self, Turn};
 use glint_hal::timer::{Clock, Deadline};

@@ -27,7 +27,7 @@ pub mod fixed;
 pub mod flash;
 pub mod follow;
 pub mod framing;
-pub mod hand;
+pub mod gesture;
 pub mod image_sensor;
 pub mod imu;
 pub mod light;

@@ -1,7 +1,7 @@
 //! The gesture engine from the control of the hand, and the set-up of the image sensor at its wires.
 
 use embedded_hal::delay::DelayNs;
-use glint_core::hand::{Region, Setting, Statistics, Window};
+use glint_core::gesture::{Region, Setting, Statistics, Window};
 use glint_core::image_sensor::{Error, FrameSize, ImageSensor, Model};
 use glint_hal::gesture::GestureEngine;
 use glint_hal::timer::{Clock, Waiting, block_on};

@@ -8,7 +8,7 @@ mod engine;
 mod snapshot;
 
 use glint_core::colour::Rgb565;
-use glint_core::hand::{Region, Window};
+use glint_core::gesture::{Region, Window};
 
 pub use engine::{Counts, Engine, Fault, Pins, Polarity, Seen};
 pub use snapshot::{SNAPSHOT_WORDS, Snapshot};

@@ -3,7 +3,7 @@
 use core::cell::RefCell;
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::hand::{ANGLE, Backlash, CHANNELS, Control, OneEuro, Region, Statistics, Step};
+use glint_core::gesture::{ANGLE, Backlash, CHANNELS, Control, OneEuro, Region, Statistics, Step};
 use glint_variants::filter::{AlphaBeta, Average, LowPass};
 
 use super::measure::{Report, measure};

@@ -5,7 +5,7 @@ use core::time::Duration;
 
 use glint_core::console::{GestureAction, GestureCommands};
 use glint_core::feature::GESTURE;
-use glint_core::hand::Window;
+use glint_core::gesture::Window;
 use glint_core::image_sensor::FrameSize;
 
 use crate::error::CommandError;

@@ -1,7 +1,7 @@
 //! Quotients a/b of two mantissas in [1, 2) with 23 fraction bits.
 
 use fixed::types::I8F24;
-use glint_core::hand;
+use glint_core::gesture;
 
 use crate::kernel::Format::{Fixed, Float};
 use crate::kernel::{Kernel, other, shipped};
@@ -37,7 +37,7 @@ pub const KERNELS: &[Kernel<[u32; 2], u64>] = &[
         "division_32_twice",
         "32 bits, twice, 16 fraction bits, of a hand's place",
         Fixed(16),
-        |[a, b]| hand::quotient(a, b >> 4).into(),
+        |[a, b]| gesture::quotient(a, b >> 4).into(),
     ),
     shipped(
         "division_64",

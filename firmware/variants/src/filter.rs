@@ -1,7 +1,7 @@
-//! Filters for the camera's control by a hand, in the formats of the one in use, [`glint_core::hand::OneEuro`].
+//! Filters for the camera's control by a hand, in the formats of the one in use, [`glint_core::gesture::OneEuro`].
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::hand::{Step, low_pass_gain, towards};
+use glint_core::gesture::{Step, low_pass_gain, towards};
 
 /// The mean of the last `N` inputs, a power of two.
 #[derive(Clone, Copy, Debug)]

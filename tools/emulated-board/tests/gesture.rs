@@ -5,7 +5,7 @@ use emulated_board::virtual_image_sensor::{
 };
 use emulated_board::{Device, GestureEngine, MainMemory};
 use glint_core::colour::Rgb565;
-use glint_core::hand::{Region, Window};
+use glint_core::gesture::{Region, Window};
 use glint_model::gesture::{Channel as ModelChannel, Settings, Sums};
 use litex_pac::gesture::{
     Camera, Channel, Control, EvEnable, Fault, RegionX, RegionY, Seen, Size, Snapshot,

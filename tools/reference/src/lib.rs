@@ -22,7 +22,7 @@ pub mod basis;
 pub mod camera;
 pub mod emulated;
 pub mod errors;
-pub mod hand;
+pub mod gesture;
 pub mod imu;
 pub mod line;
 pub mod picture;

@@ -3,7 +3,7 @@
 
 mod port;
 
-use glint_core::hand::{Region, Window};
+use glint_core::gesture::{Region, Window};
 use glint_model::gesture::{Channel, Engine, Fault as ModelFault, Pins, Polarity, Settings};
 use litex_pac::gesture::{
     BoxX, BoxY, Camera, Caps, Control, EvPending, Fault, Gesture, RegionX, RegionY, Seen, Size,

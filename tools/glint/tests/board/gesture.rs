@@ -204,9 +204,9 @@ fn the_camera_follows_the_hand() {
     assert!(shown == expected.image.colour);
 }
 
-/// Rows of the table of faults in docs/hand.md: fault, text about the last camera frame, PCLK.
+/// Rows of the table of faults in docs/gesture-control.md: fault, text about the last camera frame, PCLK.
 fn faults() -> Vec<(SensorFault, &'static str, &'static str)> {
-    let rows = include_str!("../../../../docs/hand.md").lines();
+    let rows = include_str!("../../../../docs/gesture-control.md").lines();
     let rows = rows.filter_map(|row| {
         let [name, text, clock] = row.strip_prefix("| `")?.split(" | ").collect::<Vec<_>>()[..]
         else {
@@ -311,7 +311,7 @@ fn stays(before: &[String], after: &[String], case: &str) {
     }
 }
 
-/// The views of the image sensor for the rows of the table of docs/hand.md in order: hands, light, and time in ms.
+/// The views of the image sensor for the rows of the table of docs/gesture-control.md in order: hands, light, and time in ms.
 fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
     let far = Hand {
         centre: [285.0, 150.0],
@@ -332,7 +332,7 @@ fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
 
 /// Runs the cases of the table "what the image sensor sees".
 fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard>>, view: &View) {
-    let rows = include_str!("../../../../docs/hand.md").lines();
+    let rows = include_str!("../../../../docs/gesture-control.md").lines();
     let mut rows = rows.skip_while(|row| !row.starts_with("| the image sensor sees |"));
     for ((name, hands, light, time), row) in core::iter::zip(sights(), rows.by_ref().skip(2)) {
         let [_, sight, presence, camera, _] = row.split('|').map(str::trim).collect::<Vec<_>>()[..]

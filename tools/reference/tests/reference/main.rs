@@ -4,7 +4,7 @@
 
 mod cones;
 mod field;
-mod hand;
+mod gesture;
 mod imu;
 mod lines;
 mod picture;

@@ -1,6 +1,6 @@
 //! The engine with two clocks, an image sensor on its pins, and the model beside it.
 
-use glint_core::hand::{Region, Window};
+use glint_core::gesture::{Region, Window};
 use glint_model::gesture::{Channel, Engine, Pins, Polarity, Settings};
 use glint_testbench::{Counters, Module, Port};
 use rand::SeedableRng;

@@ -1,6 +1,6 @@
 //! Random frames, polarities, settings and faults, and the frame rates that the engine has to take.
 
-use glint_core::hand::Region;
+use glint_core::gesture::Region;
 use glint_model::gesture::{Channel, Polarity, Settings};
 use rand::RngExt;
 use rand::seq::IndexedRandom;

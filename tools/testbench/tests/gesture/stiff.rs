@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glint_core::colour::Rgb565;
-use glint_core::hand::{Region, Window};
+use glint_core::gesture::{Region, Window};
 use glint_model::gesture::{Channel, Polarity, Settings};
 
 use crate::bench::{Bench, Clocks, HASTY, settings};

@@ -2,16 +2,16 @@
 //! cycles on the soft core, and stiff cases.
 
 use anyhow::{Context, Result};
-use glint_core::hand::{RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region, Setting};
+use glint_core::gesture::{RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region, Setting};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use serde::{Deserialize, Serialize};
 
 use crate::errors::Errors;
-use crate::hand::cases::{Fault, outcome};
-use crate::hand::filters::{Filter, Recordings, motion, quality};
-use crate::hand::frame::{Noise, SIZE, Shape, centre_errors};
-use crate::hand::path::{Path, record};
+use crate::gesture::cases::{Fault, outcome};
+use crate::gesture::filters::{Filter, Recordings, motion, quality};
+use crate::gesture::frame::{Noise, SIZE, Shape, centre_errors};
+use crate::gesture::path::{Path, record};
 use crate::report::cycles::Cycles;
 use crate::report::provenance::Provenance;
 

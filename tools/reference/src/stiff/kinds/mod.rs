@@ -8,7 +8,7 @@ mod fields;
 mod files;
 mod frames;
 mod gateware;
-mod hands;
+mod gestures;
 mod kernels;
 mod lines;
 mod matrices;
@@ -35,7 +35,7 @@ pub fn all() -> Vec<Kind> {
         fields::kinds(),
         files::kinds(),
         gateware::kinds(),
-        hands::kinds(),
+        gestures::kinds(),
         kernels::kinds(),
         lines::kinds(),
         matrices::kinds(),

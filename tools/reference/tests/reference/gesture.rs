@@ -1,8 +1,8 @@
 //! Tests of the camera's control by a hand, on drawn frames.
 
-use glint_core::hand::{Doubt, Presence};
-use glint_reference::hand::cases::{Fault, outcome};
-use glint_reference::hand::filters::{Filter, motion, quality};
+use glint_core::gesture::{Doubt, Presence};
+use glint_reference::gesture::cases::{Fault, outcome};
+use glint_reference::gesture::filters::{Filter, motion, quality};
 use glint_reference::report::experiments::gesture::{centres, recordings};
 
 #[test]

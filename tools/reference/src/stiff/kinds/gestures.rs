@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::hand::{
+use glint_core::gesture::{
     Backlash, Control, OneEuro, Region, Statistics, Step, Tuning, calibrate, low_pass_gain,
     quotient, target, towards,
 };

@@ -1,6 +1,6 @@
 //! Stiff cases of the camera's control: what the camera does when frames do not show one hand.
 
-use glint_core::hand::{Control, Doubt, Presence};
+use glint_core::gesture::{Control, Doubt, Presence};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 

@@ -1,6 +1,6 @@
 //! Pixels of the hand's colour in camera frames, and the gesture engine's statistics of them.
 
-use glint_core::hand::{Region, Setting, Statistics};
+use glint_core::gesture::{Region, Setting, Statistics};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 

@@ -1,7 +1,7 @@
 //! Paths of a hand, and the noisy targets that the control computes from the frames along them.
 
 use glint_core::fixed::Q4_28;
-use glint_core::hand::{Control, Presence, target};
+use glint_core::gesture::{Control, Presence, target};
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 

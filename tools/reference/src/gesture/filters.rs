@@ -1,7 +1,7 @@
 //! Filters of the camera's control, and their errors along paths of a hand.
 
 use glint_core::fixed::{Q4_28, U16_16};
-use glint_core::hand::{ANGLE, Backlash, CHANNELS, OneEuro, Step, Tuning};
+use glint_core::gesture::{ANGLE, Backlash, CHANNELS, OneEuro, Step, Tuning};
 use glint_variants::filter::{AlphaBeta, Average, LowPass};
 
 use super::path::{Sample, between};

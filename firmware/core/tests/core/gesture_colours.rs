@@ -1,6 +1,6 @@
 //! Tests of the calibration of a hand's colour.
 
-use glint_core::hand::{CalibrationError, Window, calibrate};
+use glint_core::gesture::{CalibrationError, Window, calibrate};
 
 /// Samples of a picture of 40×30: the hand's colour in the middle, and another colour around it.
 fn picture(hand: impl Fn(usize) -> [u8; 2], rest: impl Fn(usize) -> [u8; 2]) -> Vec<[u8; 2]> {

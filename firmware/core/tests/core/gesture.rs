@@ -1,7 +1,7 @@
 //! Tests of the camera's control by a hand.
 
 use glint_core::fixed::{Q4_28, Q32_32, Turns, U16_16};
-use glint_core::hand::{
+use glint_core::gesture::{
     Backlash, Blob, Control, Doubt, OneEuro, PATIENCE, POLE, Presence, Region, Setting, Statistics,
     Step, Tuning, target,
 };
