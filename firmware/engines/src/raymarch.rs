@@ -98,6 +98,8 @@ pub const fn tables(palette: &Palette) -> Tables<'_> {
 ///
 /// # Errors
 /// The missing feature; all registers are then unchanged.
+// Not inlined: the code of a frame without a field then takes fewer lines of the instruction cache.
+#[inline(never)]
 pub fn set_field(
     raymarcher: &mut Raymarcher,
     setup: &FieldSetup,

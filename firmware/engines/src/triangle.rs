@@ -53,7 +53,7 @@ impl MeshPass<'_> {
                 .with_exponent(frame.depth.exponent as u8),
             lights: [light, ambient],
             colour: self.colour.map(|colour| colour.0),
-            lists: self.lists,
+            lists: self.lists.as_ref(),
         })
     }
 }

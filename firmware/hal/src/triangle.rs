@@ -106,7 +106,7 @@ pub struct Geometry<'a> {
     pub colour: Option<u16>,
     /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
     /// same colours of the light.
-    pub lists: Option<Lists>,
+    pub lists: Option<&'a Lists>,
 }
 
 /// A geometry pass whose registers have been written, ready to start.
@@ -215,7 +215,7 @@ impl TriangleEngine {
         let registers = &self.registers;
         registers.mesh().write(pass.mesh.as_ptr().addr() as u32);
         registers.mesh_bytes().write(pass.mesh.len() as u32);
-        if let Some(lists) = &pass.lists {
+        if let Some(lists) = pass.lists {
             self.write_output(lists);
             registers.exceptions().write(lists.exceptions);
             registers.exception_limit().write(lists.exception_limit);

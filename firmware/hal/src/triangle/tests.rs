@@ -31,7 +31,7 @@ fn pass(options: GeometryStart) -> Geometry<'static> {
         depth_scale: DepthScale::default().with_mantissa(17).with_exponent(18),
         lights: [[256, 7, 1], [0, 255, 256]],
         colour: None,
-        lists: Some(LISTS),
+        lists: Some(&LISTS),
     }
 }
 
