@@ -45,7 +45,10 @@ impl MeshPass<'_> {
                 .with_orthographic(frame.projection == Projection::Orthographic)
                 .with_mirror(frame.mirrors),
             scale_shift: frame.engine_shift() as u8,
-            rows: [&frame.u, &frame.v, &frame.n, &frame.light],
+            u: &frame.u,
+            v: &frame.v,
+            n: &frame.n,
+            light: &frame.light,
             translation: &frame.translation,
             near: frame.near,
             depth_scale: DepthScale::default()
@@ -53,7 +56,7 @@ impl MeshPass<'_> {
                 .with_exponent(frame.depth.exponent as u8),
             lights: [light, ambient],
             colour: self.colour.map(|colour| colour.0),
-            lists: self.lists.as_ref(),
+            lists: self.lists,
         })
     }
 }

@@ -91,8 +91,14 @@ pub struct Geometry<'a> {
     pub options: GeometryStart,
     /// The register `scale_shift`.
     pub scale_shift: u8,
-    /// The rows u, v and n of the camera, and that of the light.
-    pub rows: [&'a [i32; 3]; 4],
+    /// The row u of the camera, and the rows v, n and that of the light below.
+    pub u: &'a [i32; 3],
+    /// The row v.
+    pub v: &'a [i32; 3],
+    /// The row n.
+    pub n: &'a [i32; 3],
+    /// The row of the light.
+    pub light: &'a [i32; 3],
     /// The translation, s44.
     pub translation: &'a [i64; 3],
     /// The near plane, 37 fraction bits.
@@ -106,7 +112,7 @@ pub struct Geometry<'a> {
     pub colour: Option<u16>,
     /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
     /// same colours of the light.
-    pub lists: Option<&'a Lists>,
+    pub lists: Option<Lists>,
 }
 
 /// A geometry pass whose registers have been written, ready to start.
@@ -215,32 +221,30 @@ impl TriangleEngine {
         let registers = &self.registers;
         registers.mesh().write(pass.mesh.as_ptr().addr() as u32);
         registers.mesh_bytes().write(pass.mesh.len() as u32);
-        if let Some(lists) = pass.lists {
+        if let Some(lists) = &pass.lists {
             self.write_output(lists);
             registers.exceptions().write(lists.exceptions);
             registers.exception_limit().write(lists.exception_limit);
-            let [light, ambient] = pass.lights.map(packed);
-            registers.light_colour().write(light);
-            registers.ambient().write(ambient);
+            registers.light_colour().write(packed(pass.lights[0]));
+            registers.ambient().write(packed(pass.lights[1]));
         }
         if let Some(colour) = pass.colour {
             registers.colour().write(colour);
         }
         registers.scale_shift().write(pass.scale_shift);
         // The registers are written one by one, because a loop would need a table of their addresses.
-        let [u, v, n, light] = pass.rows.map(|row| row.map(|value| value as u32));
-        registers.row_u0().write(u[0]);
-        registers.row_u1().write(u[1]);
-        registers.row_u2().write(u[2]);
-        registers.row_v0().write(v[0]);
-        registers.row_v1().write(v[1]);
-        registers.row_v2().write(v[2]);
-        registers.row_n0().write(n[0]);
-        registers.row_n1().write(n[1]);
-        registers.row_n2().write(n[2]);
-        registers.light_0().write(light[0]);
-        registers.light_1().write(light[1]);
-        registers.light_2().write(light[2]);
+        registers.row_u0().write(pass.u[0] as u32);
+        registers.row_u1().write(pass.u[1] as u32);
+        registers.row_u2().write(pass.u[2] as u32);
+        registers.row_v0().write(pass.v[0] as u32);
+        registers.row_v1().write(pass.v[1] as u32);
+        registers.row_v2().write(pass.v[2] as u32);
+        registers.row_n0().write(pass.n[0] as u32);
+        registers.row_n1().write(pass.n[1] as u32);
+        registers.row_n2().write(pass.n[2] as u32);
+        registers.light_0().write(pass.light[0] as u32);
+        registers.light_1().write(pass.light[1] as u32);
+        registers.light_2().write(pass.light[2] as u32);
         let [x, y, z] = *pass.translation;
         registers.tx_low().write(x as u32);
         registers.tx_high().write((x >> 32) as u16);

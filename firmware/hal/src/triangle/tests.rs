@@ -25,13 +25,16 @@ fn pass(options: GeometryStart) -> Geometry<'static> {
         mesh: &[0; 80],
         options,
         scale_shift: 13,
-        rows: [&[1, -2, 3], &[-4, 5, -6], &[7, -8, 9], &[-10, 11, -12]],
+        u: &[1, -2, 3],
+        v: &[-4, 5, -6],
+        n: &[7, -8, 9],
+        light: &[-10, 11, -12],
         translation: &[-13 << 32, 14 << 33, -15],
         near: 16 << 31,
         depth_scale: DepthScale::default().with_mantissa(17).with_exponent(18),
         lights: [[256, 7, 1], [0, 255, 256]],
         colour: None,
-        lists: Some(&LISTS),
+        lists: Some(LISTS),
     }
 }
 
@@ -137,7 +140,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     ];
     // Rows have 25 bits.
     let rows = rows.map(|row| row.map(|value| value.read().cast_signed() << 7 >> 7));
-    assert_eq!(rows.each_ref(), pass.rows);
+    assert_eq!(rows.each_ref(), [pass.u, pass.v, pass.n, pass.light]);
     assert_eq!([r.near_low().read(), r.near_high().read().into()], [0, 8]);
     assert_eq!(
         (r.scale_shift().read(), r.depth_scale().read()),
