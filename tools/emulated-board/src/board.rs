@@ -24,8 +24,6 @@ pub struct EmulatedBoard {
     cpu: Cpu,
     bus: Bus,
     cycles: u64,
-    /// Cycles in which the CPU slept.
-    idle: u64,
 }
 
 impl EmulatedBoard {
@@ -48,7 +46,6 @@ impl EmulatedBoard {
             cpu: Cpu::new(),
             bus,
             cycles: 0,
-            idle: 0,
         }
     }
 
@@ -68,7 +65,6 @@ impl EmulatedBoard {
             self.cycles = now;
             if pause == Pause::Asleep && now < limit {
                 self.cycles = self.bus.devices.sleep(end, &mut self.bus.ram);
-                self.idle += self.cycles - now;
             }
             if std::mem::take(&mut self.bus.devices.controller.reset) {
                 self.bus.devices.reset();
@@ -113,12 +109,6 @@ impl EmulatedBoard {
     #[must_use]
     pub fn cycles(&self) -> u64 {
         self.cycles
-    }
-
-    /// Clock cycles since the start in which the CPU slept.
-    #[must_use]
-    pub fn idle_cycles(&self) -> u64 {
-        self.idle
     }
 
     /// Instructions since the start.

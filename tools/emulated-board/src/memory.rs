@@ -69,13 +69,6 @@ impl MainMemory {
         self.array(address).map(u32::from_le_bytes)
     }
 
-    /// Writes the byte at `address`; `None` outside main memory.
-    #[must_use]
-    #[inline]
-    pub fn set_byte(&mut self, address: u32, value: u8) -> Option<()> {
-        self.set_array(address, value.to_le_bytes())
-    }
-
     /// Writes the word of 32 bits at `address`; `None` outside main memory.
     #[must_use]
     #[inline]
