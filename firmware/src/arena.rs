@@ -117,13 +117,13 @@ impl Arena {
         })
     }
 
-    /// The region of a loan, which ends.
+    /// The region of a loan of this arena, which ends.
     pub fn keep_lent(&mut self, loan: Loan) -> Region {
         self.lent -= usize::from(loan.is_of_arena());
         loan.region
     }
 
-    /// Ends a loan and makes its region part of the gaps, which keep the bytes.
+    /// Ends a loan of this arena and makes its region part of the gaps, which keep the bytes.
     pub fn give_back(&mut self, loan: Loan) {
         let region = self.keep_lent(loan);
         self.release(region);

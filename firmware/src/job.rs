@@ -8,7 +8,7 @@ use glint_scene::{Scene, Sphere};
 
 use crate::arena::Loan;
 use crate::error::CommandError;
-use crate::transfer::Transfer;
+use crate::transfer::{Purpose, Transfer};
 
 /// The result of a command.
 pub type Outcome<'l> = Result<Reply, CommandError<'l>>;
@@ -74,12 +74,16 @@ impl Job {
         }
     }
 
-    /// Whether the demo may show another scene meanwhile.
+    /// Whether the demo may show another scene meanwhile. It stands still during jobs that print, and during the upload of a log: the
+    /// attitudes stay in the staging memory, so no mesh of the flash may come behind the log.
     pub const fn allows_demo(&self) -> bool {
         match self {
-            Self::Sensor(_) | Self::Replay(_) | Self::Transfer(_) => true,
+            Self::Transfer(transfer) => match transfer.purpose {
+                Purpose::Mesh(_) | Purpose::Program | Purpose::Download => true,
+                Purpose::Log => false,
+            },
             Self::Draw | Self::Render | Self::Frame { .. } => false,
-            Self::Orbit(_) | Self::Gesture(_) => false,
+            Self::Orbit(_) | Self::Sensor(_) | Self::Replay(_) | Self::Gesture(_) => false,
         }
     }
 }

@@ -5,10 +5,10 @@
 //!
 //! ```text
 //! start, main_loop (tasks), indicators (LEDs and digits)
-//! commands (scene, demo, object, appearance, camera, imu, gesture, replay, frame, statistics, bench, machine)
+//! commands (scene, options, upload, demo, imu, gesture, replay, frame, statistics, bench, machine)
 //! selftest, job (replies, work that continues after a command)
 //! error
-//! machine (state) ─┬─ renderer, gateware, scene, models, objects, shapes, arena, memory
+//! machine (state) ─┬─ renderer, gateware, picture, models, objects, shapes, arena, memory
 //!                  ├─ transfer, terminal
 //!                  ├─ panel (what switches, LEDs and digits mean), demo, scenes (built in and in the flash)
 //!                  ├─ sensor, gesture, replay

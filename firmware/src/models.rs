@@ -174,7 +174,8 @@ impl Models {
     /// Lends the first `length` bytes of the staging memory; `None` if the free memory is shorter. This may move uploads, so no frame
     /// may be in progress.
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
-        if (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
+        let moves = self.arena.lent() == 0;
+        if moves && (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
             self.close_gaps();
         }
         self.arena.lend(length)

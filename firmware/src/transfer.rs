@@ -209,8 +209,16 @@ impl Line {
         let mut received = [0; 256];
         let mut has_worked = false;
         for _ in 0..EXCHANGES {
-            let count = self.uart.receive(&mut received);
-            party.on_bytes(now, received.get(..count).unwrap_or_default());
+            // All bytes that wait, before the other side counts as silent. Bytes after the end do not belong to the transfer.
+            let mut count = 0;
+            while party.state() == State::Running {
+                let next = self.uart.receive(&mut received);
+                party.on_bytes(now, received.get(..next).unwrap_or_default());
+                count += next;
+                if next < received.len() {
+                    break;
+                }
+            }
             if self.unsent.is_empty() {
                 self.unsent = 0..party.poll(now, &mut self.frame);
             }

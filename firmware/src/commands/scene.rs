@@ -15,6 +15,7 @@ use crate::job::{Job, Orbit, Outcome, Reply};
 use crate::machine::Machine;
 use crate::models::{MAX_MESHES, MODEL, NameError};
 use crate::scenes::{BuiltIn, DEFAULT, Found, SCENES, Shows};
+use crate::sensor;
 use crate::transfer::Purpose;
 
 impl<'l> SceneCommands<'l> for Machine {
@@ -80,7 +81,8 @@ impl<'l> SceneCommands<'l> for Machine {
 
     fn unload(&mut self, name: &'l str) -> Outcome<'l> {
         let object = self.scene.first_object_of(name);
-        if object.is_some_and(|_| self.models.has_upload(name)) || !self.models.remove(name) {
+        let object = object.filter(|_| self.models.has_upload(name));
+        if object.is_some() || !self.models.remove(name) {
             return Err(CommandError::Unload { name, object });
         }
         if self.scene.mesh == name {
@@ -216,6 +218,8 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> O
         let (_, line) = line.map_err(|error| CommandError::Line { name, error })?;
         if let Some(mesh) = line.mesh() {
             let is_there = upload::from_flash(machine, mesh)? || machine.models.has(mesh);
+            // A large mesh takes long to check, and more than one may follow.
+            sensor::deliver(&mut machine.imu);
             if !is_there || !MESH.is_built || !machine.models.prepare(mesh) {
                 return Err(CommandError::NoMesh { name, mesh });
             }
@@ -230,7 +234,12 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> O
             if motion.is_none() {
                 release_camera(machine);
             }
-            motion = Some(command.execute(machine)?);
+            let started = command.execute(machine);
+            if started.is_err() && !is_stated {
+                // Without a sensor the scene stays.
+                machine.scene.backend = backend;
+            }
+            motion = Some(started?);
         }
     }
     check_blocks(machine, name, false)?;
