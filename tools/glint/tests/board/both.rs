@@ -1,31 +1,26 @@
 //! Frames by the gateware on the virtual board and by the engines of the emulated board: pictures, depths, the place of a
 //! hand and the counts that have an exact meaning are equal.
 
-use crate::common::{console, emulator, mesh, renderer, running_board};
+use crate::common::{
+    ALL_PARTS, console, emulator, mesh, plain, renderer, running_board, two_objects,
+};
 use glint::board::{SimulatedBoard, Simulation};
 use glint::console::value;
 use glint::gesture::image_sensor;
-use glint::object::Description;
-use glint::render::{FieldSubject, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject};
+use glint::render::{FieldSubject, Frame, Rendered, Renderer, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
 use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
-use glint_model::{Object, Placement};
 use virtual_board::virtual_image_sensor::{Hand, Scene};
 
 /// The frames, each with its name, by a board.
 fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) -> Vec<Rendered> {
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
-    let parts = Parts {
-        colour: true,
-        depth: true,
-    };
+    let mut renderer = renderer(&mut board);
     let render = |(name, frame): &(&str, Frame)| {
-        let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
+        let rendered = renderer.render(frame, ALL_PARTS, &mut |_, _| {}).unwrap();
         println!("{name}: {:?} cycles", rendered.stats.cycles);
         rendered
     };
@@ -35,21 +30,9 @@ fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) 
 #[test]
 fn both_boards_draw_the_same() {
     let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
-    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
     let outside = view::spherical("2.5,30,60").unwrap();
     let inside = view::look("0,-0.3,0.1,20,10").unwrap();
-    let objects = [
-        "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
-        "- scale 0.5,0.5,-1 move 0.5,0.3,0.2 colour 30c0ff",
-    ]
-    .map(|text| {
-        let place = Description::parse(text).unwrap().place;
-        Object {
-            subject: plain(&sphere),
-            placement: Placement::new(place.matrix),
-            colour: place.colour,
-        }
-    });
+    let objects = two_objects(&sphere);
     let field = FieldSubject {
         field: &Field::parse("box:0.3,1,0.3").unwrap(),
         appearance: &Appearance::default(),

@@ -4,11 +4,18 @@ use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, Simulation, built
 use glint::console::{Console, value};
 use glint::convert::{self, Options};
 use glint::counters::Counters;
-use glint::render::{BoardRenderer, Frame, Stats, Subject};
+use glint::render::{
+    self, BoardRenderer, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Stats, Subject,
+};
 use glint::{generate, view};
 use glint_core::mesh::Mesh;
+use glint_core::object::Place;
 use glint_core::picture::Size;
 use glint_core::wire::{MAX_FRAME, Manifest, Sender, Timing};
+use glint_core::words::Words;
+use glint_model::{Object, Placement};
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
 
 /// Milliseconds of board time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
@@ -30,11 +37,76 @@ pub fn console<S: Simulation>(board: &mut SimulatedBoard<S>) -> Console<'_, Simu
     console
 }
 
-/// A renderer on a board that has just started.
+/// A renderer by direct access to the memory of a board that has just started.
 pub fn renderer<S: Simulation>(
     board: &mut SimulatedBoard<S>,
 ) -> BoardRenderer<'_, SimulatedBoard<S>> {
-    BoardRenderer::new(console(board))
+    BoardRenderer::new(console(board)).with_route(Route::Memory)
+}
+
+/// Colours and depths.
+pub const ALL_PARTS: Parts = Parts {
+    colour: true,
+    depth: true,
+};
+
+/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns what the board has drawn, and the
+/// model.
+pub fn drawn_alike(renderer: &mut impl Renderer, frame: &Frame, name: &str) -> [Rendered; 2] {
+    let expected = render::on_model(frame).unwrap();
+    let found = renderer.render(frame, ALL_PARTS, &mut |_, _| {}).unwrap();
+    assert!(
+        found.image.colour == expected.image.colour,
+        "{name}: colours"
+    );
+    assert!(found.image.depth == expected.image.depth, "{name}: depths");
+    [found, expected]
+}
+
+/// A mesh without options.
+pub fn plain(mesh: &[u8]) -> MeshSubject<'_> {
+    MeshSubject::new(Mesh::new_checked(mesh).unwrap())
+}
+
+/// An object of a mesh at a place.
+pub fn object<'m>(mesh: &'m [u8], place: &str) -> Object<'m> {
+    let place = Place::parse(&mut Words::new(place)).unwrap();
+    Object {
+        subject: plain(mesh),
+        placement: Placement::new(place.matrix),
+        colour: place.colour,
+    }
+}
+
+/// Two objects of a mesh that overlap, one of them mirrored and with a colour.
+pub fn two_objects(mesh: &[u8]) -> [Object<'_>; 2] {
+    [
+        "scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
+        "scale 0.5,0.5,-1 move 0.5,0.3,0.2 colour 30c0ff",
+    ]
+    .map(|place| object(mesh, place))
+}
+
+/// Runs a program to its end, with a text on its standard input.
+pub fn piped(program: &mut Command, input: &str) -> Output {
+    let mut child = program
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    stdin.write_all(input.as_bytes()).unwrap();
+    drop(stdin);
+    child.wait_with_output().unwrap()
+}
+
+/// Bytes of a board's memory.
+pub fn read(console: &mut Console<impl Board>, address: u32, length: usize) -> Vec<u8> {
+    let mut bytes = vec![0; length];
+    let memory = console.board().memory().unwrap();
+    memory.read_memory(address, &mut bytes).unwrap();
+    bytes
 }
 
 /// A frame of a mesh, seen from the camera `R,THETA,PHI`.

@@ -1,7 +1,7 @@
 //! The edges of meshes on the emulated board: segments by the soft core, lines by the line engine, drawn as the model draws them.
 
-use crate::common::{console, emulator, mesh, renderer};
-use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
+use crate::common::{console, drawn_alike, emulator, mesh, plain, renderer};
+use glint::render::{Frame, MeshSubject, Subject};
 use glint::view;
 use glint_core::colour::Winding;
 use glint_core::fixed::U8_28;
@@ -28,7 +28,6 @@ fn edges_are_the_models() {
     let far = Clip::View {
         far: U8_28::lit("2.1"),
     };
-    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
     let clipped = MeshSubject {
         clip: far,
         winding: Winding::Screen,
@@ -50,22 +49,15 @@ fn edges_are_the_models() {
         (both_sides, outside, over, cpu),
     ];
     let mut board = emulator();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
-    let parts = Parts {
-        colour: true,
-        depth: true,
-    };
-    let quiet = &mut |_, _| {};
+    let mut renderer = renderer(&mut board);
     for (number, (subject, view, edges, backend)) in cases.into_iter().enumerate() {
         let subject = match edges {
             Some(edges) => Subject::edges(subject, edges),
             None => Subject::Mesh(subject),
         };
         let frame = Frame::new(subject, view, Size::W320);
-        let expected = render::on_model(&frame).unwrap();
         renderer.set_backend(backend);
-        let found = renderer.render(&frame, parts, quiet).unwrap();
-        assert!(found.image == expected.image, "case {number}");
+        let [found, expected] = drawn_alike(&mut renderer, &frame, &format!("case {number}"));
         let by = found.stats.backend.as_deref();
         assert_eq!(by, Some(backend.name()), "case {number}");
         assert_eq!(found.stats.edges, expected.stats.edges, "case {number}");

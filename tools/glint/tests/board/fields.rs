@@ -1,15 +1,13 @@
 //! Pictures of distance fields, alone and with a mesh, by the raymarcher and by the soft core.
 
-use crate::common::{address, emulator, mesh, renderer, timeless};
+use crate::common::{address, drawn_alike, emulator, mesh, plain, read, renderer, timeless};
 use glint::board::Board;
-use glint::console::Console;
 use glint::picture::Image;
-use glint::render::{self, FieldSubject, Frame, MeshSubject, Route, Subject};
+use glint::render::{self, FieldSubject, Frame, Rendered, Route, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
 use glint_core::light::Material;
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use glint_core::quality::Quality;
 
@@ -41,9 +39,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         quality: Quality::default(),
         prepass: false,
     };
-    let triangles = MeshSubject::new(Mesh::new_checked(&mesh).unwrap());
     let frame = Frame::new(
-        Subject::MeshInField(triangles, field),
+        Subject::MeshInField(plain(&mesh), field),
         view::parse(eye.as_bytes()).unwrap(),
         Size::W320,
     );
@@ -102,13 +99,6 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     assert!(read(console, depth, 4 * before) == depths[..4 * before]);
 }
 
-fn read(console: &mut Console<impl Board>, place: u32, bytes: usize) -> Vec<u8> {
-    let mut found = vec![0; bytes];
-    let memory = console.board().memory().unwrap();
-    memory.read_memory(place, &mut found).unwrap();
-    found
-}
-
 /// Draws a small, distant box by `backend`, and compares colours, depths and counts with the model's.
 fn a_field_by(backend: Backend, name: &str) {
     let mut board = emulator();
@@ -123,21 +113,10 @@ fn a_field_by(backend: Backend, name: &str) {
     };
     let view = view::parse(eye.as_bytes()).unwrap();
     let frame = Frame::new(Subject::Field(subject), view, Size::W320);
-    let expected = render::on_model(&frame).unwrap();
-    let stats = renderer
-        .show(&frame, Route::Memory, &mut |_, _| {})
-        .unwrap();
+    let [Rendered { stats, .. }, expected] = drawn_alike(&mut renderer, &frame, name);
     println!("{:?} cycles", stats.cycles);
     assert_eq!(stats.backend.as_deref(), Some(name));
     assert_eq!(timeless(stats), expected.stats);
-    let colour = renderer
-        .colour(frame.size, Route::Memory, &mut |_, _| {})
-        .unwrap();
-    assert!(colour == expected.image.colour);
-    let depth = renderer
-        .depth(frame.size, Route::Memory, &mut |_, _| {})
-        .unwrap();
-    assert!(depth == expected.image.depth);
 
     let shown = renderer.console().command("info scene").unwrap();
     assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);

@@ -1,7 +1,7 @@
 //! Uploads that stop half done: their program is killed, or a person cancels them on the console.
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
-use crate::terminal::Terminal;
+use crate::terminal::{Terminal, patience};
 use glint::board::{Board, EmulatedBoard, SimulatedBoard, Uart};
 use glint::console::Console;
 use glint::transfer;
@@ -153,11 +153,7 @@ fn ctrl_c_in_a_session_cancels_a_transfer() {
     let port = Port::start();
     let program = Path::new(env!("CARGO_BIN_EXE_glint"));
     let mut terminal = Terminal::start(program, &["console", port.path()]);
-    let mut seconds = 0;
-    let mut is_over = || {
-        seconds += 1;
-        seconds > PATIENCE
-    };
+    let mut is_over = patience(PATIENCE);
     // From the prompt on, the terminal passes all keys to the board.
     terminal.wait_for("glint> ", &mut is_over);
     terminal.type_in(b"load 100 0\r");

@@ -1,14 +1,14 @@
 //! Pictures and depths of meshes on the monitor, in memory and over the line equal the model's, bit for bit.
 
-use crate::common::{emulator, mesh, mesh_frame, renderer, running_board, timeless};
+use crate::common::{
+    drawn_alike, emulator, mesh, mesh_frame, plain, renderer, running_board, timeless,
+};
 use glint::board::{Board, SimulatedBoard, Simulation};
-use glint::picture::Image;
-use glint::render::{self, BoardRenderer, Frame, MeshSubject, Route, Subject};
+use glint::render::{self, BoardRenderer, Frame, MeshSubject, Rendered, Route, Subject};
 use glint::view;
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::light::{Light, MeshLighting};
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Size};
 use std::path::Path;
 use std::process::Command;
@@ -22,18 +22,11 @@ fn smooth_shading_is_the_models_on_every_backend() {
     for backend in [None, Some(Backend::Cpu)] {
         let subject = Subject::Mesh(MeshSubject {
             shading: Shading::Smooth,
-            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
+            ..plain(&mesh)
         });
         let frame = Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320);
         renderer.set_backend(backend);
-        let expected = render::on_model(&frame).unwrap();
-        let stats = renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        let colour = renderer
-            .colour(frame.size, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        assert!(colour == expected.image.colour);
+        let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, "smooth");
         let notes = renderer.console().command("stats").unwrap();
         let fallback = "fallback triangle engine: this gateware has no smooth shading";
         let fell_back = notes.iter().any(|line| line == fallback);
@@ -84,22 +77,20 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
         default,
     ] {
         for backend in [None, Some(Backend::Cpu)] {
-            let subject = Subject::mesh(Mesh::new_checked(&mesh).unwrap());
+            let subject = Subject::Mesh(plain(&mesh));
             let frame = Frame {
                 lighting,
                 clear,
                 ..Frame::new(subject, view::spherical("2,30,60").unwrap(), Size::W320)
             };
             renderer.set_backend(backend);
-            let expected = render::on_model(&frame).unwrap();
-            renderer
-                .show(&frame, Route::Memory, &mut |_, _| {})
-                .unwrap();
+            let name = format!("{lighting:?} {clear:?}");
+            let [_, expected] = drawn_alike(&mut renderer, &frame, &name);
             for _ in 0..2 {
                 let colour = renderer
                     .colour(frame.size, Route::Memory, &mut |_, _| {})
                     .unwrap();
-                assert!(colour == expected.image.colour, "{lighting:?} {clear:?}");
+                assert!(colour == expected.image.colour, "{name}");
                 renderer.redraw().unwrap();
             }
         }
@@ -120,22 +111,12 @@ fn orthographic_pictures_are_the_models_on_every_backend() {
     ] {
         let subject = Subject::Mesh(MeshSubject {
             shading,
-            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
+            ..plain(&mesh)
         });
         let frame = Frame::new(subject, view, Size::W320);
         renderer.set_backend(backend);
-        let expected = render::on_model(&frame).unwrap();
-        let stats = renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        let colour = renderer
-            .colour(frame.size, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        assert!(colour == expected.image.colour, "{backend:?} {shading}");
-        let depth = renderer
-            .depth(frame.size, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        assert!(depth == expected.image.depth, "{backend:?} {shading}");
+        let name = format!("{backend:?} {shading}");
+        let [Rendered { stats, .. }, _] = drawn_alike(&mut renderer, &frame, &name);
         let by_gateware = stats.backend.as_deref() == Some("gateware");
         assert_eq!(by_gateware, backend.is_none() && shading == Shading::Flat);
     }
@@ -159,16 +140,14 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
     for (number, &(view, cull)) in cameras.iter().enumerate() {
         let subject = Subject::Mesh(MeshSubject {
             cull,
-            ..MeshSubject::new(Mesh::new_checked(&mesh).unwrap())
+            ..plain(&mesh)
         });
         let frame = Frame::new(subject, view, size);
-        let expected = render::on_model(&frame).unwrap();
-        let stats = renderer
-            .show(&frame, Route::Memory, &mut |_, _| {})
-            .unwrap();
-        assert_eq!(timeless(stats), expected.stats, "camera {number}");
+        let [found, expected] = drawn_alike(&mut renderer, &frame, &format!("camera {number}"));
+        assert_eq!(timeless(found.stats), expected.stats, "camera {number}");
+        let triangles = expected.stats.triangles();
         assert!(
-            number < 2 || expected.stats.triangles().triangles_clipped > 0,
+            number < 2 || triangles.triangles_clipped > 0,
             "nothing was clipped"
         );
         let shown = renderer.board().inner().monitor_frame(4).unwrap();
@@ -176,8 +155,6 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
             shown == expected.image.colour,
             "camera {number}: the monitor's picture"
         );
-        let depth = renderer.depth(size, Route::Memory, &mut |_, _| {}).unwrap();
-        assert!(depth == expected.image.depth, "camera {number}: the depths");
     }
 }
 
@@ -251,37 +228,17 @@ fn captured(renderer: &mut BoardRenderer<SimulatedBoard>, scale: usize) -> Vec<u
     picture.scaled_back(scale).unwrap()
 }
 
-/// Shows the cube on the board over the serial line only; returns the board's renderer, and the model's image of the same frame.
-fn shown_over_the_line<S: Simulation>(
-    board: &mut SimulatedBoard<S>,
-) -> (BoardRenderer<'_, SimulatedBoard<S>>, Image) {
+#[test]
+fn colours_and_depths_come_over_the_line() {
     let mesh = mesh("cube");
+    let mut board = emulator();
+    let renderer = renderer(&mut board).with_backend(Backend::Cpu);
     let frame = mesh_frame(&mesh, "3,10,80", Size::W320);
-    let mut renderer = renderer(board).with_backend(Backend::Cpu);
-    renderer
-        .show(&frame, Route::Serial, &mut |_, _| {})
-        .unwrap();
-    (renderer, render::on_model(&frame).unwrap().image)
-}
-
-#[test]
-fn colours_come_over_the_line() {
-    let mut board = emulator();
-    let (mut renderer, expected) = shown_over_the_line(&mut board);
-    let colour = renderer
-        .colour(Size::W320, Route::Serial, &mut |_, _| {})
-        .unwrap();
-    assert!(colour == expected.colour);
-}
-
-#[test]
-fn depths_come_over_the_line() {
-    let mut board = emulator();
-    let (mut renderer, expected) = shown_over_the_line(&mut board);
-    let depth = renderer
-        .depth(Size::W320, Route::Serial, &mut |_, _| {})
-        .unwrap();
-    assert!(depth == expected.depth);
+    drawn_alike(
+        &mut renderer.with_route(Route::Serial),
+        &frame,
+        "by the line",
+    );
 }
 
 /// The animation of `glint orbit` on the emulated board has the pictures of the model, by either backend.
@@ -289,40 +246,33 @@ fn depths_come_over_the_line() {
 fn an_orbit_on_a_board_is_the_models() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
     std::fs::create_dir_all(&folder).unwrap();
-    let orbit = |subject: &[&str], board: &[&str]| {
-        let arguments = [
-            "orbit", "--frames", "6", "--force", "--out", "a.png", "--json",
-        ];
+    let orbit = |subject: &str, board: &str| {
+        let command = format!("orbit --frames 6 --force --out a.png --json {subject} {board}");
         let output = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args(arguments)
-            .args(subject)
-            .args(board)
+            .args(command.split_whitespace())
             .current_dir(&folder)
             .output()
             .unwrap();
         let error = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success(), "{board:?}: {error}");
+        assert!(output.status.success(), "{command}: {error}");
         let report: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
         assert_eq!(report["frames"], 6);
         let counts_cycles = report["cycles"].as_u64().is_some_and(|cycles| cycles > 0);
-        assert_eq!(counts_cycles, !board.is_empty(), "{board:?}: {report}");
+        assert_eq!(counts_cycles, !board.is_empty(), "{command}: {report}");
         std::fs::read(folder.join("a.png")).unwrap()
     };
-    let emulated = ["--board", "emulated"];
     for (subject, more) in [
-        (&["gear"][..], &[][..]),
-        (&["gear"], &["--backend", "cpu"]),
-        (&["gear"], &["--transfer", "serial"]),
-        (&["gear", "--stereo", "0.1,3"], &[]),
-        (&["gear", "--field", "box:1,1,0.1"], &[]),
-        (&["--field", "menger:2", "--fog", "0.1"], &[]),
-        (&["--scene", "mesh-in-field", "--size", "320x180"], &[]),
-        (&["--scene", "objects", "--size", "320x180"], &[]),
+        ("gear", ""),
+        ("gear", "--backend cpu"),
+        ("gear", "--transfer serial"),
+        ("gear --stereo 0.1,3", ""),
+        ("gear --field box:1,1,0.1", ""),
+        ("--field menger:2 --fog 0.1", ""),
+        ("--scene mesh-in-field --size 320x180", ""),
+        ("--scene objects --size 320x180", ""),
     ] {
-        assert!(
-            orbit(subject, &[&emulated[..], more].concat()) == orbit(subject, &[]),
-            "{subject:?} {more:?}"
-        );
+        let by_board = orbit(subject, &format!("--board emulated {more}"));
+        assert!(by_board == orbit(subject, ""), "{subject} {more}");
     }
 }
 

@@ -1,14 +1,11 @@
 //! Objects on the board: meshes under names, side by side in memory, drawn as the model draws them.
 
-use crate::common::{address, console, emulator, info, mesh, renderer, timeless};
-use glint::board::{Board, EmulatedBoard, SimulatedBoard};
+use crate::common::{address, console, drawn_alike, emulator, info, mesh, object, read, renderer};
+use glint::board::{EmulatedBoard, SimulatedBoard};
 use glint::console::Console;
-use glint::object::Description;
-use glint::render::{self, Frame, MeshSubject, Parts, Renderer, Route, Subject};
+use glint::render::{Frame, Subject};
 use glint::{transfer, view};
-use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
-use glint_model::{Object, Placement};
 
 /// Objects of three meshes, one of them twice, from a camera that sees them overlap.
 #[test]
@@ -16,50 +13,22 @@ fn objects_are_the_models() {
     let meshes = ["cube", "icosphere:1", "sponge:1"].map(mesh);
     let [cube, sphere, sponge] = &meshes;
     let objects = [
+        (cube, "scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1"),
+        (sphere, "scale 0.5,0.5,-1 move 0.5,0.3,0.2"),
+        (sponge, "scale 0.4 rotate y 30 move 0.2,-0.6,0.3"),
         (
             cube,
-            "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
-        ),
-        (sphere, "- scale 0.5,0.5,-1 move 0.5,0.3,0.2"),
-        (sponge, "- scale 0.4 rotate y 30 move 0.2,-0.6,0.3"),
-        (
-            cube,
-            "- matrix 0.2,0.1,0,0,0.3,0,0,0,0.5,0,0.1,0.5 colour 30c0ff",
+            "matrix 0.2,0.1,0,0,0.3,0,0,0,0.5,0,0.1,0.5 colour 30c0ff",
         ),
     ]
-    .map(|(mesh, text)| {
-        let place = Description::parse(text).unwrap().place;
-        Object {
-            subject: MeshSubject::new(Mesh::new_checked(mesh).unwrap()),
-            placement: Placement::new(place.matrix),
-            colour: place.colour,
-        }
-    });
+    .map(|(mesh, place)| object(mesh, place));
     let mut board = emulator();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let mut renderer = renderer(&mut board);
     let subject = Subject::Objects(&objects);
     let frame = Frame::new(subject, view::spherical("2.5,30,60").unwrap(), Size::W320);
-    let expected = render::on_model(&frame).unwrap();
-    let parts = Parts {
-        colour: true,
-        depth: true,
-    };
-    let rendered = renderer.render(&frame, parts, &mut |_, _| {}).unwrap();
-    assert!(rendered.image.colour == expected.image.colour);
-    assert!(rendered.image.depth == expected.image.depth);
-    let found = timeless(rendered.stats).triangles().clone();
-    assert_eq!(
-        found.triangles_drawn,
-        expected.stats.triangles().triangles_drawn
-    );
-}
-
-/// The bytes of the mesh `name` in the board's memory, at `address`.
-fn bytes(console: &mut Console<impl Board>, address: u32, length: usize) -> Vec<u8> {
-    let mut bytes = vec![0; length];
-    let memory = console.board().memory().unwrap();
-    memory.read_memory(address, &mut bytes).unwrap();
-    bytes
+    let drawn = drawn_alike(&mut renderer, &frame, "objects");
+    let [found, expected] = drawn.map(|rendered| rendered.stats.triangles().triangles_drawn);
+    assert_eq!(found, expected);
 }
 
 /// Uploads lie side by side. A refused one leaves the others, and after `unload` the others move together.
@@ -100,7 +69,7 @@ fn meshes_have_names_and_share_the_memory() {
     assert!(refused.contains("the mesh of object 1"), "{refused}");
     console.command("unload a").unwrap();
     console.command("unload b").unwrap();
-    assert!(bytes(&mut console, start, c.len()) == c);
+    assert!(read(&mut console, start, c.len()) == c);
     let end = start + c.len() as u32;
     assert_eq!(address(&mut console, "staging"), end);
     // The moved mesh is drawn from its new position.

@@ -1,7 +1,7 @@
 //! Qualities: each is the size and the precision that it states, on the model and on a board.
 
-use crate::common::{console, emulator, info, renderer};
-use glint::render::{self, FieldSubject, Frame, Parts, Renderer, Route, Subject};
+use crate::common::{console, drawn_alike, emulator, info, renderer};
+use glint::render::{self, FieldSubject, Frame, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
@@ -68,12 +68,8 @@ fn a_quality_is_a_size_and_a_threshold() {
 #[test]
 fn a_board_has_the_qualities_of_the_model() {
     let mut board = emulator();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let mut renderer = renderer(&mut board);
     let appearance = Appearance::default();
-    let parts = Parts {
-        colour: true,
-        depth: false,
-    };
     let mut evaluations = Vec::new();
     for quality in Quality::ALL {
         for text in FIELDS {
@@ -86,14 +82,9 @@ fn a_board_has_the_qualities_of_the_model() {
             };
             let own = (text == FIELDS[0]).then_some(own);
             for frame in own.iter().chain([&small]) {
-                let found = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
-                let expected = render::on_model(frame).unwrap();
-                assert!(
-                    found.image.colour == expected.image.colour,
-                    "{quality}, {text}"
-                );
+                let drawn = drawn_alike(&mut renderer, frame, &format!("{quality}, {text}"));
                 let [found, expected] =
-                    [found, expected].map(|rendered| rendered.stats.rays.unwrap().evaluations);
+                    drawn.map(|rendered| rendered.stats.rays.unwrap().evaluations);
                 assert_eq!(found, expected, "{quality}, {text}");
                 evaluations.push(found);
             }

@@ -1,7 +1,7 @@
 //! Scenes: those in the firmware are the files of the folder `scenes`, and are drawn as the model draws them.
 
-use crate::common::{console, emulator, info, renderer};
-use glint::render::{self, Parts, Renderer, Route, size_command, view_command};
+use crate::common::{console, drawn_alike, emulator, info, renderer};
+use glint::render::{self, Route, size_command, view_command};
 use glint::scene::{self, Changes};
 use glint_core::colour::Shading;
 use glint_core::picture::Size;
@@ -12,7 +12,7 @@ use glint_scene_file::{NAMES, SceneFile, built_in};
 #[test]
 fn scenes_are_the_models() {
     let mut board = emulator();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
+    let mut renderer = renderer(&mut board);
     let changes = Changes {
         shading: Some(Shading::Flat),
         size: Some(Size::W320),
@@ -53,20 +53,11 @@ fn a_scene_file_is_the_models() {
     const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";
     let scene = SceneFile::parse("a", "a.toml", FILE).unwrap();
     let mut board = emulator();
-    let mut renderer = renderer(&mut board)
-        .with_route(Route::Memory)
-        .with_scene(Some(scene.clone()));
-    let parts = Parts {
-        colour: true,
-        depth: true,
-    };
-    let [found, expected] = scene::draw(&scene, &Changes::default(), |frame| {
-        let rendered = renderer.render(frame, parts, &mut |_, _| {}).unwrap();
-        [rendered, render::on_model(frame).unwrap()]
+    let mut renderer = renderer(&mut board).with_scene(Some(scene.clone()));
+    scene::draw(&scene, &Changes::default(), |frame| {
+        drawn_alike(&mut renderer, frame, "a scene file");
     })
     .unwrap();
-    assert!(found.image.colour == expected.image.colour);
-    assert!(found.image.depth == expected.image.depth);
 }
 
 #[test]

@@ -1,25 +1,12 @@
 //! Console commands from `--send` and from a pipe.
 
-use std::io::Write;
-use std::process::{Command, Output, Stdio};
+use crate::common::piped;
+use std::process::{Command, Output};
 
 /// Runs `glint console` on a new emulated board, with commands on its standard input.
 fn console(arguments: &[&str], input: &str) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(["console", "emulated"])
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    child
-        .stdin
-        .take()
-        .unwrap()
-        .write_all(input.as_bytes())
-        .unwrap();
-    child.wait_with_output().unwrap()
+    let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
+    piped(glint.args(["console", "emulated"]).args(arguments), input)
 }
 
 /// The replies to the commands before the one that fails are printed, as lines and as JSON, and no later command is sent.

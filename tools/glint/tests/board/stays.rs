@@ -1,10 +1,10 @@
 //! A board that stays, and the programs that use it in turn.
 
-use crate::common::{begin_upload, mesh};
-use crate::terminal::Terminal;
+use crate::common::{begin_upload, mesh, piped};
+use crate::terminal::{Terminal, patience};
 use glint::board::{self, Board as _, SerialBoard};
 use glint::console::Console;
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use virtual_board::pty::Pty;
@@ -43,28 +43,22 @@ impl Stay {
         Self { child, folder }
     }
 
-    fn glint(&self, arguments: &[&str], input: &str) -> Output {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_glint"))
-            .args(arguments)
-            .current_dir(&self.folder)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        child
-            .stdin
-            .take()
-            .unwrap()
-            .write_all(input.as_bytes())
-            .unwrap();
-        child.wait_with_output().unwrap()
+    fn glint(&self, arguments: &str, input: &str) -> Output {
+        let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
+        let arguments = arguments
+            .split('\'')
+            .enumerate()
+            .flat_map(|(i, part)| match i % 2 {
+                0 => part.split_whitespace().collect(),
+                _ => vec![part],
+            });
+        piped(glint.args(arguments).current_dir(&self.folder), input)
     }
 
-    fn succeed(&self, arguments: &[&str], input: &str) -> String {
+    fn succeed(&self, arguments: &str, input: &str) -> String {
         let output = self.glint(arguments, input);
         let error = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{arguments:?}: {error}");
+        assert!(output.status.success(), "{arguments}: {error}");
         String::from_utf8(output.stdout).unwrap()
     }
 }
@@ -82,7 +76,7 @@ fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
     console.synchronise().unwrap();
-    let other = stay.glint(&["info", "--board", "port"], "");
+    let other = stay.glint("info --board port", "");
     assert_eq!(other.status.code(), Some(1));
     let error = String::from_utf8(other.stderr).unwrap();
     let expected =
@@ -95,23 +89,22 @@ fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
 fn programs_use_one_board_in_turn() {
     let mut stay = Stay::start();
     let port = stay.folder.join("port");
-    let upload = ["upload", "icosphere:1", "--board", "port", "--json"];
-    let report: serde_json::Value = serde_json::from_str(&stay.succeed(&upload, "")).unwrap();
+    let upload = "upload icosphere:1 --board port --json";
+    let report: serde_json::Value = serde_json::from_str(&stay.succeed(upload, "")).unwrap();
     assert_eq!(report["bytes"], mesh("icosphere:1").len());
 
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
-    std::fs::write(
-        stay.folder.join("script"),
-        "# the model\n\ninfo triangles\n",
-    )
-    .unwrap();
-    let script = ["console", "port", "--file", "script"];
-    assert_eq!(stay.succeed(&script, ""), "triangles 20\n");
+    let script = "# the model\n\ninfo triangles\n";
+    std::fs::write(stay.folder.join("script"), script).unwrap();
+    assert_eq!(
+        stay.succeed("console port --file script", ""),
+        "triangles 20\n"
+    );
     upload_a_part(&stay, &port, &mesh("icosphere:4"));
-    stay.succeed(&["upload", "icosphere:4", "--board", "port"], "");
-    let pipe = stay.succeed(&["console", "port"], "info triangles\n");
+    stay.succeed("upload icosphere:4 --board port", "");
+    let pipe = stay.succeed("console port", "info triangles\n");
     assert_eq!(pipe, "triangles 320\n");
-    let info = stay.succeed(&["info", "--board", "port", "--json"], "");
+    let info = stay.succeed("info --board port --json", "");
     let info: serde_json::Value = serde_json::from_str(&info).unwrap();
     assert_eq!(info["triangles"], "320");
 
@@ -120,16 +113,15 @@ fn programs_use_one_board_in_turn() {
     if log.exists() {
         std::fs::remove_file(&log).unwrap();
     }
-    let until = ["--send", "leds 5", "--until", "glint> ", "--log", "log"];
-    let said = stay.succeed(&[&["console", "port"], &until[..]].concat(), "");
+    let until = "console port --send 'leds 5' --until 'glint> ' --log log";
+    let said = stay.succeed(until, "");
     let log = std::fs::read_to_string(&log).unwrap();
     assert!(
         log.contains("leds 5\r\n") && log.ends_with(&said),
         "{log:?}"
     );
     assert!(log.contains("glint> "), "{log:?}");
-    let never = ["--send", "info", "--until", "never", "--timeout", "1"];
-    let output = stay.glint(&[&["console", "port"], &never[..]].concat(), "");
+    let output = stay.glint("console port --send info --until never --timeout 1", "");
     assert_eq!(output.status.code(), Some(1));
     let error = String::from_utf8(output.stderr).unwrap();
     assert!(
@@ -139,11 +131,7 @@ fn programs_use_one_board_in_turn() {
 
     let litex_term = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/litex_term");
     let mut terminal = Terminal::start(&litex_term, &[port.to_str().unwrap()]);
-    let mut seconds = 0;
-    let mut is_over = || {
-        seconds += 1;
-        seconds > PATIENCE
-    };
+    let mut is_over = patience(PATIENCE);
     terminal.type_in(b"info triangles\r");
     terminal.wait_for("triangles 320", &mut is_over);
     terminal.wait_for("ok", &mut is_over);
@@ -152,27 +140,32 @@ fn programs_use_one_board_in_turn() {
     terminal.type_in(b"\x03");
     assert!(terminal.child.wait().unwrap().success());
 
-    stay.succeed(&["console", "port", "--send", "info"], "");
+    stay.succeed("console port --send info", "");
     let pid = stay.child.id().to_string();
     assert!(Command::new("kill").arg(pid).status().unwrap().success());
     assert!(stay.child.wait().unwrap().success());
     assert!(!port.is_symlink());
 }
 
-#[test]
-fn a_board_starts_from_an_image() {
+/// Makes an image with the built firmware.
+fn make_image(contents: &[&str], image: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let firmware = root.join("target/firmware/glint.bin");
-    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join("start.bin");
-    let (firmware, image) = (firmware.to_str().unwrap(), image.to_str().unwrap());
     let made = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(["image", "make", "--firmware", firmware, "--scene", "demo"])
-        .args(["--force", "--out", image])
+        .args(["image", "make", "--force", "--out", image, "--firmware"])
+        .arg(root.join("target/firmware/glint.bin"))
+        .args(contents)
         .status();
     assert!(made.unwrap().success());
+}
+
+#[test]
+fn a_board_starts_from_an_image() {
+    let image = Path::new(env!("CARGO_TARGET_TMPDIR")).join("start.bin");
+    let image = image.to_str().unwrap();
+    make_image(&["--scene", "demo"], image);
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
     // A command that comes before the firmware is lost, and repeated. Whatever scene the demo shows by now.
-    let scenes = stay.succeed(&["console", "port", "--send", "scene"], "");
+    let scenes = stay.succeed("console port --send scene", "");
     assert!(scenes.contains("scene start flash\n"), "{scenes}");
 }
 
@@ -182,24 +175,14 @@ fn the_start_with_the_bios_has_progress() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-progress");
     std::fs::create_dir_all(&folder).unwrap();
     let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let firmware = root.join("target/firmware/glint.bin");
     let (image, link) = (path("image.bin"), path("port"));
-    let made = Command::new(env!("CARGO_BIN_EXE_glint"))
-        .args(["image", "make", "--firmware", firmware.to_str().unwrap()])
-        .args(["--force", "--out", &image])
-        .status();
-    assert!(made.unwrap().success());
+    make_image(&[], &image);
     let program = env!("CARGO_BIN_EXE_glint");
     for start in [&["--bios"][..], &["--flash", &image]] {
         let board = ["-c", "exec \"$0\" board --verbose --pty \"$@\" 2>&1"];
         let arguments = [&board[..], &[program, &link], start].concat();
         let mut terminal = Terminal::start(Path::new("sh"), &arguments);
-        let mut seconds = 0;
-        terminal.wait_for("the board starts: ", &mut || {
-            seconds += 1;
-            seconds > PATIENCE
-        });
+        terminal.wait_for("the board starts: ", &mut patience(PATIENCE));
     }
     let mut board = board::emulated_bios().unwrap();
     let meter = board.meter();

@@ -1,21 +1,16 @@
 //! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board are the model's, and those are composed of two
 //! pictures of one eye.
 
-use crate::common::{console, emulator, mesh, renderer};
+use crate::common::{console, drawn_alike, emulator, mesh, plain, renderer, two_objects};
 use glint::board::Board;
-use glint::object::Description;
-use glint::render::{
-    self, FieldSubject, Frame, MeshSubject, Parts, Rendered, Renderer, Route, Subject,
-};
+use glint::render::{self, FieldSubject, Frame, MeshSubject, Rendered, Subject};
 use glint::view;
 use glint_core::appearance::Appearance;
 use glint_core::colour::{Rgb565, Shading, luminance};
 use glint_core::field::Field;
-use glint_core::mesh::Mesh;
 use glint_core::picture::{Backend, Edges, Size};
 use glint_core::quality::Quality;
 use glint_core::stereo::{Stereo, Tint};
-use glint_model::{Object, Placement};
 
 /// The stereo picture composed of the pictures of both eyes.
 fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
@@ -53,19 +48,7 @@ fn counts(rendered: &Rendered) -> impl PartialEq + std::fmt::Debug {
 #[test]
 fn two_eyes_are_the_models() {
     let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
-    let plain = |mesh| MeshSubject::new(Mesh::new_checked(mesh).unwrap());
-    let objects = [
-        "- scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
-        "- scale 0.5,0.5,-1 move 0.5,0.3,0.2 colour 30c0ff",
-    ]
-    .map(|text| {
-        let place = Description::parse(text).unwrap().place;
-        Object {
-            subject: plain(&sphere),
-            placement: Placement::new(place.matrix),
-            colour: place.colour,
-        }
-    });
+    let objects = two_objects(&sphere);
     let appearance = Appearance::default();
     let field = Field::parse("box:0.3,1,0.3").unwrap();
     let field = FieldSubject {
@@ -86,70 +69,42 @@ fn two_eyes_are_the_models() {
     // In a hole of the sponge. With eyes 1 aside, each eye is in a solid part or beyond the sponge.
     let inside = view::look("0,-0.3,0.1,20,10").unwrap();
     let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
+    let mesh = |mesh| Subject::Mesh(plain(mesh));
+    let over = Subject::edges(plain(&sponge), Edges::Over);
+    let hidden = Subject::edges(plain(&sphere), Edges::Hidden);
+    let in_field = Subject::MeshInField(plain(&sphere), field);
     let cases = [
-        (Subject::Mesh(plain(&sphere)), outside, "0.1,2.5", gateware),
-        (Subject::Mesh(plain(&sphere)), outside, "0,0.1", gateware),
-        (Subject::Mesh(plain(&sphere)), outside, "1,1", gateware),
-        (
-            Subject::Mesh(plain(&sphere)),
-            outside,
-            "0.1,2,red-cyan",
-            cpu,
-        ),
+        (mesh(&sphere), outside, "0.1,2.5", gateware),
+        (mesh(&sphere), outside, "0,0.1", gateware),
+        (mesh(&sphere), outside, "1,1", gateware),
+        (mesh(&sphere), outside, "0.1,2,red-cyan", cpu),
         (Subject::Mesh(smooth), outside, "0.1,2.5", gateware),
-        (Subject::Mesh(plain(&sponge)), inside, "0.05,0.5", gateware),
+        (mesh(&sponge), inside, "0.05,0.5", gateware),
         (Subject::Mesh(both_sides), inside, "1,1,red-cyan", gateware),
-        (
-            Subject::edges(plain(&sponge), Edges::Over),
-            inside,
-            "0.05,0.5",
-            gateware,
-        ),
-        (
-            Subject::edges(plain(&sphere), Edges::Hidden),
-            outside,
-            "0.1,2,red-cyan",
-            cpu,
-        ),
+        (over, inside, "0.05,0.5", gateware),
+        (hidden, outside, "0.1,2,red-cyan", cpu),
         (Subject::Objects(&objects), outside, "0.1,2", gateware),
-        (
-            Subject::MeshInField(plain(&sphere), field),
-            outside,
-            "0.1,2,red-cyan",
-            gateware,
-        ),
-        (
-            Subject::MeshInField(plain(&sphere), field),
-            outside,
-            "0.3,1",
-            cpu,
-        ),
+        (in_field, outside, "0.1,2,red-cyan", gateware),
+        (in_field, outside, "0.3,1", cpu),
         // Afterwards: one eye, and a field without a mesh.
-        (Subject::Mesh(plain(&sphere)), outside, "", gateware),
+        (mesh(&sphere), outside, "", gateware),
         (Subject::Field(field), outside, "0.1,2", gateware),
     ];
     let mut board = emulator();
-    let mut renderer = renderer(&mut board).with_route(Route::Memory);
-    let parts = Parts {
-        colour: true,
-        depth: true,
-    };
+    let mut renderer = renderer(&mut board);
     for (number, (subject, view, stereo, backend)) in cases.into_iter().enumerate() {
         let frame = Frame {
             stereo: (!stereo.is_empty()).then(|| Stereo::parse(stereo).unwrap()),
             ..Frame::new(subject, view, Size::W320)
         };
-        let expected = render::on_model(&frame).unwrap();
+        renderer.set_backend(backend);
+        let [found, expected] = drawn_alike(&mut renderer, &frame, &format!("case {number}"));
         if let Some(eyes) = frame.eyes().unwrap() {
             let expected = &expected.image;
             assert!(expected.colour == composed(&[eyes.left, eyes.right], eyes.tint));
             let left = render::on_model(&eyes.left).unwrap().image;
             assert!(expected.depth == left.depth, "case {number}");
         }
-        renderer.set_backend(backend);
-        let found = renderer.render(&frame, parts, &mut |_, _| {}).unwrap();
-        assert!(found.image.colour == expected.image.colour, "case {number}");
-        assert!(found.image.depth == expected.image.depth, "case {number}");
         assert_eq!(counts(&found), counts(&expected), "case {number}");
         let by = found.stats.backend.as_deref();
         let is_smooth = subject.meshes().any(|mesh| mesh.shading == Shading::Smooth);

@@ -107,6 +107,15 @@ impl Terminal {
     }
 }
 
+/// Is over after a number of calls, of which a wait for a terminal makes one a second.
+pub fn patience(seconds: u32) -> impl FnMut() -> bool {
+    let mut left = seconds;
+    move || {
+        left = left.saturating_sub(1);
+        left == 0
+    }
+}
+
 impl Drop for Terminal {
     fn drop(&mut self) {
         // The program has ended already, unless the test failed.

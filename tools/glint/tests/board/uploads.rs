@@ -1,6 +1,6 @@
 //! Uploads of meshes over a line with faults, and uploads of invalid meshes.
 
-use crate::common::{address, console, emulator, info, mesh, running_board};
+use crate::common::{address, console, emulator, info, mesh, read, running_board};
 use glint::board::{Board, BoardError};
 use glint::console::{Console, ConsoleError};
 use glint::fuzz::Random;
@@ -72,24 +72,14 @@ fn an_upload_over_a_bad_line_arrives_bit_for_bit() {
     }
     console.reply(&command).unwrap();
     assert_eq!(info::<String>(&mut console, "scene"), "model");
-    let mut arrived = vec![0; mesh.len()];
-    console
-        .board()
-        .memory()
-        .unwrap()
-        .read_memory(staging, &mut arrived)
-        .unwrap();
-    assert!(arrived == mesh);
+    assert!(read(&mut console, staging, mesh.len()) == mesh);
 }
 
 /// Draws the scene, and reads the colours of its frame of 320×180 pixels from memory.
 fn frame(console: &mut Console<impl Board>) -> Vec<u8> {
     console.command("render").unwrap();
     let address = address(console, "frame");
-    let mut bytes = vec![0; 2 * 320 * 180];
-    let memory = console.board().memory().unwrap();
-    memory.read_memory(address, &mut bytes).unwrap();
-    bytes
+    read(console, address, 2 * 320 * 180)
 }
 
 #[test]
@@ -127,9 +117,8 @@ fn a_bad_upload_leaves_the_old_model() {
     for (number, at) in [(3, 40), (4, last_triangle + 1)] {
         let mut damaged = other.clone();
         damaged[at] ^= 0x80;
-        let refused = transfer::upload(&mut console, &damaged, None, number, quiet)
-            .unwrap_err()
-            .to_string();
+        let refused = transfer::upload(&mut console, &damaged, None, number, quiet);
+        let refused = refused.unwrap_err().to_string();
         assert!(refused.contains("not a mesh"), "byte {at}: {refused}");
     }
     assert_eq!(info::<u32>(&mut console, "triangles"), 12);
