@@ -6,7 +6,7 @@
 //! - [`basis`]: the errors of a camera's basis.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
-//! - [`hand`]: camera frames with a hand, and the errors of the camera's control by it.
+//! - [`gesture`]: camera frames with a hand, and the errors of the camera's control by it.
 //! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
 //! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
 //! - [`picture`]: whole pictures of frames in f64, and the errors of the model's as a monitor shows them.
