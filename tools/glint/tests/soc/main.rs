@@ -223,13 +223,24 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     };
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    let mut replies = send(
+    let start = [
+        "backend gateware",
+        &render::size_command(size),
+        "render",
+        "info",
+    ];
+    let mut replies = send(&mut console, &start.map(str::to_owned));
+    let bytes = read(
         &mut console,
-        &["backend gateware".to_owned(), "info".to_owned()],
+        replies.address("frame"),
+        2 * size.pixel_count(),
     );
+    let pixels = bytes.chunks_exact(2);
+    let pixels = pixels.map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]));
+    console.board().expect("the start", pixels.collect());
     console.board().board.inner().monitor().turn_on();
     // The firmware's count of video frames when the last scene was drawn.
-    let mut drawn = u32::MAX;
+    let mut drawn = replies.number("video_frames");
 
     for (name, mesh, view, cull) in scenes {
         // Further views are drawn without depths, so that the triangle engine writes only the changed part of a frame.
@@ -247,12 +258,9 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             });
             let frame = Frame::new(subject, view, size);
             let Rendered { image, stats } = render::on_model(&frame).unwrap();
-            let mut lines = vec![
-                format!("cull {}", if cull { "on" } else { "off" }),
-                render::size_command(size),
-                render::view_command(&view),
-            ];
+            let mut lines = Vec::new();
             if number == 0 {
+                // First, because the picture follows the other lines while `load` looks at the bytes.
                 // The bytes are already in the staging memory, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
                 let memory = console.board().memory().unwrap();
@@ -261,7 +269,12 @@ fn draw(size: Size, scenes: Vec<Scene>) {
                     .unwrap();
                 lines.push(format!("load {length} {crc32:08x}"));
             }
-            lines.push("info".to_owned());
+            lines.extend([
+                format!("cull {}", if cull { "on" } else { "off" }),
+                render::size_command(size),
+                render::view_command(&view),
+                "info".to_owned(),
+            ]);
             console.board().expect(&name, image.colour);
             replies = send(&mut console, &lines);
             // Waits until the monitor shows the last frame, because `render` would otherwise replace it before.
