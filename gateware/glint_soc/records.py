@@ -276,33 +276,40 @@ impl Attribute {{
     }}
 }}
 
+/// The bytes of a field that begins at byte `at` of a record.
+// As an array: from single bytes the compiler makes more instructions.
+const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {{
+    match record.split_at(at).1.first_chunk() {{
+        Some(bytes) => *bytes,
+        None => [0; N],
+    }}
+}}
+
 """ + "\n".join(parts)
 
 
 def _rust_struct(record):
     """Returns a record of bytes: a struct with the functions to read and to write it, and with the places of its fields."""
-    fields, places, reads, writes = [], [], [], []
+    fields, places, reads, writes, used = [], [], [], [], set()
     for at, field in record.places():
         start, size, end = at // 8, field.bits // 8, (at + field.width) // 8
         places.append(f"    /// Place of the field `{field.name}`.\n"
                       f"    pub const {field.name.upper()}: Range<usize> = {start}..{end};")
         if field.name == "reserved":
-            reads.append((None, [f"_, " * (end - start)]))
             continue
         number = f"{'i' if field.signed else 'u'}{field.bits}"
         kind = field.rust or number
         fields.append(f"    /// {_sentence(field.text)}\n    pub {field.name}: {kind if field.count == 1 else f'[{kind}; {field.count}]'},")
         elements = [[f"b{start + size * i + byte}" for byte in range(size)] for i in range(field.count)]
-        values = [f"{number}::from_le_bytes([{', '.join(names)}])" if size > 1 else names[0] for names in elements]
+        used.update(name for names in elements for name in names)
+        values = [f"{number}::from_le_bytes(field(bytes, {start + size * i}))" for i in range(field.count)]
         values = [f"{field.rust}({value})" if field.rust else value for value in values]
-        reads.append((f"{field.name}: {values[0] if field.count == 1 else '[' + ', '.join(values) + ']'}", elements))
+        value = values[0] if field.count == 1 else f"field(bytes, {start})" if size == 1 else f"[{', '.join(values)}]"
+        reads.append(f"            {field.name}: {value},")
         for i, names in enumerate(elements):
             value = f"self.{field.name}{'' if field.count == 1 else f'[{i}]'}{'.0' if field.rust else ''}"
             writes.append(f"        let [{', '.join(names)}] = {value}.to_le_bytes();" if size > 1 else f"        let {names[0]} = {value};")
-    used = {name for _, elements in reads for names in elements for name in names}
-    taken = ", ".join(f"b{byte}" if f"b{byte}" in used else "_" for byte in range(record.size))
     made = ", ".join(f"b{byte}" if f"b{byte}" in used else "0" for byte in range(record.size))
-    set_fields = "\n".join(f"            {read}," for read, _ in reads if read)
     lines = "\n".join
     default = "Default, " if record.size <= 32 else ""
     return f"""/// {record.text}
@@ -318,9 +325,8 @@ impl {record.name} {{
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {{
-        let [{taken}] = *bytes;
         Self {{
-{set_fields}
+{lines(reads)}
         }}
     }}
 

@@ -36,6 +36,15 @@ impl Attribute {
     }
 }
 
+/// The bytes of a field that begins at byte `at` of a record.
+// As an array: from single bytes the compiler makes more instructions.
+const fn field<const N: usize>(record: &[u8], at: usize) -> [u8; N] {
+    match record.split_at(at).1.first_chunk() {
+        Some(bytes) => *bytes,
+        None => [0; N],
+    }
+}
+
 /// Header of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MeshHeader {
@@ -79,16 +88,15 @@ impl MeshHeader {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31] = *bytes;
         Self {
-            magic: [b0, b1, b2, b3],
-            length: u32::from_le_bytes([b4, b5, b6, b7]),
-            chunks: u32::from_le_bytes([b8, b9, b10, b11]),
-            vertices: u32::from_le_bytes([b12, b13, b14, b15]),
-            triangles: u32::from_le_bytes([b16, b17, b18, b19]),
-            radius: u32::from_le_bytes([b20, b21, b22, b23]),
-            checksum: u32::from_le_bytes([b24, b25, b26, b27]),
-            attributes: u32::from_le_bytes([b28, b29, b30, b31]),
+            magic: field(bytes, 0),
+            length: u32::from_le_bytes(field(bytes, 4)),
+            chunks: u32::from_le_bytes(field(bytes, 8)),
+            vertices: u32::from_le_bytes(field(bytes, 12)),
+            triangles: u32::from_le_bytes(field(bytes, 16)),
+            radius: u32::from_le_bytes(field(bytes, 20)),
+            checksum: u32::from_le_bytes(field(bytes, 24)),
+            attributes: u32::from_le_bytes(field(bytes, 28)),
         }
     }
 
@@ -130,10 +138,9 @@ impl ChunkHeader {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, _, _, _, _, _, _, _, _] = *bytes;
         Self {
-            vertices: u32::from_le_bytes([b0, b1, b2, b3]),
-            triangles: u32::from_le_bytes([b4, b5, b6, b7]),
+            vertices: u32::from_le_bytes(field(bytes, 0)),
+            triangles: u32::from_le_bytes(field(bytes, 4)),
         }
     }
 
@@ -170,11 +177,10 @@ impl Vertex {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, _, _] = *bytes;
         Self {
-            position: [i16::from_le_bytes([b0, b1]), i16::from_le_bytes([b2, b3]), i16::from_le_bytes([b4, b5])],
-            normal: [i16::from_le_bytes([b6, b7]), i16::from_le_bytes([b8, b9]), i16::from_le_bytes([b10, b11])],
-            colour: Rgb565(u16::from_le_bytes([b12, b13])),
+            position: [i16::from_le_bytes(field(bytes, 0)), i16::from_le_bytes(field(bytes, 2)), i16::from_le_bytes(field(bytes, 4))],
+            normal: [i16::from_le_bytes(field(bytes, 6)), i16::from_le_bytes(field(bytes, 8)), i16::from_le_bytes(field(bytes, 10))],
+            colour: Rgb565(u16::from_le_bytes(field(bytes, 12))),
         }
     }
 
@@ -216,11 +222,10 @@ impl Triangle {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, _, _] = *bytes;
         Self {
-            indices: [u16::from_le_bytes([b0, b1]), u16::from_le_bytes([b2, b3]), u16::from_le_bytes([b4, b5])],
-            colour: Rgb565(u16::from_le_bytes([b6, b7])),
-            normal: [i16::from_le_bytes([b8, b9]), i16::from_le_bytes([b10, b11]), i16::from_le_bytes([b12, b13])],
+            indices: [u16::from_le_bytes(field(bytes, 0)), u16::from_le_bytes(field(bytes, 2)), u16::from_le_bytes(field(bytes, 4))],
+            colour: Rgb565(u16::from_le_bytes(field(bytes, 6))),
+            normal: [i16::from_le_bytes(field(bytes, 8)), i16::from_le_bytes(field(bytes, 10)), i16::from_le_bytes(field(bytes, 12))],
         }
     }
 
@@ -256,10 +261,9 @@ impl TextureCoordinates {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7] = *bytes;
         Self {
-            s: i32::from_le_bytes([b0, b1, b2, b3]),
-            t: i32::from_le_bytes([b4, b5, b6, b7]),
+            s: i32::from_le_bytes(field(bytes, 0)),
+            t: i32::from_le_bytes(field(bytes, 4)),
         }
     }
 
@@ -440,12 +444,11 @@ impl FlashHeader {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, b12, b13, b14, b15] = *bytes;
         Self {
-            magic: [b0, b1, b2, b3],
-            length: u32::from_le_bytes([b4, b5, b6, b7]),
-            items: u32::from_le_bytes([b8, b9, b10, b11]),
-            checksum: u32::from_le_bytes([b12, b13, b14, b15]),
+            magic: field(bytes, 0),
+            length: u32::from_le_bytes(field(bytes, 4)),
+            items: u32::from_le_bytes(field(bytes, 8)),
+            checksum: u32::from_le_bytes(field(bytes, 12)),
         }
     }
 
@@ -491,12 +494,11 @@ impl FlashEntry {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7, b8, b9, b10, b11, _, _, _, _, b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47] = *bytes;
         Self {
-            kind: u32::from_le_bytes([b0, b1, b2, b3]),
-            length: u32::from_le_bytes([b4, b5, b6, b7]),
-            checksum: u32::from_le_bytes([b8, b9, b10, b11]),
-            name: [b16, b17, b18, b19, b20, b21, b22, b23, b24, b25, b26, b27, b28, b29, b30, b31, b32, b33, b34, b35, b36, b37, b38, b39, b40, b41, b42, b43, b44, b45, b46, b47],
+            kind: u32::from_le_bytes(field(bytes, 0)),
+            length: u32::from_le_bytes(field(bytes, 4)),
+            checksum: u32::from_le_bytes(field(bytes, 8)),
+            name: field(bytes, 16),
         }
     }
 
@@ -560,10 +562,9 @@ impl FirmwareHeader {
 
     /// The record with these bytes in memory.
     pub const fn from_bytes(bytes: &[u8; Self::BYTES]) -> Self {
-        let [b0, b1, b2, b3, b4, b5, b6, b7] = *bytes;
         Self {
-            length: u32::from_le_bytes([b0, b1, b2, b3]),
-            checksum: u32::from_le_bytes([b4, b5, b6, b7]),
+            length: u32::from_le_bytes(field(bytes, 0)),
+            checksum: u32::from_le_bytes(field(bytes, 4)),
         }
     }
 

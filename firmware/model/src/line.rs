@@ -47,6 +47,16 @@ pub struct Segment {
     pub depth: LineDepth,
 }
 
+/// Writes an end of a segment, with the depth `w`, to its words in memory.
+// Called for each end: the firmware, optimised for size, would not unroll a loop over the ends.
+const fn put_end(words: &mut [u32], place: &ScreenVertex, w: u32, side: u16) {
+    // Each field begins a word, and bits beyond it have no effect.
+    words[segment_end::X.word()] = place.x as u32;
+    words[segment_end::Y.word()] = place.y as u32;
+    words[segment_end::W.word()] = w;
+    words[segment_end::SIDE.word()] = side as u32;
+}
+
 impl Segment {
     /// Number of 32-bit words in memory.
     pub const WORDS: usize = 2 * Self::END;
@@ -60,18 +70,11 @@ impl Segment {
             LineDepth::Over => ([(NEAREST << 6) as u32; 2], 0),
             LineDepth::Tested { bias } => ([self.ends[0].w, self.ends[1].w], bias),
         };
-        let side = [self.colour.0, bias];
+        let [first, second] = &self.ends;
         let mut words = [0; Self::WORDS];
-        let mut end = 0;
-        while end < 2 {
-            let start = Self::END * end;
-            // Each field begins a word, and bits beyond it have no effect.
-            words[start + segment_end::X.word()] = self.ends[end].x as u32;
-            words[start + segment_end::Y.word()] = self.ends[end].y as u32;
-            words[start + segment_end::W.word()] = w[end];
-            words[start + segment_end::SIDE.word()] = side[end] as u32;
-            end += 1;
-        }
+        let (start, end) = words.split_at_mut(Self::END);
+        put_end(start, first, w[0], self.colour.0);
+        put_end(end, second, w[1], bias);
         words
     }
 

@@ -49,6 +49,8 @@ impl Lit {
 }
 
 /// The light of a vertex, for front faces and for back faces.
+// Aligned to words, so that a copy moves words wherever it is on the stack.
+#[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
     /// Light for front faces.
