@@ -343,13 +343,13 @@ fn register(node: Node, name: &str, offset: u32, access: Access) -> Result<Regis
     for field in node.descendants().filter(|node| node.has_tag_name("field")) {
         let lsb: u32 = number(child_text(field, "lsb")?)?;
         let msb: u32 = number(child_text(field, "msb")?)?;
-        let name = child_text(field, "name")?.to_lowercase();
+        let field_name = child_text(field, "name")?.to_lowercase();
         ensure!(
             lsb <= msb && msb < 32,
-            "field `{name}` of `{name}` has the bits {msb} to {lsb}"
+            "field `{field_name}` of `{name}` has the bits {msb} to {lsb}"
         );
         fields.push(Field {
-            name,
+            name: field_name,
             lsb,
             width: msb - lsb + 1,
             description: field_description(&flowed(
