@@ -101,13 +101,13 @@ impl Arena {
     }
 
     /// Lends the first `length` bytes of [`staging`](Self::staging), as they are, until [`keep_lent`](Self::keep_lent) or
-    /// [`give_back`](Self::give_back) of this arena. `None` as of [`keep`](Self::keep).
+    /// [`give_back`](Self::give_back) of this arena. `None` in the same cases as [`keep`](Self::keep).
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
         let region = self.keep(length)?;
         let start = self.regions.range(region).start;
         self.lent += 1;
-        // SAFETY: the region has at least `length` bytes of the memory, which `new` took for good. Only the loan has its number, so that
-        // nothing else is made of its bytes before the loan is gone; it is apart from all other regions, and stays in place because
+        // SAFETY: the region has at least `length` bytes of the memory, which `new` took for good. Only the loan knows the region's number,
+        // so no other reference to its bytes is made before the loan ends; it overlaps no other region, and stays in place because
         // `close_gaps` moves nothing while a region is lent.
         let bytes =
             unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(start), length) };

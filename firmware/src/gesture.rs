@@ -47,9 +47,9 @@ pub fn on_interrupt() {
 pub struct Cycles {
     /// Number of frames so far.
     pub frames: u32,
-    /// Cycles of the soft core for all frames, with interrupts during this work.
+    /// Number of cycles of the soft core for all frames, with interrupts during this work.
     pub total: u64,
-    /// Cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
+    /// Number of cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
     pub latency: u64,
     /// The largest latency so far.
     pub worst: u64,

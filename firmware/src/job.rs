@@ -75,7 +75,7 @@ impl Job {
     }
 
     /// Whether the demo may show another scene meanwhile. It stands still during jobs that print, and during the upload of a log: the
-    /// attitudes stay in the staging memory, so no mesh of the flash may come behind the log.
+    /// attitudes stay in the staging memory, so no mesh of the flash may be placed after the log.
     pub const fn allows_demo(&self) -> bool {
         match self {
             Self::Transfer(transfer) => match transfer.purpose {

@@ -3,12 +3,14 @@
 use glint_core::fixed::U20_12;
 use glint_core::picture::Size;
 
-/// Colours in RGB565: of the ground, of a hand that steers the camera, and of one that does not.
+/// Colour of the background, in RGB565.
 const GROUND: u16 = 0x18e3;
+/// Colour of a hand that steers the camera, in RGB565.
 const STEERS: u16 = 0x07e0;
+/// Colour of a hand that does not steer the camera, in RGB565.
 const STANDS: u16 = 0xad55;
 
-/// Parts of the picture's width that the mark has.
+/// Width of the picture in widths of the mark.
 const PARTS: u32 = 8;
 
 /// The mark of the hand's position in a frame of the image sensor.

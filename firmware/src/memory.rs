@@ -23,7 +23,7 @@ pub struct Memory {
     pub copy: &'static mut [u8],
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
-    /// Memory for copies of meshes with turned normals.
+    /// Memory for copies of meshes with transformed normals.
     pub turned: Arena,
     /// Memory for the edges of the shown mesh.
     pub edges: &'static mut [u32],

@@ -50,7 +50,7 @@ pub struct Models {
 }
 
 impl Models {
-    /// The models at start. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with turned
+    /// The models at start. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with transformed
     /// normals, and `cube_program` the built-in wireframe program.
     ///
     /// # Errors

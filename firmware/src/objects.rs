@@ -1,4 +1,4 @@
-//! The objects of the scene as drawn: meshes with places, and copies of meshes with turned normals.
+//! The objects of the scene as drawn: meshes with places, and copies of meshes with transformed normals.
 
 use core::{ptr, slice};
 
@@ -12,10 +12,10 @@ use heapless::Vec;
 
 use crate::arena::Arena;
 
-/// Number of normals that are turned between two calls of `progress` in [`Objects::update`].
+/// Number of normals transformed between two calls of `progress` in [`Objects::update`].
 const NORMALS_A_CALL: u32 = 8;
 
-/// The objects as drawn. Placements, and copies of meshes with turned normals, are made when an object changes, not for each
+/// The objects as drawn. Placements, and copies of meshes with transformed normals, are made when an object changes, not for each
 /// frame.
 pub struct Objects {
     /// The mesh of each object.
@@ -35,16 +35,16 @@ struct Source {
     copy: Option<Copy>,
 }
 
-/// A copy of a mesh with turned normals.
+/// A copy of a mesh with transformed normals.
 struct Copy {
     /// The memory of the copy.
     region: Region,
-    /// The matrix that has turned the normals.
+    /// The matrix that has transformed the normals.
     normals: Normals,
 }
 
 impl Objects {
-    /// No objects. `memory` is for copies of meshes with turned normals.
+    /// No objects. `memory` is for copies of meshes with transformed normals.
     pub const fn new(memory: Arena) -> Self {
         Self {
             sources: Vec::new(),
@@ -73,8 +73,8 @@ impl Objects {
     }
 
     /// Makes the objects those of `scene`, with the meshes that `find` returns for their names. Gives each object whose normals a matrix
-    /// turns a copy of its mesh with turned normals, as long as there is memory, so that the gateware can draw it. Calls `progress` at
-    /// short intervals. No frame may be in progress.
+    /// transforms a copy of its mesh with transformed normals, as long as there is memory, so that the gateware can draw it. Calls
+    /// `progress` at short intervals. No frame may be in progress.
     ///
     /// An object that has not changed since the last call keeps its copy.
     pub fn update(

@@ -14,8 +14,9 @@ use embedded_graphics::text::{Baseline, Text};
 use embedded_graphics::{Drawable, Pixel};
 use glint_core::picture::Size;
 
-/// Pixels between the edges of the picture and the text, and lines of pixels of a line of text.
+/// Margin between the text and the edges of the picture, in pixels.
 const MARGIN: i32 = 4;
+/// Height of a line of text, in pixels.
 const LINE: i32 = 11;
 
 /// Writes text over a picture, in white on black. Text beyond the edges is cut.

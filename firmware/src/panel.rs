@@ -55,7 +55,7 @@ pub fn leds(demo: &Demo, blinks: bool) -> u16 {
     leds
 }
 
-/// Segments of the digits: frames a second at the left, and at the right the number of the demo's scene, in turn with that of the last
+/// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, in turn with that of the last
 /// error.
 pub fn digits(demo: &Demo, rate: Option<u64>, errors_turn: bool) -> [u8; 8] {
     let left = rate.map(Display::number).unwrap_or_default();

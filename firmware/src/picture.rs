@@ -26,7 +26,7 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Number of such frames a second.
+    /// Number of such frames per second.
     pub fn rate(&self, frequency: Frequency) -> u64 {
         u64::from(frequency.hertz()) / self.cycles.max(1)
     }
@@ -93,7 +93,7 @@ impl Picture {
             })
     }
 
-    /// Requests a new frame, also of the same scene.
+    /// Requests a new frame even if the scene has not changed.
     pub fn request(&mut self) {
         self.content = None;
     }

@@ -28,7 +28,7 @@ pub struct Renderer {
     pub scratch: Scratch,
     /// The edges of the mesh whose edges were shown last.
     pub edges: EdgeList<'static>,
-    /// Frequency of the clock, for the frames a second in the overlay.
+    /// Frequency of the clock, for the frames per second in the overlay.
     pub frequency: Frequency,
     /// The renderer of the gateware, if the SoC has a triangle engine.
     pub gateware: Option<GatewareRenderer>,

@@ -6,7 +6,7 @@ FOLDER is what `python -m glint_soc` has written. The steps, one after the other
     route          netlist.json, NAME.lpf      ──▶ FOLDER/ecp5/routed.config, report.json
     bitstream      routed.config               ──▶ FOLDER/NAME.bit, FOLDER/bitstream.txt
 
-`pack` in place of `route` and `bitstream` counts what the netlist takes of the FPGA, also of more than it has:
+`pack` in place of `route` and `bitstream` counts what the netlist takes of the FPGA, even if that is more than it has:
 
     pack           netlist.json                ──▶ FOLDER/ecp5/cells.json
 
@@ -148,7 +148,7 @@ def main():
     build = Build(arguments.folder.resolve())
     start = time.monotonic()
     getattr(build, arguments.step)()
-    # The memory is in units of 1024 bytes.
+    # `ru_maxrss` is in KiB.
     usage = resource.getrusage(resource.RUSAGE_CHILDREN)
     build.measured(arguments.step).write_text(
         json.dumps([time.monotonic() - start, usage.ru_utime + usage.ru_stime, usage.ru_maxrss * 1024]))

@@ -1,4 +1,4 @@
-// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO behind it. A token that is
+// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO after it. A token that is
 // not taken is reported by the next one, and no other is reported. After a frame has ended, four clocks after the start or later, no
 // frame ends inside a line, and each line that ends has bytes.
 

@@ -1,4 +1,4 @@
-// Proof of `line_raster`, which draws pieces of lines a pixel a clock, for any pattern of valid and ready on both sides. Pieces are
+// Proof of `line_raster`, which draws pieces of lines one pixel per clock, for any pattern of valid and ready on both sides. Pieces are
 // horizontal and have one or two pixels; their pixels are numbered by column and depth code.
 // Each pixel of each piece comes out once, in order, with all its fields, and no other pixel does. A group becomes valid at the
 // output even if the consumer is not ready, and pieces are taken in time.

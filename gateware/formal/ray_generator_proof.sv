@@ -62,7 +62,7 @@ module ray_generator_proof (
         shown_in_time:     assert (unseen < 6'd30);
 
         all_came: cover (finished && !busy);
-        // Rays enter while there are credits, with two places for rays behind the pipeline and one at its output.
+        // Rays enter while there are credits, with two places for rays after the pipeline and one at its output.
         waits:    cover (begun && out_valid && !out_ready && place.column == 11'd1 && stereo);
     end
 endmodule

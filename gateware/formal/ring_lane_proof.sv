@@ -12,7 +12,7 @@ module ring_lane_proof (
     input wire       out_ready
 );
     // PLACES: number of ends for which the lane has room. WITHIN: upper bound on the clocks with a ready consumer from the entry
-    // of a ray until its end is taken: two rounds of 9 clocks, then the wait in the FIFO behind the end of the other ray.
+    // of a ray until its end is taken: two rounds of 9 clocks, then the wait in the FIFO after the end of the other ray.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;

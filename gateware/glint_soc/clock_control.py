@@ -4,7 +4,7 @@ from litex.gen import LiteXModule
 from migen import If, ResetSignal, Signal
 
 LINGER = 31
-"""Clocks after the last work. The way of an event to its counter and that of an access through a register bank are shorter."""
+"""Clocks after the last work. The path of an event to its counter and that of an access through a register bank are shorter."""
 
 
 class ClockControl(LiteXModule):

@@ -85,7 +85,7 @@ features! {
     CPU = "cpu";
     /// Text over the picture.
     OVERLAY = "overlay";
-    /// Scenes in turn by the board alone, and what its flash holds: scenes, lists of scenes and meshes.
+    /// Demo: shows scenes in turn without a host; scenes, lists and meshes from the flash.
     DEMO = "demo";
     /// Benchmarks.
     BENCH = "bench";

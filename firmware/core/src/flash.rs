@@ -307,7 +307,7 @@ impl<'a> Image<'a> {
     }
 }
 
-/// The bitstream in its slot, without the erased bytes behind it; `None` for an erased slot.
+/// The bitstream in its slot, without the erased bytes after it; `None` for an erased slot.
 fn bitstream(slot: &[u8]) -> Result<Option<&[u8]>, FlashError> {
     let Some(last) = slot.iter().rposition(|byte| *byte != 0xff) else {
         return Ok(None);
@@ -366,7 +366,7 @@ fn kind_of(code: u32) -> Option<Kind> {
     Kind::ALL.into_iter().find(|kind| *kind as u32 == code)
 }
 
-/// The name of an entry, behind which all bytes are 0.
+/// The name of an entry, after which all bytes are 0.
 fn name_of(entry: &[u8; FlashEntry::BYTES]) -> Option<&str> {
     let field = entry.get(FlashEntry::NAME)?;
     let end = field.iter().position(|byte| *byte == 0)?;

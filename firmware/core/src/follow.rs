@@ -1,7 +1,7 @@
 //! Cameras steered by the attitude of a sensor: a camera that turns in place, and a camera that orbits the origin.
 //!
 //! The camera's basis is computed from the attitude's quaternion without angles, so it has no singularity: a small turn of the
-//! sensor turns the picture by an equally small angle, also at the zenith and the nadir.
+//! sensor turns the picture by an equally small angle, even at the zenith and the nadir.
 
 use core::fmt;
 

@@ -1,4 +1,4 @@
-//! Code shared by firmware and host: cameras, also those that show whole meshes, sines, the sensor and its attitude, the hand and
+//! Code shared by firmware and host: cameras, including those that show whole meshes, sines, the sensor and its attitude, the hand and
 //! its image sensor, distance fields and lights, the formats of meshes and flash images, wireframe programs, transfers over a
 //! serial line, the console's grammar, scenes, the demo of a board that runs alone, and tasks that take turns.
 //!

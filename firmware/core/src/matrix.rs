@@ -1,8 +1,8 @@
 //! Model matrices: the place of an object in the world.
 //!
 //! A [`Matrix`] maps a point P of a mesh to the point A·P + t of the world, with the 3×3 matrix A and the translation t in
-//! Q8.24. Every matrix is in range and not singular: a constructor or an operation whose result is not is refused with the row.
-//! No operation saturates.
+//! Q8.24. Every matrix is in range and not singular: an operation whose result would be out of range or singular is refused, with
+//! an error that names the row. No operation saturates.
 
 use core::fmt;
 

@@ -177,7 +177,7 @@ impl<'a> Mesh<'a> {
         self.radius
     }
 
-    /// The records of all chunks, including the chunks' headers, and without the optional attributes behind them: what the triangle
+    /// The records of all chunks, including the chunks' headers, and without the optional attributes after them: what the triangle
     /// engine walks.
     pub const fn records(&self) -> &'a [[u8; WORD]] {
         self.records
@@ -285,7 +285,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// The walk from the first record behind the mesh's header on.
+    /// The walk from the first record after the mesh's header on.
     const fn new(records: &'a [[u8; WORD]]) -> Self {
         Self {
             rest: records,
@@ -364,7 +364,7 @@ impl<'a> Iterator for Chunks<'a> {
     }
 }
 
-/// Words of the arrays of the attributes whose bits are set, for this number of vertices. Each array begins at a word.
+/// Number of words that the arrays of the attributes set in `bits` take for `vertices` vertices. Each array starts at a word boundary.
 fn array_words(bits: u32, vertices: u32) -> usize {
     let present = Attribute::ALL.iter().filter(|one| bits & one.bit() != 0);
     present

@@ -3,10 +3,10 @@
 use crate::choice::choices;
 use crate::picture::Size;
 
-/// A preset between frames a second and errors of the picture (docs/scenes.md, "Quality").
+/// A preset that trades frames per second for accuracy of the picture (docs/scenes.md, "Quality").
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// The most frames a second.
+    /// Most frames per second.
     Fast,
     /// Few errors, and four times the pixels of [`Fast`](Self::Fast).
     #[default]

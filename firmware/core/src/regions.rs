@@ -76,8 +76,9 @@ impl<const N: usize> Regions<N> {
         }
     }
 
-    /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy` with each range that is
-    /// moved, and with the position of its first byte from then on, which is before the range and after all regions that were moved.
+    /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy(range, to)` for each
+    /// region that moves, lowest first; `to` is the new position of its first byte. `to` is below `range.start` and not below the end of
+    /// any region already moved.
     pub fn close_gaps(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
         let mut end = 0;
         let later = |range: &&mut Range<usize>, end| range.start < range.end && range.start >= end;

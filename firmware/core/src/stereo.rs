@@ -20,7 +20,7 @@ pub const FORM: &str = "E,ZERO[,red-blue|red-cyan]";
 /// Colours of the glasses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tint {
-    /// The left eye is red, the right eye blue; the green channel is the smaller of both eyes' values.
+    /// The left eye is red, the right eye blue; the green channel is the smaller of the two eyes' values.
     #[default]
     RedBlue,
     /// The left eye is red, the right eye is green and blue.

@@ -14,7 +14,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// The turn of a task that has worked or not.
+    /// The turn of a task, from whether it has worked.
     pub const fn worked(worked: bool) -> Self {
         if worked { Self::Again } else { Self::Wait }
     }

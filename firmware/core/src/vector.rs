@@ -2,7 +2,7 @@
 
 use crate::root::inverse_root;
 
-/// Scales a vector to length 1, in units of 2^−`BITS`, of any units before; `None` for the zero vector. `BITS` is at most 30.
+/// Normalises a vector given in any unit; the result is in units of 2^−`BITS`. `None` for the zero vector. `BITS` is at most 30.
 ///
 /// The error of each component is at most 0.501 units, and 2^−29 more if components of 2^31 and above lose bits. A component is at most 1
 /// in magnitude.

@@ -10,8 +10,9 @@ use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 /// Cycles per second of a clock with one cycle in 4 µs. Every frequency is a multiple of this number.
 const UNIT: u32 = 250_000;
 
-/// Lowest and highest frequency in units of `UNIT`.
+/// Lowest frequency in units of `UNIT`.
 const LOWEST: u32 = 5;
+/// Highest frequency in units of `UNIT`.
 const HIGHEST: u32 = 1000;
 
 /// A frequency of the SoC's clock: a multiple of 250 kHz, from 1.25 MHz to 250 MHz.

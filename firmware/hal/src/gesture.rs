@@ -37,7 +37,7 @@ pub struct Counts {
     pub count: u32,
     /// Sums of the x and of the y coordinates of these pixels.
     pub sums: [u32; 2],
-    /// Coordinates x and y of the top left and the bottom right corner of the smallest rectangle with all these pixels.
+    /// Coordinates x and y of the top left and the bottom right corner of the bounding box of these pixels.
     pub corners: [[u16; 2]; 2],
 }
 

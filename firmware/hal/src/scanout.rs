@@ -41,7 +41,7 @@ impl Scale {
 /// The registers of the scan-out block, whose presence in this SoC has been checked.
 pub struct Scanout {
     registers: scanout::Scanout,
-    /// Pixels of a line of the screen.
+    /// Number of pixels of a line of the screen.
     width: u32,
 }
 

@@ -113,7 +113,7 @@ impl DelayNs for Clock {
     }
 }
 
-/// A delay for futures of which nothing polls meanwhile: the CPU waits, as for `embedded_hal`'s delays.
+/// A delay for futures that are not polled meanwhile: it blocks the CPU, as `embedded_hal`'s delays do.
 pub struct Waiting(pub Clock);
 
 impl embedded_hal_async::delay::DelayNs for Waiting {

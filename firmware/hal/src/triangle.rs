@@ -156,11 +156,11 @@ pub struct Raster {
 /// Counts of the last geometry pass, and of the passes that it continued.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Triangles of the mesh of the last pass.
+    /// Number of triangles of the mesh of the last pass.
     pub triangles: u32,
     /// Descriptors made by all passes.
     pub descriptors: u32,
-    /// Triangles that need clipping, in all passes.
+    /// Number of triangles that need clipping, in all passes.
     pub exceptions: u32,
 }
 

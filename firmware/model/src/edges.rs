@@ -102,7 +102,7 @@ fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
     // Depths have 24 bits, so their differences fit.
     let w = [b.w as i32 - a.w as i32, c.w as i32 - a.w as i32];
     let bias = |along: [i32; 2]| {
-        // Depths are in 2^-6 codes, ways in 2^-8 pixels, and the area in 2^-16 square pixels.
+        // Depths are in 2^-6 codes, distances in 2^-8 pixels, and the area in 2^-16 square pixels.
         let twice = 4 * determinant(w, along).unsigned_abs();
         let double = 2 * area.unsigned_abs();
         // Rounded up. The soft core divides 64 bits by a function, which `div_ceil` would call twice.

@@ -46,21 +46,21 @@ pub enum RenderError {
     Buffer {
         /// The buffer.
         buffer: Buffer,
-        /// Pixels of the picture.
+        /// Number of pixels of the picture.
         expected: usize,
         /// Elements of the buffer.
         found: usize,
     },
     /// The scratch memory has room for fewer vertices than the largest chunk of the mesh.
     Scratch {
-        /// Vertices of the largest chunk.
+        /// Number of vertices of the largest chunk.
         expected: usize,
-        /// Vertices that fit the scratch memory.
+        /// Number of vertices that fit the scratch memory.
         found: usize,
     },
     /// The memory for the list of a mesh's edges is too small.
     Edges {
-        /// Triangles of the mesh.
+        /// Number of triangles of the mesh.
         triangles: u32,
     },
     /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.

@@ -90,7 +90,7 @@ pub struct Sums {
     pub count: u32,
     /// Sums of their columns, at most 589,363,200, u30, and of their lines, at most 331,315,200, u29.
     pub sums: [u32; 2],
-    /// The smallest rectangle with all of them. Without a pixel its corners are exchanged: first 2047, last 0.
+    /// Bounding box of these pixels. Without a pixel its corners are exchanged: first 2047, last 0.
     pub bounds: Region,
     /// Sums of x·x, x·y and y·y, below 2^39: u40.
     pub products: [u64; 3],
@@ -115,7 +115,7 @@ impl Sums {
         let [right, bottom] = settings.region.last;
         let is_row_inside = (top..=bottom).contains(&y);
         let mut run = 0;
-        // A pixel behind the line ends its last run.
+        // A pixel past the end of the line ends its last run.
         for (x, is_marked) in (0_u16..).zip(marks.chain([false])) {
             if is_marked && is_row_inside && (left..=right).contains(&x) {
                 run += 1;

@@ -2,7 +2,7 @@
 //!
 //! A line has one pixel in each column if its end points are further apart horizontally than vertically, else one in each
 //! row. This axis is its *major* axis, the other one its *minor* axis. Which pixels belong to it is the diamond-exit rule:
-//! those whose diamond |x| + |y| < 1/2 pixel about the centre the way from the first end point to the second one leaves.
+//! those whose diamond |x| + |y| < 1/2 pixel about the centre the path from the first end point to the second one leaves.
 //! [`Line::new`] is the set-up, [`Line::pixels`] walks the part in a rectangle, and [`draw`] writes its pixels. The engine cuts lines into
 //! [`Piece`]s.
 
@@ -169,8 +169,8 @@ pub struct Line {
 struct Coordinate {
     /// Number of the column or row.
     pixel: i32,
-    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. The upper
-    /// border belongs to the column or row, or the lower one of a mirrored axis.
+    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. A point
+    /// on the upper border belongs to the column or row; on a mirrored axis, one on the lower border.
     place: i32,
 }
 

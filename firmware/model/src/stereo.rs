@@ -130,9 +130,10 @@ fn luminance(pixel: u16) -> u8 {
     ((LOW[usize::from(low)] + HIGH[usize::from(high)]) >> 8) as u8
 }
 
-/// Shares of the lower and of the higher byte of a pixel in its luminance, in units of 2^−8; the lower one's with the rounding.
-/// The luminance is a sum of both, because the bits of green that are repeated are all in the higher byte.
+/// Share of the lower byte of a pixel in its luminance, in units of 2^−8, with the rounding. The luminance is the sum of this and of
+/// `HIGH`, because the bits of green that are repeated are all in the higher byte.
 static LOW: [u16; 256] = shares(0, HALF_LUMINANCE);
+/// Share of the higher byte of a pixel in its luminance, in units of 2^−8.
 static HIGH: [u16; 256] = shares(8, 0);
 
 const fn shares(shift: u32, rounding: u16) -> [u16; 256] {

@@ -40,9 +40,9 @@ impl WireframeSubject<'_> {
 /// Counts of a wireframe's picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WireframeStats {
-    /// Segments of the program.
+    /// Number of segments of the program.
     pub segments: u32,
-    /// Segments with a part behind the view plane and within the guard band.
+    /// Number of segments with a part behind the view plane and within the guard band.
     pub lines: u32,
     /// Pixels written; a pixel of several lines counts for each of them.
     pub pixels: u64,

@@ -63,7 +63,7 @@ impl Scene {
     pub fn show(&self, option: OptionName, out: &mut dyn Write) -> fmt::Result {
         let appearance = &self.appearance;
         match option {
-            // The lights that are drawn, also where the scene states none.
+            // The lights that are drawn, even where the scene states none.
             OptionName::Light => {
                 let mut lights = appearance.lighting().lights;
                 if appearance.lights.is_empty() && !self.shows_field() {

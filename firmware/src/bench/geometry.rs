@@ -8,7 +8,7 @@ use glint_variants::reciprocal::reciprocal;
 
 use super::measure::{Report, measure};
 
-/// Measures products of matrices, turned normals and reciprocals, and reports them under the names that `cargo xtask report
+/// Measures products of matrices, transformed normals and reciprocals, and reports them under the names that `cargo xtask report
 /// geometry` gives them.
 pub fn geometry(report: Report) {
     let sizes = ["0.5", "1.5", "0.75"].map(|x| x.parse().unwrap_or(Q8_24::ONE));

@@ -24,7 +24,7 @@ const FRAMES: u32 = 8;
 ///
 /// # Errors
 /// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene; or a number of
-/// frames stands behind a kernel that draws none.
+/// frames follows a kernel that draws none.
 pub fn run<'l>(
     machine: &mut Machine,
     benchmark: Option<(&'l str, Option<u32>)>,

@@ -97,7 +97,7 @@ pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, Comm
 fn lend<'l>(machine: &mut Machine, name: &'l str, length: usize) -> Result<Loan, CommandError<'l>> {
     // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
     machine.replay.take_if(|replay| replay.is_done());
-    // Uploads may move, and another mesh may come to the place of the one whose edges the list has.
+    // Uploads may move, and another mesh may be loaded at the address of the one whose edges the list has.
     machine.renderer.edges.clear();
     let memory = machine.models.lend(length);
     memory.ok_or(CommandError::TooLong {

@@ -143,7 +143,7 @@ impl Buffers {
 /// How much of a wireframe's program is projected to segments.
 #[derive(Default)]
 pub struct Projected {
-    /// Words of the program.
+    /// Number of words of the program.
     pub words: usize,
     /// Counts of these words, without pixels.
     pub stats: WireframeStats,

@@ -104,7 +104,7 @@ pub enum Unsupported {
     Winding,
     /// Ambient light on the dark sides of smooth triangles: the engine keeps one light for a vertex, that of one side.
     DarkSides,
-    /// Memory for a copy of the object's mesh with turned normals. Objects count from 1.
+    /// Memory for a copy of the object's mesh with transformed normals. Objects count from 1.
     Normals {
         /// Number of the object.
         object: usize,
@@ -120,7 +120,7 @@ impl fmt::Display for Unsupported {
             Self::DarkSides => f.write_str("no ambient light on smooth triangles with `cull off`"),
             Self::Normals { object } => write!(
                 f,
-                "no memory for the turned normals of object {object}, expected fewer or smaller objects of different scales"
+                "not enough memory for the transformed normals of object {object}, expected fewer or smaller objects with non-uniform scale"
             ),
         }
     }

@@ -54,7 +54,7 @@ pub struct GeometryPasses {
     shading: Shading,
     /// Number of the mesh whose pass was started last.
     number: usize,
-    /// Triangles of the meshes whose passes have ended, and number of these that were clipped and then drawn.
+    /// Number of triangles of the meshes whose passes have ended, and number of these that were clipped and then drawn.
     triangles: u32,
     drawn_clipped: u32,
     /// Frame constants of the object whose pass was prepared last.

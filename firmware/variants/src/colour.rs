@@ -5,11 +5,11 @@ use glint_core::colour::Rgb565;
 use crate::kernel::Format::Fixed;
 use crate::kernel::{Kernel, other, shipped};
 
-/// A pixel format: a kernel that packs a colour 0xRRGGBB, and the way back.
+/// A pixel format: a kernel that packs a colour 0xRRGGBB, and the inverse.
 pub struct Pixel {
     /// The kernel.
     pub pack: Kernel<u32, u64>,
-    /// Bits of a pixel.
+    /// Number of bits of a pixel.
     pub bits: u32,
     /// Red, green and blue as the display shows them.
     pub shown: fn(u64) -> [u8; 3],

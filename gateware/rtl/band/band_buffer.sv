@@ -22,7 +22,7 @@
 // `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is
 // written without a depth test, and the stored depth is that of the left eye. The flush composes the colours of both eyes, see
 // band_flush; every pixel must then be drawn for both eyes. Without DEPTHS there is no memory of depths: each stored depth is 0, so
-// every lane of the mask is written. Throughput one group a clock; band_pipe explains the hazards.
+// every lane of the mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first

@@ -19,7 +19,7 @@
 // `first_line` of the picture. For every line that is not empty, the output has a span: the line's first and last row in the
 // band buffer, in order of lines. With `whole` the span has all rows, for every line. `busy` falls when the last span has been
 // taken. The extents of the lines have then moved from `now` to `last`. Latency 6 clocks from `start` to the first span;
-// throughput one line a clock, empty or not.
+// throughput one line per clock, empty or not.
 //
 // `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a plan that is under
 // way. The extents of its lines in `last` are then unknown (after reset: the extents of all lines), and the next band with such

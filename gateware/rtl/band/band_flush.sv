@@ -5,21 +5,21 @@
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
 // One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour where a pixel is
-// not written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. For 1 the left
-// luminance becomes red, the right one blue, and the smaller of both green. For 2 the left one becomes red, and the right one
-// green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a span are read again
-// after its colours: each row gives two words of four 32-bit depths, 0 where a pixel is not written, for the addresses
-// `depth_base` + 2r and `depth_base` + 2r + 1. Words with neighbouring addresses follow each other, so the DDR3 memory seldom
-// has to open another bank.
+// not written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose`
+// is 1, the left luminance becomes red, the right one blue, and the smaller of the two green. If it is 2, the left one becomes
+// red, and the right one green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a
+// span are read again after its colours: each row gives two words of four 32-bit depths, 0 where a pixel is not written, for the
+// addresses `depth_base` + 2r and `depth_base` + 2r + 1. Words with neighbouring addresses follow each other, so the DDR3 memory
+// seldom has to open another bank.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word a clock as far as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
+// word per clock as far as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
 //
 // Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A place in the FIFO
 // is reserved before a row is read, so `out_ready` may stay low for any time.
 //
-// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one row a clock, while `sweeping` is high.
+// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one row per clock, while `sweeping` is high.
 // Nothing may be drawn then. Words that were already read are output meanwhile or later.
 
 `default_nettype none

@@ -6,7 +6,7 @@
 //
 // A lane is written if its mask bit is set and its depth code is at least the stored one; the stored code of a pixel not yet
 // written in this band is 0. A group for one half of the colour (the view of one eye) has no depth test. Latency 3 clocks from
-// `read_row` to `write_*`; throughput one group a clock.
+// `read_row` to `write_*`; throughput one group per clock.
 //
 // Hazard: a group must not read a lane before an earlier group has written it. A group that shares a row and a lane with one
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
@@ -61,7 +61,7 @@ module band_pipe #(
     pixels_t    pixels, comparing;
     logic       issued_valid, issue;
     logic [2:0] occupied;
-    // As many ones, from bit 0 on, as the clocks for which the issued group still waits. Only a valid group waits.
+    // Thermometer code of the clocks that the issued group still has to wait. Only a valid group waits.
     logic [2:0] hold;
 
     assign held        = hold[0];

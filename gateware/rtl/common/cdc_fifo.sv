@@ -1,6 +1,6 @@
 // A FIFO between two clock domains, with DEPTH + 1 places: DEPTH in LUTRAM and one in the output register.
 //
-// Latency 1 clock of `in_clk` and 3 to 4 of `out_clk`, throughput one item a clock of the slower domain. Stream contract on both
+// Latency 1 clock of `in_clk` and 3 to 4 of `out_clk`, throughput one item per clock of the slower domain. Stream contract on both
 // sides, as in `fifo`. Either clock may stop at any time. DEPTH is a power of two, at least 4.
 //
 //            in_clk │ out_clk

@@ -11,7 +11,7 @@
 // dropped on the way (pipeline_fifo allows that, but has to keep as many places free as the pipeline is long). `credit` comes
 // from a register. `idle` is high while no item is in the pipeline or in the FIFO.
 //
-// Latency 2 clocks, throughput one item a clock if DEPTH is at least the clocks from `sent` to `in_valid` plus 4. DEPTH is a
+// Latency 2 clocks, throughput one item per clock if DEPTH is at least the clocks from `sent` to `in_valid` plus 4. DEPTH is a
 // power of two.
 
 `default_nettype none
@@ -33,8 +33,8 @@ module credit_fifo #(
 );
     localparam int unsigned COUNT_BITS = $clog2(DEPTH + 2);
 
-    // Credits that no item has. The FIFO has a place in its output register too. Both changes of the count come from registers,
-    // so the last credit stays for an item that is sent while the count does not know of the previous one.
+    // Free credits. There is one more than DEPTH for the FIFO's output register. The count lags by one clock, so `credit` falls
+    // while one credit is left: it covers an item sent before the previous one is counted.
     logic [COUNT_BITS-1:0] credits, next;
     logic                  took, gave, in_ready;
 

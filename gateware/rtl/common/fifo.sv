@@ -2,7 +2,7 @@
 // RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE
 // the last two are one place: the block RAM holds the item at the output, whose register then needs no enable.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock, or one in two clocks with PAUSE. Stream contract on both sides:
+// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with PAUSE. Stream contract on both sides:
 // an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
 // moved. `in_ready` and `out_valid` come from registers alone. DEPTH is a power of two.
 //

@@ -10,7 +10,7 @@
 // item may also be dropped on the way. `room` comes from a register. Between the count of an item and its effect on `room` are
 // two clocks, so `room` falls while FLIGHT + 2 places are still free.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item a clock, or one in two clocks with BLOCK. DEPTH is a power of two; more
+// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two; more
 // than 2 * (FLIGHT + 2) places keep the output busy while `room` comes back. `idle` is high while the FIFO is empty; it knows
 // nothing of items on the way.
 

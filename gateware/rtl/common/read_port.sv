@@ -3,7 +3,7 @@
 //
 // Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order, some
 // time later, and cannot be held back. A client is therefore served only while the FIFO of DEPTH places for its words has room
-// for all words under way. Throughput one word a clock.
+// for all words under way. Throughput one word per clock.
 //
 // The DDR3 memory takes four clocks to turn to another of its banks, and a dozen to turn from writes to reads and back. So a
 // client is served in bursts: a burst ends when the client has no request or its FIFO is full, and a new one begins when half

@@ -10,7 +10,7 @@
 //   in ──┬─▶ addresses ─▶ gate ─▶ command
 //        └─▶ words ─────────────▶ data
 //
-// Latency 2 clocks from a word to its command during a burst, throughput one word a clock. `idle` is high when memory
+// Latency 2 clocks from a word to its command during a burst, throughput one word per clock. `idle` is high when memory
 // has taken all words; it rises a clock after the last word. The ready signals of memory, which end a long path in LiteDRAM,
 // only move the FIFOs. `in_ready` is a register, so that no path goes from the FIFOs through the sources of the words.
 

@@ -11,7 +11,7 @@
 // clocks before the flash is selected: the flash needs a pause between two commands, and the primitive STARTUPE2 of an FPGA of the 7
 // series leaves out the first three clocks after the configuration.
 //
-// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so it has two periods of `clk` for its way.
+// A bit from the flash is sampled when `sclk` falls, just before the flash changes it, so it has two periods of `clk` for its path.
 //
 // `request` and `address` hold until `done`, when `data` is valid, for one clock. The byte of the lowest address is in bits 7:0.
 

@@ -4,7 +4,7 @@
 //   pixel ─▶ green's share ─▶ + red's ─▶ + blue's ─▶ two channels ─▶ mark
 //
 // A share is a constant times 5 or 6 bits, so it is a table of as many inputs as a LUT has, which the LUT of an adder's bit can
-// hold too. Latency 5 clocks, throughput one pixel a clock.
+// hold too. Latency 5 clocks, throughput one pixel per clock.
 
 `default_nettype none
 

@@ -1,10 +1,10 @@
 // Counts columns and lines, and judges each frame: it is whole if it has `height` lines of `width` pixels, without a fault
 // (docs/formats/gesture.md, "Gestures").
 //
-// Outputs come one clock after `item`: `x` and `y` are those of the pixel, or of the clock behind the end of the line;
+// Outputs come one clock after `item`: `x` and `y` are those of the pixel, or of the clock after the end of the line;
 // `inside_region` says that they are in the region. With `out_item.frame`, `whole` is the verdict. The first frame begins at the
 // first end of a frame after `enable` has risen. If the sensor's clock stops, the frame under way is dropped, and a new one begins
-// at the next end of a frame. Throughput one item a clock.
+// at the next end of a frame. Throughput one item per clock.
 
 `default_nettype none
 

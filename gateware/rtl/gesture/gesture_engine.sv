@@ -8,7 +8,7 @@
 //
 // Nothing stops the pipeline in `clk`: only valid bits travel with the pixels. After each line the FIFO waits for 15 clocks, in
 // which run_filter ends the line's last run, and after each frame for 15 clocks, in which the results and the settings of the next
-// frame are taken. Throughput one pixel a clock besides; 9 clocks from the FIFO to the sums.
+// frame are taken. Throughput one pixel per clock besides; 9 clocks from the FIFO to the sums.
 //
 // The sensor's clock may stop at any time: `status.running` is low when it has not ticked for 2^TIMEOUT_BITS clocks. The pins of
 // the camera's bus pass through here only to be brought into the domain of `clk`.

@@ -18,7 +18,7 @@ package gesture_pkg;
     } token_t;
 
     // What a clock of the pipeline is for: one of the first five bits, or none. A line is followed by 14 clocks `blank` and one
-    // `next`, which stand for unmasked pixels behind its end; 15 clocks without any of them follow a frame.
+    // `next`, which stand for unmasked pixels past its end; 15 clocks without any of them follow a frame.
     typedef struct packed {
         logic pixel;
         logic line;

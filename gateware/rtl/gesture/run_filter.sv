@@ -7,8 +7,8 @@
 //   kept      . . . . . K K K K  for columns two to the left: those of the run
 //
 // A pixel is judged when the `reach` pixels after it are known, so `out_x` is less by `reach`. The clocks `blank` and `next`
-// behind the end of a line are pixels that are not marked. No memory of the marks is needed: every pixel within `reach` of a full
-// run was marked. Latency one clock, throughput one pixel a clock.
+// after the end of a line are pixels that are not marked. No memory of the marks is needed: every pixel within `reach` of a full
+// run was marked. Latency one clock, throughput one pixel per clock.
 
 `default_nettype none
 

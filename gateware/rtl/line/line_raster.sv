@@ -1,16 +1,16 @@
 // Draws the pieces of lines that are in a band (docs/formats/line.md, "Lines"): from a piece to groups of eight pixels, of which one is
 // set.
 //
-//   piece ─▶ walk: a pixel a clock ─▶ code, 5 * line ─▶ * stride / 5 + column ─▶ pipeline_fifo ─▶ group
-//                   ▲                                                                │
-//                   └──────────────────────────── room ─────────────────────────────┘
+//   piece ─▶ walk: one pixel per clock ─▶ code, 5 * line ─▶ * stride / 5 + column ─▶ pipeline_fifo ─▶ group
+//                   ▲                                                                    │
+//                   └────────────────────────────── room ────────────────────────────────┘
 //
 // A group is {row = address in the band buffer, line, column, mask, code and colour of its only pixel}, see band_buffer. A piece
 // ends with its last pixel, with its last pixel in the band, or a clock after the line has left the picture. The next piece
 // follows without a gap.
 //
-// Streams are valid/ready. The stages behind the walk cannot be stopped; the walk stops while the FIFO has no room for all
-// pixels on the way. Latency 5 clocks, throughput a pixel a clock. `size` and `first_row`, the size code of the picture and the
+// Streams are valid/ready. The stages after the walk cannot be stopped; the walk stops while the FIFO has no room for all
+// pixels on the way. Latency 5 clocks, throughput one pixel per clock. `size` and `first_row`, the size code of the picture and the
 // first row of the band, must hold while pieces are inside. If memory is damaged and a piece leaves the band, only its pixels in
 // the band are drawn. `idle` is low from the clock after a piece is taken until its last group is taken.
 

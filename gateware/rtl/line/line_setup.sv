@@ -3,7 +3,7 @@
 //
 //        A╲         ┌ first pixel, error, depth
 //      ════╳══════  piece 1 from here
-//           ╲       ┊ one pixel a clock
+//           ╲       ┊ one pixel per clock
 //      ══════╲════  piece 2 from here: the raster pass of this band needs no division
 //             B
 //
@@ -18,7 +18,7 @@
 //   24 to 28                                depth step * ahead + bias
 //
 // A coordinate is mirrored (`~(x - 1)`) on an axis along which the segment runs backward, so both walk upward. `edge_row`, mirrored
-// too, is the first row behind the band that the line is in; `entered` is high until the piece of this band is made. A piece is
+// too, is the first row past the band that the line is in; `entered` is high until the piece of this band is made. A piece is
 // copied, so that the walk continues while it waits at the output.
 //
 // Streams are valid/ready. A segment moves after its last piece, so its fields need no copy. It takes 31 clocks, or 59 with a depth
@@ -224,7 +224,7 @@ module line_setup (
     assign at_border = edge_row == (up ? '0 : {3'd0, height});
     assign shown     = column[12:11] == '0 && column[10:6] < blocks;
     assign tracks    = (at[24] || walking) && reached && !at_border;
-    // The pixel is behind the last row, or beyond the side to which the line runs.
+    // The pixel is past the last row, or beyond the side to which the line runs.
     assign leaves    = reached ? at_border : !shown && column[12] == left;
     assign sends     = entered && shown && !reached;
     assign walks     = walking && !reached && !sends;

@@ -4,7 +4,7 @@
 //   a, b ─▶ a − b ─▶ h = max(0, k − |a − b|) ─▶ w = h/2k ─▶ min(a, b) − h·w/2
 //
 // a is the distance of the flat solid, b that of the sphere, k the parameter `solid.blend_width`, and w the weight of the
-// farther surface. Latency 8 clocks, throughput one point a clock, no handshake; `solid` must hold. `takes_round` must be high
+// farther surface. Latency 8 clocks, throughput one point per clock, no handshake; `solid` must hold. `takes_round` must be high
 // where the sphere is the nearer or the only surface. `nearest` is `known`, delayed.
 
 `default_nettype none

@@ -3,7 +3,7 @@
 //
 //   end of a cone: t, length ─▶ t·inverse ─▶ depth ─▶ 2^14 places ─▶ near plane of a block
 //
-// A write takes 6 clocks; throughput one write a clock. A read takes 2 clocks; throughput one read a clock. A read does not
+// A write takes 6 clocks; throughput one write per clock. A read takes 2 clocks; throughput one read per clock. A read does not
 // return a write that is still under way. With ROUND, and while `round` is high, the length of a cone is Euclidean, and its
 // inverse comes from a second table.
 

@@ -3,7 +3,7 @@
 //
 //   point ─▶ |x| - half of each coordinate ─▶ largest ─▶ distance, surface
 //
-// Latency 3 clocks, throughput one point a clock, no handshake. `half` has the half sides of the box. Bit i of `has` is 1 if
+// Latency 3 clocks, throughput one point per clock, no handshake. `half` has the half sides of the box. Bit i of `has` is 1 if
 // the box is bounded along axis i. With `room` the solid is the space outside of the box. The parameters must hold.
 
 `default_nettype none

@@ -10,7 +10,7 @@
 // With BOX the module serves boxes too: while `is_box` is high, no level is in use, and the distance is that to a box
 // (field_box). A sponge then ends in the same logic, as a cube of half side `cube_half`.
 //
-// Latency 3 * LEVELS + 3 clocks, throughput one point a clock, no handshake. `levels` has a bit for each level in use, the
+// Latency 3 * LEVELS + 3 clocks, throughput one point per clock, no handshake. `levels` has a bit for each level in use, the
 // first level in bit 0; `cube_half` is half the side of the smallest solid cubes; the other inputs are those of field_box. All
 // of them must hold, from two clocks before the first point.
 

@@ -6,7 +6,7 @@
 // |x| + |y| + |z| - size. The module computes 85/256 of this sum, rounded down: a lower bound of a third, without a multiplier.
 // `surface` is {z, y, x}, with 1 where the normal of the face is positive.
 //
-// Latency 5 clocks, throughput one point a clock, no handshake. `size` must hold.
+// Latency 5 clocks, throughput one point per clock, no handshake. `size` must hold.
 
 `default_nettype none
 

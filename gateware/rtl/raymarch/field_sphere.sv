@@ -8,8 +8,8 @@
 // computed length is never above the exact one, and below it by at most 3 units of 2^-12 plus a part of 2^-15. Distances of
 // 2^21 units of 2^-12 and more saturate at 2^21 - 1. With `repeated` the sphere repeats every 64 units; its centre is then 0.
 //
-// Latency 18 clocks, throughput one point a clock, no handshake. `number` comes one clock before its point. Spheres are
-// written one a clock, while the pipeline is empty. `repeated` must hold.
+// Latency 18 clocks, throughput one point per clock, no handshake. `number` comes one clock before its point. Spheres are
+// written one per clock, while the pipeline is empty. `repeated` must hold.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // The distance field of a lane: all fields of the build in parallel, and a multiplexer that selects one of them by `solid`.
 //
-// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point a clock, no handshake. `solid` must
+// Latency raymarch_pkg::field_clocks(LEVELS, FIELDS, ROUND, BLEND), throughput one point per clock, no handshake. `solid` must
 // hold during a frame. A field that is not in the build costs nothing; a single field needs no multiplexer.
 //
 // Spheres are evaluated one after the other, one in each pass of a point. `pass` is the number of the sphere, and comes one

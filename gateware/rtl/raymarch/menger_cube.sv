@@ -2,8 +2,8 @@
 //
 //   point ─▶ |x| ─▶ largest ─▶ - half ─▶ distance, surface
 //
-// With LOW the lowest bits of the coordinates are apart from `point`, as in menger_level: `order` compares them, and `low` has
-// them 2 clocks later. Latency 3 clocks, throughput one point a clock, no handshake. `half` must hold.
+// With LOW the lowest bits of the coordinates come separately from `point`, as in menger_level: `order` compares them, and `low` has
+// them 2 clocks later. Latency 3 clocks, throughput one point per clock, no handshake. `half` must hold.
 
 `default_nettype none
 

@@ -10,7 +10,7 @@
 //         └───┴───┴───┘ 3S wide
 //
 // An integer coordinate k represents k + 1/2, so that -x is ~k. `grows` carries for each coordinate the direction in which it
-// grows in the world, {axis, positive}. Latency 3 clocks, throughput one point a clock, no handshake. While `enable` is low,
+// grows in the world, {axis, positive}. Latency 3 clocks, throughput one point per clock, no handshake. While `enable` is low,
 // points pass unchanged; `enable` must hold.
 //
 // The bits of a coordinate that are 0 in S/2 are only ever mirrored and exchanged. The LOW lowest ones do not pass this module:

@@ -1,4 +1,4 @@
-// Computes the rays of a frame, one a clock, without division or square root (docs/formats/raymarch.md, "Rays").
+// Computes the rays of a frame, one per clock, without division or square root (docs/formats/raymarch.md, "Rays").
 //
 //   columns, lines ─▶ D = first + x·across + y·down ─▶ largest component ─▶ its inverse ─▶ direction = D·inverse
 //                                                          │                                  │
@@ -24,7 +24,7 @@
 // D and the counters of the place, and nothing else.
 //
 // `start` (one clock, not while `busy`) begins the frame; the parameters must hold until the frame has ended. Latency 27
-// clocks, 30 with ROUND; throughput one ray a clock. `busy` falls two clocks after the last ray has left. The output is a
+// clocks, 30 with ROUND; throughput one ray per clock. `busy` falls two clocks after the last ray has left. The output is a
 // valid/ready stream; a ray stays until its transfer. `rst` ends the frame.
 
 `default_nettype none
@@ -33,7 +33,7 @@ module ray_generator #(
     parameter bit ROUND   = 1'b0,
     parameter bit STEREO  = 1'b1,
     parameter bit PREPASS = 1'b0,
-    // Places for rays behind the pipeline.
+    // Number of places for rays after the pipeline.
     parameter int unsigned PLACES = 32
 ) (
     input  wire                       clk,

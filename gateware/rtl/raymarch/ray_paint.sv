@@ -14,7 +14,7 @@
 // the valid half.
 //
 // With ROUND, the end of a ray on a sphere or fillet comes with its colour, `in_colour`, and `round` means that rays are
-// scaled by their Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel a clock. The parameters
+// scaled by their Euclidean length. Streams are valid/ready. Latency 37 clocks, throughput one pixel per clock. The parameters
 // must hold while pixels are in the pipeline, which cannot be stopped: valid bits travel with the pixels, and credit_fifo at its
 // end admits ends.
 
@@ -24,7 +24,7 @@ module ray_paint #(
     parameter bit ROUND   = 1'b0,
     // With OCTANTS there are eight face colours, for faces perpendicular to the diagonals; otherwise six.
     parameter bit OCTANTS = 1'b0,
-    // Places for pixels behind the pipeline.
+    // Number of places for pixels after the pipeline.
     parameter int unsigned PLACES = 64
 ) (
     input  wire                     clk,

@@ -15,7 +15,7 @@
 // ends wait in a FIFO in block RAM. So the lanes idle only at the end of the frame, and where a band ends with rays of
 // very different lengths.
 //
-// Where rays of one evaluation follow rays of many, the lanes need more than the one ray a clock that the generator makes. A long
+// Where rays of one evaluation follow rays of many, the lanes need more than the one ray per clock that the generator makes. A long
 // ring holds enough rays to bridge this; a lane with a short ring has a queue of rays.
 //
 // With ROUND a field may have spheres, and with BLEND fillets between the spheres and flat surfaces. Then round_light stands
@@ -187,7 +187,7 @@ module raymarcher #(
             lane_valid[i] = ray_valid && may_enter && (lane_ready & ((LANES'(1) << i) - 1'b1)) == '0;
     assign ray_ready = may_enter && lane_ready != '0;
 
-    // Places of the queue before a lane; 0 for none.
+    // Number of places of the queue before a lane; 0 for none.
     localparam int unsigned QUEUE    = raymarch_pkg::has_short_rings(LEVELS, FIELDS, ROUND, BLEND) ? 32 : 0;
     localparam int unsigned RAY_BITS = raymarch_pkg::ray_bits(PREPASS);
 
@@ -215,7 +215,7 @@ module raymarcher #(
     end
 
     // In each clock one lane, chosen in rotation, may hand over the end of a ray. This is enough, since the generator makes at
-    // most one ray a clock.
+    // most one ray per clock.
     localparam int unsigned TURN_BITS = LANES == 1 ? 1 : $clog2(LANES);
     logic [TURN_BITS-1:0] turn;
     logic                 next_valid, next_now, next_taken, waiting_valid, waiting_now, waiting_ready, room, paint_valid, paint_ready;

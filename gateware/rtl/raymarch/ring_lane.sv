@@ -40,7 +40,7 @@ module ring_lane #(
     input  wire  [2:0][23:0]         bounds,
     input  wire raymarch_registers_pkg::solid_t solid,
     input  wire raymarch_registers_pkg::tuning_t tuning,
-    // Writes of spheres, while the ring is empty.
+    // Sphere writes; allowed only while the ring is empty.
     input  wire                      sphere_write,
     input  wire  [2:0]               sphere_number,
     input  wire raymarch_registers_pkg::sphere_t sphere,

@@ -6,7 +6,7 @@
 //   1. if the hidden slot holds the source line that the next output line needs, the slots change places;
 //   2. if it does not, and this is the first use of that source line, there is an underflow: the shown slot is shown again,
 //      or black where this frame has shown nothing yet. Later output lines of the same source line check the slot again;
-//   3. if the hidden slot is free, the source line after the needed one is requested, also after an underflow. During the
+//   3. if the hidden slot is free, the source line after the needed one is requested, even after an underflow. During the
 //      vertical blanking that is line 0, as soon as the frame's parameters are latched (`frame_begun`).
 //
 // A slot is written only while it is hidden, and a frame shows only lines requested after its vblank, so the screen never

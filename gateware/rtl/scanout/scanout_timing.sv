@@ -5,7 +5,7 @@
 // V_BORDER lines of the back porch and the first V_BORDER lines of the front porch are visible lines around the picture.
 //
 // `tick` is the first clock of hsync. `tick_line` is then the number of the line that follows, 0 to V_ACTIVE - 1, or V_ACTIVE
-// and more in the vertical blanking; the tick with V_ACTIVE begins the blanking. Throughput one pixel a clock; the outputs are
+// and more in the vertical blanking; the tick with V_ACTIVE begins the blanking. Throughput one pixel per clock; the outputs are
 // registers. Reset sets the counters to the end of the last active line, so that a vertical blanking comes first.
 
 `default_nettype none

@@ -7,7 +7,7 @@
 //         band     ╱     ╲
 //      ═══════════════════════════
 //
-// One multiply_add computes E' and the depth in eight passes, one a clock, and a second one computes `beside`, the value of E'
+// One multiply_add computes E' and the depth in eight passes, one per clock, and a second one computes `beside`, the value of E'
 // one lane outside of the group (see raster_pkg):
 //
 //   pass   product              plus           gives

@@ -4,8 +4,8 @@
 // Layout in words of 16 bytes, entries being u32 (docs/formats/triangle.md "Band lists"):
 //   descriptors   descriptor_base + 3·number           3 words each; with SMOOTH 6, and 6·number
 //   lists         list_base                            16 words: the lengths of 64 lists
-//                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries a word
-//   exceptions    exception_base                       4 entries a word
+//                 list_base + 16 + (band << list_shift) + 128·band  the list of a band, 4 entries per word
+//   exceptions    exception_base                       4 entries per word
 //
 // Up to three entries of each list are kept in this module until a fourth one completes the word, so that each word is
 // written whole. Memory needs several clocks to change between the descriptors and a list, and writes of four entries make
@@ -147,8 +147,8 @@ module binner #(
         endcase
     end
 
-    // The band of a row, two clocks later: first that of the first row of the descriptor at the input, when `top_comes[2]` is high,
-    // and from the first LOOK clock on that of its last row. The few bands of the smallest picture are told by comparisons. A band
+    // The band of a row, two clocks later. The row is the first row of the descriptor at the input, when `top_comes[2]` is high, and
+    // its last row from the first LOOK clock on. The few bands of the smallest picture are found by comparisons. A band
     // of the others has 3·2^n rows (glint_soc/constants.py), so that one division by 3 serves them all: v/3 is v·171/512, which is
     // exact for 8 bits, and 171 is 2·5·17 + 1.
     localparam int unsigned SMALL_ROWS   = band_pkg::lines(2'd0);

@@ -5,7 +5,7 @@
 //   otherwise, a vertex behind or beyond the guard band                            exception: its number goes out
 //   otherwise                                                                      regular: goes to the setup
 //
-// Latency 2 clocks, throughput a triangle in 3 clocks, in which `vertex_cache` collects the vertices of the next one. One
+// Latency 2 clocks. Throughput: one triangle per 3 clocks, in which `vertex_cache` collects the vertices of the next one. One
 // triangle is inside, so `in_ready` depends on registers alone. `width` and `height` must hold while it is inside. Triangles are
 // numbered in the order in which they come, from 0 after `restart`.
 

@@ -4,7 +4,7 @@
 // picture are empty. A tiny triangle, with at most 2×2 centres in its bounds, is also dropped if it covers none of them. `mirror`
 // exchanges front and back faces.
 //
-// Throughput a triangle in 3 clocks, or in 6 if it is 512 pixels high or more; latency 18 or 21. Two triangles are inside, in
+// Throughput: one triangle per 3 clocks, or per 6 if it is 512 pixels high or more; latency 18 or 21. Two triangles are inside, in
 // different stages; `phase` counts the 3 clocks of a stage:
 //
 //   in ─▶│ first 3 clocks: products of the  │─▶│ last 3 clocks: area,        │─┬▶ FIFO ───────────────▶ drop or out

@@ -10,12 +10,12 @@
 // The cache is direct-mapped: the low bits of a number choose the line. The first stage looks up and replaces tags in the order
 // of the numbers, the second stage fills lines and the third reads them in the same order. So a number that hits finds the
 // descriptor of its tag. The FIFO `marks` tells the second stage what to do for each item: fill a line, or pass it on. Every
-// descriptor comes from its line, also one that missed, so no selection follows the block RAM. An item without a descriptor
+// descriptor comes from its line, even one that missed, so no selection follows the block RAM. An item without a descriptor
 // (`in_end`) passes in order.
 //
 // Latency 8 clocks for a hit, and the latency of memory plus 11 clocks for a miss. Throughput a hit in 4 clocks and a miss in 5, with
 // SMOOTH in 8. Descriptors must not change in memory while `forget` is low. A clock with `forget`, given while no request
-// is in the cache, starts to invalidate all lines, one line a clock; numbers wait until all lines are invalid.
+// is in the cache, starts to invalidate all lines, one line per clock; numbers wait until all lines are invalid.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload stays as
 // it is until it has moved. Memory: a client of read_port.
@@ -140,7 +140,7 @@ module descriptor_cache #(
         .out_valid(marked), .out_ready(reads_again), .out_data({mark_end, mark_hit, mark_line})
     );
 
-    // Second stage: the words of a descriptor that missed go to its cache line, one a clock.
+    // Second stage: the words of a descriptor that missed go to its cache line, one per clock.
     logic [WORD_BITS-1:0] words;
     logic                 takes;
 
@@ -156,7 +156,7 @@ module descriptor_cache #(
 
     // Third stage: each descriptor is read from its cache line, in clocks in which no line is written. A block RAM has two words of
     // each line, because one word of each fills only half of it: the first ones are read a clock before the second ones. The
-    // block RAM holds the second ones until the item has moved, so the register behind it needs no enable. The last one of an
+    // block RAM holds the second ones until the item has moved, so the register after it needs no enable. The last one of an
     // odd number of words makes two words of 64 bits. The second one is written a clock late, still before it is read.
     logic                 read_valid, arrives;
     logic [128*WORDS-1:0] descriptor;

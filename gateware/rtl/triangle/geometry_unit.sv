@@ -21,9 +21,10 @@
 // With LINES, the flag `lines` makes a frame of the segments in memory (docs/formats/line.md, "Segments in memory"): mesh_walk reads
 // them as the triangles of a mesh, two words each, and line_setup cuts them into pieces, which replace descriptors.
 //
-// Throughput is that of the slowest part: 11 clocks a drawn triangle (33 with smooth shading), 3 a culled one, 6 a vertex that is
-// not in the cache, and in the binner 6 clocks a triangle (9 with SMOOTH) and 2 more for each of its bands after the first. Memory:
-// two clients of a read_port, two native write ports. `results` has the counts of triangles and descriptors of the frame.
+// Throughput is that of the slowest part: 11 clocks per drawn triangle (33 with smooth shading), 3 per culled one, 6 per vertex
+// that is not in the cache, and in the binner 6 clocks per triangle (9 with SMOOTH) and 2 more for each of its bands after the
+// first. Memory: two clients of a read_port, two native write ports. `results` has the counts of triangles and descriptors of the
+// frame.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // Computes the values of an accumulator in the eight lanes of a group, modulo 2^32, by doubling: lane 4 from lane 0, then lanes
 // 2 and 6 from these two, then the odd lanes from these four.
 //
-// Latency 3 clocks, throughput a group a clock.
+// Latency 3 clocks, throughput one group per clock.
 
 `default_nettype none
 

@@ -20,7 +20,7 @@
 // the address of the group in the band buffer, computed from `out_line` and `out_column`.
 //
 // The pipeline cannot be stopped: valid bits travel with the groups, and a group without a covered pixel is dropped. Latency 5
-// clocks, throughput a group a clock; all outputs are registers.
+// clocks, throughput one group per clock; all outputs are registers.
 
 `default_nettype none
 

@@ -3,7 +3,7 @@
 // Reads words of 16 bytes as a client of read_port: a chunk's header, then its triangles one after the other. The vertex stage
 // reads the vertices of the chunk, from `vertex_base` on. Triangles that were sent still need the vertices of their chunk, so
 // the next chunk begins only when the following pipeline is empty (`drained`): this costs some hundred clocks for each chunk of
-// up to 65,535 vertices. Throughput within a chunk: a triangle a clock, as far as memory keeps up.
+// up to 65,535 vertices. Throughput within a chunk: one triangle per clock, as far as memory keeps up.
 //
 // `start` (one clock, not while `busy`) begins at `first`, the address of the mesh's first chunk; `past` is the address
 // of the first word after the mesh. A chunk without vertices or beyond `past` ends the walk with `error`, which holds

@@ -29,7 +29,7 @@ module reciprocal (
     end
 
     // Bit k of `since` is high when a mantissa m entered k + 1 clocks ago. The seed comes from a block RAM, whose output is late
-    // in the clock, so y0 is a register behind it.
+    // in the clock, so y0 is a register after it.
     logic [14:0] since;
     logic [23:0] m;
     logic [9:0]  seed, y0;

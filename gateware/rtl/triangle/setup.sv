@@ -1,14 +1,14 @@
 // Culling, setup and flat shading of triangles: from three vertices on the screen to a descriptor (docs/formats/triangle.md, "Triangle
 // setup"). The *start* is the pixel at which the edge functions and the depth in a descriptor_t are given.
 //
-//         3 clocks a triangle            11 clocks a triangle, all four in step with `count`
+//         3 clocks per triangle          11 clocks per triangle, all four in step with `count`
 //   in ─▶│ cull: area, facing, bounds │─▶│ 1 edges, normal, 1/a, shade │ 2 E1, 1/a │ 3 gradients │ 4 depth │─▶ out
 //            └▶ culled
 //
-// Throughput a drawn triangle in 11 clocks, or 33 with smooth shading, a culled one in 3; latency at most 86 clocks, or 196. A
-// beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if the
-// last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
-// last clock of a beat, also empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
+// Throughput: one drawn triangle per 11 clocks, or 33 with smooth shading, one culled triangle per 3; latency at most 86 clocks,
+// or 196. A beat is the time in which each of the stages 1 to 4 processes one triangle: 11 clocks, numbered by `count`, or more if
+// the last clock is repeated, because the light takes longer or stage 4 has to wait for the output. All stages move together in the
+// last clock of a beat, even empty ones, so a single triangle gets through. A culled triangle leaves before stage 1. It waits
 // for earlier triangles only if the FIFO at the end of `cull` is full. `culled` and `drawn` are high for one clock for each
 // triangle, `drawn` together with the triangle's descriptor. The frame's constants (`width`, `height`, `cull_back`, `mirror`,
 // `row_light`, `light_colour`, `ambient`, `smooth`) must hold while `busy` and when a triangle comes.

@@ -4,7 +4,7 @@
 // Each gradient takes three products, with pieces of the normal of 17, 17 and 12 bits from the low end. Then follows a shift in
 // three parts: by multiples of 16, of 4 and of 1. The module `setup` drives `count`, the number of the clock in a beat (the
 // time of a triangle in a stage of `setup`, 11 clocks or more). The inputs hold during a beat; the result for Nx is valid from
-// clock 8 on, for Ny in clock 10, also while that clock is repeated.
+// clock 8 on, for Ny in clock 10, even while that clock is repeated.
 
 `default_nettype none
 

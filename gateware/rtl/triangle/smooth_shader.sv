@@ -8,7 +8,7 @@
 //
 // A group of a flat triangle takes one clock. A group of a smooth triangle takes a clock for each pixel from the first one, or
 // the fifth one if the first four are not covered, to the last covered one: an average of some five, at most eight. Three
-// multipliers then do the divisions of a pixel, instead of 24 for a group a clock.
+// multipliers then do the divisions of a pixel, instead of 24 for one group per clock.
 //
 // Groups come from a pipeline that cannot be stopped. It sends only while `room` is high, FLIGHT clocks before a group is here
 // (see pipeline_fifo). Latency 2 clocks for a flat group, 13 more than its pixels for a smooth one; the order of the groups stays.

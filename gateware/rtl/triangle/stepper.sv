@@ -9,7 +9,7 @@
 //   DOWN    snapshot + step_y
 //   LOAD    load_value
 //
-// All controls come from registers, so one adder behind the selection of its operands is fast enough, and takes half the LUTs of
+// All controls come from registers, so one adder after the selection of its operands is fast enough, and takes half the LUTs of
 // edge_stepper. Sums are modulo 2^32. Latency 1 clock, throughput a move a clock.
 
 `default_nettype none

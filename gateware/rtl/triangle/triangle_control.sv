@@ -1,7 +1,7 @@
 // Starts the passes of the triangle engine after a check of their parameters, and reports their results.
 //
-//   ask ──▶ pending ──▶ regions, one a clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
-//                                     └── refused ─────────────────────────────▲
+//   ask ──▶ pending ──▶ regions, one per clock ──▶ start ──▶ busy ──▶ done ──▶ ended, error
+//                                     └── refused ───────────────────────────────▲
 //
 // The parameters of a pass describe regions of memory: the byte address of the first 16-byte word of a region, in the CPU's
 // 32-bit space, and the length of the region. A region that is not aligned or not within memory (2^MEMORY_BITS words from
@@ -18,7 +18,7 @@
 // A request waits while the parameters of its pass are `loading`, from the next clock on. `kept` holds the flags of a pass from
 // its request on; all other parameters must hold from the end of `loading` until `ended`.
 //
-// `cancel` (one clock, at any time) ends both passes, also those requested in the same clock. Later requests wait until the
+// `cancel` (one clock, at any time) ends both passes, even those requested in the same clock. Later requests wait until the
 // engine is `ready`. Latency 15 clocks from `ask`, or from the end of `loading`, to `start`.
 
 `default_nettype none
@@ -67,7 +67,7 @@ module triangle_control #(
                            ERROR_TRIANGLES = triangle_registers_pkg::ERROR_TRIANGLES,
                            ERROR_LINES = triangle_registers_pkg::ERROR_LINES;
 
-    // Bits of a region's length in words; a length may exceed the size of memory.
+    // Number of bits of a region's length in words; a length may exceed the size of memory.
     localparam int unsigned WORD_BITS  = triangle_registers_pkg::ADDRESS_BITS + 2;
     // Largest valid `list_shift`, the log2 of the words of a list: longer lists would exceed the counter of entries.
     localparam logic [4:0]  LAST_SHIFT = 5'(COUNT_BITS - 3);

@@ -144,7 +144,7 @@ module triangle_engine #(
     );
 
     // LiteDRAM answers one read port at a time and takes data from one write port at a time, so `items_in` and `items_out`
-    // grow by at most 1 a clock.
+    // grow by at most 1 per clock.
     logic [2:0] stalled_reads;
     logic [1:0] stalled_lists, stalled_frame;
 

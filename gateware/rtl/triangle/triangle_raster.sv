@@ -16,7 +16,7 @@
 //
 // Streams are valid/ready, with a register between any two ready signals. The lanes cannot be stopped; instead, the walker stands
 // still while the FIFO has no room for all groups in the lanes. Latency 21 clocks from a descriptor to its first group.
-// Throughput: the walker tests one group a clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row of the
+// Throughput: the walker tests one group per clock, and a triangle takes at least 8 clocks. `triangle_y0`, the first row of the
 // band, and `triangle_odd`, the parity of the band's number, come with each triangle. `odd` is the parity of the band that is
 // drawn. Triangles of the next band are accepted and prepared, but wait until `odd` is the parity of their band. `idle` is low
 // from the clock after a descriptor of the drawn band is taken until the last group of that band is taken. `rows` (rows of a
@@ -108,7 +108,7 @@ module triangle_raster #(
     logic        found_valid;
 
     localparam int unsigned GROUP_BITS = $bits(found);
-    // Clocks from the walker to the FIFO.
+    // Number of clocks from the walker to the FIFO.
     localparam int unsigned FLIGHT     = 5;
 
     lanes lanes (

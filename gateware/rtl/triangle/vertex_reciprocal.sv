@@ -24,7 +24,7 @@ module vertex_reciprocal (
     end
 
     // −m is valid from clock 10 on, `minus_m_later` from 16 on and `minus_m_last` from 22 on; y0 from 11 on; y1 from 18 on and
-    // `y1_later` from 24 on. The seed comes from a block RAM, whose output is late in the clock, so y0 is a register behind it.
+    // `y1_later` from 24 on. The seed comes from a block RAM, whose output is late in the clock, so y0 is a register after it.
     logic signed [24:0] minus_m, minus_m_later;
     logic        [23:0] minus_m_last;
     logic        [9:0]  seed, y0;

@@ -4,7 +4,7 @@
 //
 // Clock numbers count from the vertex's entry into `vertex_stage`, which explains `half` and `element`.
 //
-//   1…3    n·P, one product a clock     1…6   U·P, then V·P
+//   1…3    n·P, one product per clock   1…6   U·P, then V·P
 //   6      Z is valid                   6, 9   X, Y are valid (`planar`)
 //   7      `zeros`, halves of Z < near
 //   8      `behind`

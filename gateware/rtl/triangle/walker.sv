@@ -1,4 +1,4 @@
-// Visits the part of a triangle in a band in groups of eight pixels, one group a clock, and sends the groups that the triangle
+// Visits the part of a triangle in a band in groups of eight pixels, one group per clock, and sends the groups that the triangle
 // may cover. E' is the value of an edge function (docs/formats/triangle.md, "Triangle setup"); an edge passes in a pixel with E' >= 0
 // and fails otherwise. A group has lanes 0 to 7 from left to right; lanes -1 and 8 are the pixels next to it.
 //

@@ -10,7 +10,7 @@ use crate::devices::{Devices, REGISTERS};
 /// Clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
-/// Words of a line of the CPU's caches, which are filled by an access to the bus for each word.
+/// Number of words of a line of the CPU's caches, which are filled by an access to the bus for each word.
 const LINE: u32 = 8;
 
 /// Addresses from here on pass by the data cache.
@@ -23,7 +23,7 @@ const UNUSED: u32 = u32::MAX;
 pub struct Access {
     /// The word that contains the address, for a load.
     pub value: u32,
-    /// Cycles that the CPU waits in addition to those of the instruction.
+    /// Number of cycles that the CPU waits in addition to those of the instruction.
     pub cycles: u64,
     /// Whether a device was accessed, which may change interrupts and the time of the next event.
     pub device: bool,

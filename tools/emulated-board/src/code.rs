@@ -5,7 +5,7 @@ use litex_pac::memories::{FLASH, MAIN_RAM, ROM, SRAM};
 
 use crate::decode::Instruction;
 
-/// Bytes of a page.
+/// Size of a page in bytes.
 pub const PAGE: u32 = 4096;
 
 /// Decoded instructions of a page.

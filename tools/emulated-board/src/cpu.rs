@@ -343,7 +343,7 @@ impl Cpu {
 /// Why [`Cpu::run_page`] returned, and the cycle after its last instruction.
 struct End {
     now: u64,
-    /// Cycles of these in which no instruction retired: time-outs of the bus, and traps.
+    /// Number of these cycles in which no instruction retired: time-outs of the bus, and traps.
     waited: u64,
     reason: Reason,
 }

@@ -4,9 +4,11 @@
 const EXTERNAL: u32 = 11;
 /// Bits of `mie` that VexRiscv has: external, timer and software interrupt.
 const MIE_BITS: u32 = 1 << EXTERNAL | 1 << 7 | 1 << 3;
-/// Bits MIE, MPIE and MPP of `mstatus`.
+/// Bit MIE of `mstatus`.
 const INTERRUPTS: u32 = 1 << 3;
+/// Bit MPIE of `mstatus`.
 const INTERRUPTS_BEFORE: u32 = 1 << 7;
+/// Bits MPP of `mstatus`.
 const PRIVILEGE_BEFORE: u32 = 3 << 11;
 const MSTATUS_BITS: u32 = PRIVILEGE_BEFORE | INTERRUPTS_BEFORE | INTERRUPTS;
 /// Bits of `mcause` that VexRiscv has.

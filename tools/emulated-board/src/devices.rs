@@ -28,7 +28,7 @@ pub const REGISTERS: Memory = Memory {
     size: 0x1_0000,
 };
 
-/// Bytes of the window of a block: blocks are as far apart as the first two.
+/// Number of bytes of the window of a block: blocks are as far apart as the first two.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
@@ -48,8 +48,9 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (digits::Digits::BASE, None),
 ];
 
-/// Numbers of the triangle engine and of the raymarcher in it.
+/// Number of the triangle engine in it.
 const TRIANGLE: usize = 9;
+/// Number of the raymarcher in it.
 const RAYMARCH: usize = 10;
 
 /// The blocks of the SoC.

@@ -192,7 +192,7 @@ fn each_frame_has_the_sums_of_the_model() {
     assert_eq!([seen.pixels(), seen.lines()], SIZE.map(|size| size as u16));
     assert_eq!(bench.read(offset::FRAMES), 6);
     assert_eq!(bench.read(offset::FRAMES_DROPPED), 0);
-    // The hand moves, and the frames are those of its way, a constant time apart.
+    // The hand moves, and the frames are those of its path, a constant time apart.
     let period = {
         let line = 2 * SIZE[0] + Timing::SHORT.gap;
         let lines = SIZE[1] + Timing::SHORT.blank.iter().sum::<usize>();

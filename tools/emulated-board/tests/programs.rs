@@ -13,11 +13,12 @@ const A2: u32 = 12;
 
 /// Where programs leave their results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
-/// Bytes of a page of decoded instructions.
+/// Size of a page of decoded instructions, in bytes.
 const PAGE: u32 = 4096;
 
-/// Addresses that no memory and no register has, where the CPU caches what it loads, and where it does not.
+/// Unmapped address in the cached region.
 const UNUSED: u32 = 0x2000_0000;
+/// Unmapped address in the uncached region.
 const UNUSED_IO: u32 = 0x9000_0000;
 /// Clock cycles until the bus answers an access to one of these.
 const TIMEOUT: u32 = 1_000_000;
@@ -56,8 +57,9 @@ fn csrr(rd: u32, csr: u32) -> u32 {
     csr << 20 | 2 << 12 | rd << 7 | 0x73
 }
 
-/// `jal` back by one instruction, or to itself.
+/// `jal` back by one instruction.
 const BACK: u32 = 0xffdf_f06f;
+/// `jal` to itself.
 const LOOP: u32 = 0x0000_006f;
 
 fn bytes(words: &[u32]) -> Vec<u8> {

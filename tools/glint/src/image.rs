@@ -13,7 +13,7 @@ pub const START: &str = "start";
 /// Name of the built-in mesh that is not a shape.
 const CUBE: &str = "cube";
 
-/// The bytes for the FPGA in a bitstream file: all of a raw file, those behind the header of a `.bit` file.
+/// The bytes for the FPGA in a bitstream file: all of a raw file, those after the header of a `.bit` file.
 ///
 /// # Errors
 /// The header is damaged.
@@ -49,7 +49,7 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
     data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
 }
 
-/// The items for scenes: each mesh that boards have not built in, each scene, and the list of all of them.
+/// The items for scenes: each mesh that is not built into the firmware, each scene, and the list of all of them.
 ///
 /// # Errors
 /// A mesh cannot be read.

@@ -36,7 +36,7 @@ pub fn is_shape(name: &str) -> bool {
     Shape::NAMES.contains(&name)
 }
 
-/// The mesh of a scene by its name: that of a shape which boards have built in, or of a file or generator.
+/// The mesh of a scene by its name: that of a shape built into the firmware, or of a file or generator.
 ///
 /// # Errors
 /// As [`model::load`].

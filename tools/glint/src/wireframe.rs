@@ -18,7 +18,7 @@ use std::path::Path;
 pub enum Form {
     /// The text form: one instruction a line.
     Text,
-    /// The binary form: 16 bytes a word.
+    /// The binary form: 16 bytes per word.
     Binary,
 }
 

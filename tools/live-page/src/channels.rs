@@ -1,4 +1,4 @@
-//! The way of messages between the pages and the session.
+//! The channel for messages between the pages and the session.
 
 use crate::hub::{Hub, Id};
 use crate::inputs::Inputs;
@@ -26,7 +26,7 @@ pub enum Request {
     Upload(Vec<u8>),
 }
 
-/// The way of messages between the pages and the board.
+/// The channel for messages between the pages and the board.
 pub struct Channels {
     /// The viewers.
     pub hub: Hub,
@@ -50,7 +50,7 @@ impl Channels {
         (channels, requests)
     }
 
-    /// The way to a board with the motion sensor and the hand of `motion`.
+    /// The channel to a board with the motion sensor and the hand of `motion`.
     #[must_use]
     pub fn to_board(motion: Option<Arc<Motion>>) -> (Self, Receiver<Request>) {
         let (requests, queue) = sync_channel(MAX_REQUESTS);

@@ -1,6 +1,6 @@
 //! The files of the page.
 //!
-//! The file `link.js` is missing here: it is the way of the messages, which the program that serves the page adds.
+//! The file `link.js` is missing here: it is the channel for the messages, which the program that serves the page adds.
 
 /// Media type of scripts.
 pub const SCRIPT: &str = "text/javascript; charset=utf-8";

@@ -3,7 +3,7 @@
 //! | module | purpose |
 //! |---|---|
 //! | [`files`] | the files of the page |
-//! | [`channels`] | the way of messages between the pages and the session |
+//! | [`channels`] | the channel for messages between the pages and the session |
 //! | [`message`] | messages between the page and the board's side |
 //! | [`viewer`] | one open page: acts on its messages |
 //! | [`hub`] | passes pictures, texts and levels to all viewers; one of them has control |

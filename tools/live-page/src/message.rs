@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
 
-/// Bytes of a picture's message before its pixels.
+/// Size of a picture's message before its pixels in bytes.
 pub const PICTURE_HEAD: usize = 8;
 
 /// Maximum size of a message from the page in bytes; an upload comes in several messages.
@@ -113,7 +113,7 @@ pub enum ToPage {
     Progress {
         /// Bytes transferred so far.
         done: u64,
-        /// Bytes in all.
+        /// Number of bytes in all.
         all: u64,
     },
     /// A notice for the user.

@@ -29,21 +29,21 @@ pub struct Options {
 /// Report of a conversion.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// Points in the file.
+    /// Number of points in the file.
     pub points: usize,
     /// Polygons in the file.
     pub faces: usize,
-    /// Vertices in the mesh. A vertex that several chunks use is counted once for each of them.
+    /// Number of vertices in the mesh. A vertex that several chunks use is counted once for each of them.
     pub vertices: u32,
-    /// Triangles in the mesh.
+    /// Number of triangles in the mesh.
     pub triangles: u32,
     /// Triangles dropped because they have no area after rounding.
     pub degenerate: usize,
     /// Chunks that the mesh is divided into, each of at most 65,535 vertices.
     pub chunks: usize,
-    /// Vertices that the engine fetches for a frame with the triangles in the order of the file.
+    /// Number of vertices that the engine fetches for a frame with the triangles in the order of the file.
     pub fetches_before: u32,
-    /// Vertices that the engine fetches for a frame of this mesh.
+    /// Number of vertices that the engine fetches for a frame of this mesh.
     pub fetches: u32,
     /// The mesh's length in bytes.
     pub bytes: usize,

@@ -64,7 +64,7 @@ impl ExactSegment {
         if NORMALS.iter().all(|&normal| distance(self.end, normal) > 0) {
             return false;
         }
-        // The open range (low, high) of the parts of the way that are in the diamond, in 2^-46 of the way.
+        // The open range (low, high) of the parts of the path that are in the diamond, in 2^-46 of the path.
         let mut low = Fraction(-STEPS, 1);
         let mut high = Fraction(2 * STEPS, 1);
         for normal in NORMALS {

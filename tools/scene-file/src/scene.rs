@@ -63,7 +63,7 @@ impl SceneFile {
         Self::parse_as(name, Source { file, text }, true)
     }
 
-    /// Parses the text of a scene file, which may be a list of scenes or not.
+    /// Parses the text of a scene file. A list of scenes is accepted only if `may_be_list`.
     fn parse_as(name: &str, source: Source, may_be_list: bool) -> Result<Self, SceneError> {
         let file = File::read(source)?;
         if let (Some(value), false) = (file.get("scenes"), may_be_list) {

@@ -29,7 +29,7 @@ pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
-    /// Cycles until the next random decision between stall and no stall.
+    /// Number of cycles until the next random decision between stall and no stall.
     left: u32,
     stalled: bool,
 }

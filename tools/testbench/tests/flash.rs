@@ -7,9 +7,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use virtual_flash::{Flash, MAX_BYTES, Pins};
 
-/// Clocks of a word: of eight half bytes of two clocks each, and of its request and its end.
+/// Number of clocks of a word: of eight half bytes of two clocks each, and of its request and its end.
 const WORD: u64 = 2 * 8 + 2;
-/// Clocks of a command before its first word: eight without a command, 32 bits and eight clocks before the data.
+/// Number of clocks of a command before its first word: eight without a command, 32 bits and eight clocks before the data.
 const COMMAND: u64 = 2 * (8 + 32 + 8);
 
 struct Bench {

@@ -3,7 +3,7 @@
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Clocks of a phase, a third of a bit on the bus, at 81.25 MHz as in the SoC.
+/// Number of clocks of a phase, a third of a bit on the bus, at 81.25 MHz as in the SoC.
 const PHASE: u64 = 68;
 /// Longest clock stretching that the tested variant of the engine accepts, in clocks.
 const PATIENCE: u64 = 1 << 15;

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use virtual_board::{Error, VirtualBoard};
 
-/// Cycles of one measurement.
+/// Number of cycles of one measurement.
 const TURN: u64 = 100_000;
 /// Number of measurements of each kind; their median ignores pauses of the host.
 const TURNS: usize = 15;

@@ -16,16 +16,16 @@ use crate::library::{Instruction, Soc};
 use crate::memory::main_ram_offset;
 use crate::{Error, Monitor, Picture, TimingError, boot};
 
-/// Cycles between two reads of the SoC's serial output and video.
+/// Number of cycles between two reads of the SoC's serial output and video.
 const SLICE: u64 = 1000;
 
-/// Cycles after which a store of the CPU has reached memory, even behind a line fill of the instruction cache and a refresh.
+/// Number of cycles after which a store of the CPU has reached memory, even after a line fill of the instruction cache and a refresh.
 const SETTLE: u64 = 1000;
 
 /// Levels of the flash's data lines while nothing drives them.
 const FLASH_RELEASED: u8 = 0xf;
 
-/// Periods of PCLK that are queued for the image sensor's port at least, so that none is late: a slice has fewer.
+/// Minimum number of PCLK periods queued for the sensor's port. It exceeds the periods in a slice, so that none is late.
 const PORT_QUEUE: usize = 2 * SLICE as usize;
 
 /// Cycles without a period of the image sensor's master clock, after which the sensor has none.

@@ -1,6 +1,6 @@
 //! The displays of digits, of which the SoC lights one digit at a time.
 
-/// Cycles for which a digit looks lit after it was: twice the cycles in which the SoC lights each digit once.
+/// Number of cycles for which a digit looks lit after it was: twice the cycles in which the SoC lights each digit once.
 const SEEN: u64 = 2 << 16;
 
 /// The digits as an eye sees them.

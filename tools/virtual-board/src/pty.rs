@@ -14,7 +14,7 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
 use crate::{Error, VirtualBoard};
 
-/// Cycles that the board runs between two reads of the terminal.
+/// Number of cycles that the board runs between two reads of the terminal.
 const SLICE: u64 = 2000;
 
 /// Largest number of bytes in the queue for the UART; while the queue is full, the terminal is not read.

@@ -12,8 +12,9 @@ pub const ERASED: u8 = 0xff;
 
 /// Fast read with quad output.
 const READ_QUAD: u32 = 0x6b;
-/// Clocks of a command and its address, and of these with the clocks before the data.
+/// Number of clocks of a command and its address.
 const ADDRESS_END: u32 = 32;
+/// Number of clocks from the start of a command to the data.
 const DATA_START: u32 = ADDRESS_END + 8;
 
 /// Levels of the pins that the flash reads.
@@ -42,7 +43,7 @@ pub struct Flash {
 }
 
 impl Flash {
-    /// A flash that begins with `bytes`, at most [`MAX_BYTES`] of them, and is erased behind them.
+    /// A flash that begins with `bytes`, at most [`MAX_BYTES`] of them, and is erased after them.
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         Self {
@@ -93,7 +94,7 @@ impl Flash {
         self.sent
     }
 
-    /// The half byte after `place` others, the high half of a byte first. Behind the last address comes the first one.
+    /// The half byte after `place` others, the high half of a byte first. After the last address comes the first one.
     fn half_byte(&self, place: u32) -> u8 {
         let address = self.received.wrapping_add(place / 2) as usize % MAX_BYTES;
         let byte = self.byte(address);

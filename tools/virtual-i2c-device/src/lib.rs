@@ -319,7 +319,7 @@ mod tests {
         fn write(&mut self, _register: u16, _value: u8) {}
     }
 
-    /// A sensor at 1,000 samples a second sends 2^32 clocks in 8.3 hours.
+    /// A sensor at 1,000 samples per second sends 2^32 clocks in 8.3 hours.
     #[test]
     fn the_number_of_clocks_stays_at_its_largest() {
         let mut wires = Wires::new(Stuck);

@@ -79,9 +79,9 @@ impl Model {
 /// Format of the pixels on the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Two bytes a pixel: red with the upper bits of green, then the rest of green with blue.
+    /// Two bytes per pixel: red with the upper bits of green, then the rest of green with blue.
     Rgb565,
-    /// Two bytes a pixel: luma, then a chroma sample, in turns Cb and Cr.
+    /// Two bytes per pixel: luma, then a chroma sample, in turns Cb and Cr.
     Yuv422,
 }
 

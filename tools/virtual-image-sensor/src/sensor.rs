@@ -5,7 +5,7 @@ use virtual_i2c_device::Wires;
 use crate::chip::{Chip, ChipFault, Format, Model, Polarity};
 use crate::frame::Source;
 
-/// Periods of PCLK between two looks at a chip that sends nothing.
+/// Number of periods of PCLK between two looks at a chip that sends nothing.
 const STILL: usize = 1_000;
 
 /// Levels of the port in one period of PCLK. They change at its beginning; PCLK rises in its middle.
@@ -56,14 +56,14 @@ impl Levels {
 pub struct Timing {
     /// Frequency of PCLK in Hz, a multiple of 250 kHz.
     pub clock: u32,
-    /// Periods of PCLK between two lines.
+    /// Number of periods of PCLK between two lines.
     pub gap: usize,
     /// Lines between two frames: with VSYNC, after it, and before the next one.
     pub blank: [usize; 3],
 }
 
 impl Timing {
-    /// An OV7670 with a master clock of 24 MHz and frames of 640x480: 30 frames a second.
+    /// An OV7670 with a master clock of 24 MHz and frames of 640x480: 30 frames per second.
     pub const OV7670: Self = Self {
         clock: 24_000_000,
         gap: 288,

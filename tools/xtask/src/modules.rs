@@ -1,11 +1,11 @@
 //! `cargo xtask modules`: the structure of the sources.
 //!
-//! The command checks two rules: no circle of modules in a crate, and no `#[path]`.
+//! The command checks two rules: no cycle of modules in a crate, and no `#[path]`.
 //!
-//! An arrow from module A to module B counts when A names an item that B defines. B is the module that defines the item, not one that
+//! A dependency of module A on module B counts when A names an item that B defines. B is the module that defines the item, not one that
 //! re-exports it. These do not count: a re-export (`pub use child::X`) of an item from below, the name of a module alone, code under
 //! `#[cfg(test)]`, method calls. A module is a file; an inline module belongs to the file around it. Each target of a package is a crate of
-//! its own. The check reads tokens: a path counts wherever it stands, also in the arguments of a macro.
+//! its own. The check reads tokens: a path counts wherever it stands, even in the arguments of a macro.
 //!
 //! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile.
 
@@ -32,16 +32,16 @@ pub fn check() -> Result<()> {
         let sources = Crate::load(&target.src_path, &|path| fs::read_to_string(path).ok())
             .with_context(|| format!("reading the modules of {}", target.name))?;
         faults.extend(sources.path_attributes.iter().cloned());
-        let arrows = sources.circles();
+        let dependencies = sources.cycles();
         faults.extend(
-            arrows
+            dependencies
                 .iter()
-                .map(|arrow| format!("{}: in a circle: {arrow}", target.name)),
+                .map(|dependency| format!("{}: in a cycle: {dependency}", target.name)),
         );
     }
     if !faults.is_empty() {
         let faults: Vec<_> = faults.into_iter().collect();
-        bail!("circles of modules, or `#[path]`:\n{}", faults.join("\n"));
+        bail!("cycles of modules, or `#[path]`:\n{}", faults.join("\n"));
     }
     Ok(())
 }
@@ -240,16 +240,16 @@ impl Crate {
         })
     }
 
-    /// The arrows of the crate, each with a name that makes it.
-    fn arrows(&self) -> BTreeMap<(Segments, Segments), String> {
-        let mut arrows = BTreeMap::new();
+    /// The dependencies of the crate, each with a name that makes it.
+    fn dependencies(&self) -> BTreeMap<(Segments, Segments), String> {
+        let mut dependencies = BTreeMap::new();
         for (name, module) in &self.modules {
             let mut add = |level, path: &[String], is_reexport| {
                 if let Some((definer, item)) = self.item(name, level, path, &mut Seen::new())
                     && definer != *name
                     && !(is_reexport && definer.starts_with(name))
                 {
-                    arrows.entry((name.clone(), definer)).or_insert(item);
+                    dependencies.entry((name.clone(), definer)).or_insert(item);
                 }
             };
             for (level, path) in &module.paths {
@@ -259,24 +259,26 @@ impl Crate {
                 add(import.level, &import.path, import.is_public);
             }
         }
-        arrows
+        dependencies
     }
 
-    /// The arrows on circles, and between them.
-    fn circles(&self) -> Vec<String> {
-        let mut arrows = self.arrows();
+    /// The dependencies on cycles, and between them.
+    fn cycles(&self) -> Vec<String> {
+        let mut dependencies = self.dependencies();
         loop {
             let [starts, ends] = [0, 1].map(|end| {
-                let ends = arrows.keys().map(|(from, to)| [from, to][end].clone());
+                let ends = dependencies
+                    .keys()
+                    .map(|(from, to)| [from, to][end].clone());
                 ends.collect::<BTreeSet<_>>()
             });
-            let before = arrows.len();
-            arrows.retain(|(from, to), _| ends.contains(from) && starts.contains(to));
-            if arrows.len() == before {
+            let before = dependencies.len();
+            dependencies.retain(|(from, to), _| ends.contains(from) && starts.contains(to));
+            if dependencies.len() == before {
                 break;
             }
         }
-        let shown = arrows.iter();
+        let shown = dependencies.iter();
         shown
             .map(|((from, to), name)| format!("{} → {} ({name})", from.join("::"), to.join("::")))
             .collect()

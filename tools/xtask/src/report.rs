@@ -97,7 +97,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     let lock = File::create(folder.join("lock")).context("creating the lock of the report")?;
     ensure!(
         lock.try_lock().is_ok(),
-        "{}: expected one report at a time, found another one that runs",
+        "{}: another report is running",
         folder.display()
     );
     write_stamp(&folder, quick)?;

@@ -118,7 +118,7 @@ pub fn check_own_blocks() -> Result<()> {
     within(&Budget::read()?, &measured)
 }
 
-/// Measures the blocks that have a least clock rate in the budget, with one seed, and compares them with it. The soft core's rate is
+/// Measures the blocks that have a minimum clock rate in the budget, with one seed, and compares them with it. The soft core's rate is
 /// that of the budget, because its place and route takes longer than that of all these blocks.
 ///
 /// # Errors

@@ -127,8 +127,8 @@ fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
     Ok(1)
 }
 
-/// Runs a cargo command as a check, with clippy as the compiler and warnings as errors. `cargo clippy` does the same, but then `cargo doc`
-/// would compile every crate again, because its compiler were another.
+/// Runs a cargo command as a check, with clippy as the compiler and warnings as errors. `cargo clippy` does the same, but
+/// `cargo doc` would then compile every crate again, because it would use another compiler.
 fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
     run::step(
         name,

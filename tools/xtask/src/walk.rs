@@ -115,7 +115,7 @@ pub fn walk(names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Runs the build with a single block, with the firmware that has all parts. Returns a line about it.
+/// Runs the build with a single block, with the firmware that has all parts. Returns the result as one line for the log.
 fn subset(name: &str) -> Result<String> {
     let block = Block::ALL.into_iter().find(|block| block.name() == name);
     let Some(block) = block else {
@@ -129,7 +129,8 @@ fn subset(name: &str) -> Result<String> {
     Ok(format!("{ONLY}{name}: answers"))
 }
 
-/// Draws a scene's picture on its own build and on the `complete` one. Returns a line about it.
+/// Draws a scene's picture on its own build and on the `complete` one. Returns the result as one line for the
+/// log.
 fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     let own = Build::of_scene(scene)?;
     let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();

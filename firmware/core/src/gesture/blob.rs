@@ -60,7 +60,7 @@ pub struct Statistics {
     pub count: u32,
     /// Sums of the x and of the y coordinates of these pixels. The top left pixel of the frame is (0, 0).
     pub sums: [u32; 2],
-    /// The smallest rectangle with all these pixels. It has no meaning if there are none.
+    /// Bounding box of these pixels. It has no meaning if there are none.
     pub bounds: Region,
     /// Whether the frame was received without a fault.
     pub is_whole: bool,
@@ -119,7 +119,7 @@ pub struct Blob {
     pub centre: [U20_12; 2],
     /// The square root of its part of the frame's area: the side of a square of this area, as part of the frame's. Rounded to nearest.
     pub width: U0_16,
-    /// The smallest rectangle with all its pixels.
+    /// Bounding box of its pixels.
     pub bounds: Region,
 }
 

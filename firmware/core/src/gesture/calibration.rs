@@ -23,7 +23,7 @@ impl Window {
 pub struct Calibrated {
     /// The windows of Cr and Cb.
     pub windows: [Window; 2],
-    /// Samples in the box that are in both windows, in percent.
+    /// Share of the samples in the box that are in both windows, in percent.
     pub inside: u8,
     /// Samples outside the box that are in both windows, in percent.
     pub outside: u8,

@@ -2,17 +2,17 @@
 
 use crate::fixed::{Q4_28, U16_16};
 
-/// 2π·2^32/10^6, rounded to nearest: radians of one hertz in a microsecond, with 32 fraction bits.
+/// 2π·2^32/10^6, rounded to nearest: the angle in radians by which 1 Hz advances in one microsecond, with 32 fraction bits.
 const RADIANS: u32 = 26_986;
-/// Shortest and longest step, in µs.
+/// Minimum and maximum step, in µs.
 const STEPS: [u32; 2] = [1_000, 100_000];
 
 /// The time between two camera frames, in the forms that the filters need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// The radians of one hertz in the step, with 32 fraction bits.
+    /// 2π·step: the angle in radians by which 1 Hz advances in one step, with 32 fraction bits.
     radians: u32,
-    /// Steps a second, with 12 fraction bits, rounded down.
+    /// Number of steps per second, with 12 fraction bits, rounded down.
     rate: u32,
 }
 
@@ -32,7 +32,7 @@ impl Step {
 /// with 16 fraction bits, rounded up. Unlike the explicit gain k it is below 1 for every step, so the filter is monotone.
 #[inline(never)]
 pub fn low_pass_gain(cutoff: U16_16, step: Step) -> u32 {
-    // The step is at most 0.63 radians a hertz, so k is below 2^16 with 16 fraction bits.
+    // The step is at most 0.63 rad per Hz, so k is below 2^16 with 16 fraction bits.
     let k = ((u64::from(cutoff.to_bits()) * u64::from(step.radians)) >> 32) as u32;
     // 1/(1 + k) with 16 fraction bits, rounded down. The sum saturates at a gain of 1 − 2^−16.
     (1 << 16) - u32::MAX / k.saturating_add(1 << 16)
@@ -43,7 +43,7 @@ pub fn low_pass_gain(cutoff: U16_16, step: Step) -> u32 {
 pub struct Tuning {
     /// Corner frequency at rest, in Hz.
     pub cutoff: U16_16,
-    /// Growth of the corner frequency with the speed, in Hz for one unit of the input a second.
+    /// Growth of the corner frequency with the speed, in Hz per input unit per second.
     pub slope: U16_16,
     /// Corner frequency of the low pass for the speed, in Hz.
     pub speed_cutoff: U16_16,
@@ -57,7 +57,7 @@ pub struct Tuning {
 pub struct OneEuro {
     input: Q4_28,
     output: Q4_28,
-    /// Filtered speed in units of the input a second, with 24 fraction bits.
+    /// Filtered speed in input units per second, with 24 fraction bits.
     speed: i32,
 }
 
@@ -71,7 +71,7 @@ impl OneEuro {
         }
     }
 
-    /// Takes the next input, and returns the output. A speed of 128 units a second saturates.
+    /// Takes the next input, and returns the output. A speed of 128 units per second saturates.
     pub fn next(&mut self, input: Q4_28, tuning: &Tuning, step: Step) -> Q4_28 {
         let gain = low_pass_gain(tuning.speed_cutoff, step);
         self.next_with(input, tuning, step, gain)
@@ -101,8 +101,8 @@ impl OneEuro {
     }
 }
 
-/// Moves `from` to `to` by a part of the way: `gain`, at most 1, with 16 fraction bits. Rounded to nearest. A way beyond 2^31 counts as
-/// one of 2^31.
+/// Moves `from` to `to` by a part of the distance: `gain`, at most 1, with 16 fraction bits. Rounded to nearest. A distance beyond 2^31
+/// counts as one of 2^31.
 pub fn towards(from: i32, to: i32, gain: u32) -> i32 {
     let way = i64::from(to.saturating_sub(from)) * i64::from(gain);
     // The gain is at most 1, so the sum lies between the two numbers.

@@ -52,7 +52,7 @@ impl Pace {
             return None;
         }
         let to = time << 8;
-        // The chip has its newest sample, which is not older than a period, also if others were lost.
+        // The chip has its newest sample, which is not older than a period, even if others were lost.
         let from = (before << 8).max(to.saturating_sub(self.period.into()));
         let expected = self.expected.unwrap_or(from.midpoint(to));
         let measured = expected.clamp(from, to);

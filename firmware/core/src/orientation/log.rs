@@ -30,9 +30,9 @@ use super::tracker::{Counts, Tracker};
 use crate::calibration::{RestBias, Units};
 use crate::fixed::Q32_32;
 
-/// Bytes of the header.
+/// Size of the header in bytes.
 pub const HEADER_BYTES: usize = 48;
-/// Bytes of a record.
+/// Size of a record in bytes.
 pub const RECORD_BYTES: usize = 16;
 /// Largest accepted magnitude of a bias, in 1/256 LSB. No mean of 16-bit counts exceeds it.
 pub const LARGEST_BIAS: u32 = 1 << 23;

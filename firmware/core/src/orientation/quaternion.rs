@@ -172,7 +172,7 @@ impl Quaternion {
     }
 
     /// Computes the heading: the angle of that rotation about the world's z axis which is nearest to this attitude (the twist).
-    /// The heading is continuous, also at both poles of the pitch, except for a body that is upside down.
+    /// The heading is continuous, even at both poles of the pitch, except for a body that is upside down.
     pub fn heading(self) -> Turns {
         let [w, _, _, z] = self.parts.map(i64::from);
         let (_, half) = polar(w << 30, z << 30);

@@ -26,11 +26,11 @@ pub enum SampleEffect {
 pub struct Counts {
     /// Integrated samples.
     pub steps: u64,
-    /// Samples that were ignored because they are not later than their predecessor.
+    /// Number of samples that were ignored because they are not later than their predecessor.
     pub stale: u64,
     /// Gaps of more than `LONGEST_STEP` between samples, over which the attitude stayed constant.
     pub gaps: u64,
-    /// Samples in which a rate of the gyroscope is at an end of its range.
+    /// Number of samples in which a rate of the gyroscope is at an end of its range.
     pub saturated: u64,
     /// Samples whose accelerometer reading was rejected.
     pub rejected: u64,

@@ -1,6 +1,6 @@
 //! Blocks and the manifest of a transfer.
 
-/// Bytes in a block, the unit of acknowledgement.
+/// Number of bytes in a block, the unit of acknowledgement.
 pub const BLOCK: u32 = 16;
 /// Maximum number of blocks in a data frame.
 pub const MAX_BLOCKS: u32 = 15;

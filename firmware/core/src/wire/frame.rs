@@ -8,7 +8,7 @@ use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 use super::format::{BLOCK, MAX_BLOCKS, Manifest};
 use super::state::Reason;
 
-/// Bytes of a data frame on the line besides its data: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
+/// Number of bytes of a data frame on the line besides its data: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
 /// code (1) and two zeros.
 pub const OVERHEAD: usize = 10;
 /// Length in bytes of the longest encoded frame, for which the buffer of `poll` must have room.

@@ -5,7 +5,7 @@ use crate::fixed::Q5_11;
 
 /// Largest number of segments of a program.
 pub const MAX_SEGMENTS: u32 = 65_535;
-/// Bytes of a word in memory: 128 bits, little-endian, of which a program uses the lower 99.
+/// Number of bytes of a word in memory: 128 bits, little-endian, of which a program uses the lower 99.
 pub const WORD_BYTES: usize = 16;
 
 /// A position in space: x to the right, y up, z to the viewer.

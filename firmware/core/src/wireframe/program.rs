@@ -167,7 +167,7 @@ impl<'a> Program<'a> {
         self.words.as_flattened()
     }
 
-    /// Number of words, with the end.
+    /// Number of words, including the end instruction.
     pub const fn word_count(&self) -> usize {
         self.words.len()
     }
@@ -180,7 +180,7 @@ impl<'a> Program<'a> {
         }
     }
 
-    /// The instructions, with the end.
+    /// The instructions, including the end instruction.
     pub fn instructions(&self) -> impl Iterator<Item = Instruction> + use<'a> {
         // Every word of a checked program is an instruction.
         self.words

@@ -189,7 +189,7 @@ fn crossing((a, b): (Fraction, Fraction), within: i128, out: i128) -> Option<i32
     })
 }
 
-/// Divides by a positive number and rounds to nearest, half units up, also for negative quotients.
+/// Divides by a positive number and rounds to nearest, half units up, even for negative quotients.
 const fn nearest(numerator: i64, denominator: i64) -> i64 {
     let quotient = numerator.div_euclid(denominator);
     let rest = numerator.rem_euclid(denominator);

@@ -55,7 +55,7 @@ fn an_image_has_its_parts_again() {
     let lamp = image.contents.find(Kind::Scene, "lamp").unwrap();
     assert_eq!(lamp.text(), Ok("size 640 360\nfield sphere:0.6\n"));
     assert_eq!(image.contents.find(Kind::List, "lamp"), None);
-    // A board sees the whole flash, with erased bytes behind the contents.
+    // A board sees the whole flash, with erased bytes after the contents.
     let mut flash = bytes.clone();
     flash.resize(MAX_BYTES, 0xff);
     let contents = Contents::new_checked(&flash[CONTENTS..]).unwrap();
@@ -95,7 +95,7 @@ fn every_damaged_byte_outside_the_gaps_is_found() {
     }
 }
 
-/// Whether the byte fills the gap behind an item.
+/// Whether the byte fills the gap after an item.
 fn bytes_between_items(good: &[u8], place: usize) -> bool {
     let end = CONTENTS + 16 + 3 * 48;
     (end + 40..end + 48).contains(&place) || {

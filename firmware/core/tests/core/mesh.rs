@@ -46,7 +46,7 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
         .collect()
 }
 
-/// An optional attribute is an array behind the chunks, with an element for each vertex in the order of the chunks.
+/// An optional attribute is an array after the chunks, with an element for each vertex in the order of the chunks.
 #[test]
 fn an_optional_attribute_follows_the_chunks() {
     let vertices: Vec<Vertex> = (0..5).map(vertex).collect();

@@ -11,7 +11,7 @@ use litex_pac::bus::{self, Bus};
 use super::*;
 use crate::timer::tests::{Uptime, clock};
 
-/// A model of LiteX's UART: it holds 16 bytes each way, raises events on the edges of "not empty" and "not full", and
+/// A model of LiteX's UART: it holds 16 bytes in each direction, raises events on the edges of "not empty" and "not full", and
 /// removes a received byte when its event is cleared.
 struct Line {
     to_cpu: VecDeque<u8>,

@@ -51,18 +51,18 @@ pub enum Fault {
 pub struct Counts {
     /// Whole frames.
     pub frames: u32,
-    /// Frames with a fault.
+    /// Number of frames with a fault.
     pub frames_dropped: u32,
-    /// Lines with a wrong number of bytes, or cut by VSYNC.
+    /// Number of lines with a wrong number of bytes, or cut by VSYNC.
     pub lines_malformed: u32,
 }
 
 /// Output of the image sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
-    /// Pixels of the last line.
+    /// Number of pixels of the last line.
     pub pixels: u16,
-    /// Lines of the last frame.
+    /// Number of lines of the last frame.
     pub lines: u16,
 }
 

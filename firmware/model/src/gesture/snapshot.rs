@@ -2,7 +2,7 @@
 
 use glint_core::colour::Rgb565;
 
-/// Words of the memory for a small picture.
+/// Number of words of the memory for a small picture.
 pub const SNAPSHOT_WORDS: usize = 2048;
 
 /// A small picture: every 2^step-th pixel of every 2^step-th line, as marks or colours.
@@ -30,7 +30,7 @@ impl Snapshot {
         }
     }
 
-    /// The words: RGB565 colours, or marks, 16 a word and the first in the highest bit.
+    /// The words: RGB565 colours, or marks, 16 per word and the first in the highest bit.
     #[must_use]
     pub fn words(&self) -> &[u16] {
         &self.words

@@ -53,7 +53,7 @@ impl Cones {
     }
 }
 
-/// Exponent of the block size of a picture, 2 to 4: blocks have 2^exponent pixels each way, and this is the smallest size
+/// Exponent of the block size of a picture, 2 to 4: blocks have 2^exponent pixels in each direction, and this is the smallest size
 /// for which the cones of all eyes fit the table.
 pub const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;

@@ -16,11 +16,11 @@ pub struct FieldStats {
     pub rays: u32,
     /// Evaluations of the field by rays and cones. A step in a scene with several spheres counts one for each sphere.
     pub evaluations: u64,
-    /// Rays that hit a surface.
+    /// Number of rays that hit a surface.
     pub hits: u32,
-    /// Rays that missed.
+    /// Number of rays that missed.
     pub misses: u32,
-    /// Rays that ended undecided, at the step limit.
+    /// Number of rays that ended undecided, at the step limit.
     pub undecided: u32,
 }
 

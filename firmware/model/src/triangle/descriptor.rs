@@ -59,7 +59,7 @@ const fn in_planes(field: Bits) -> Bits {
     field.from(descriptor::BITS)
 }
 
-/// Words of a piece at its start that are stored at [`stored_piece::LOW`]; the others are stored at [`stored_piece::HIGH`].
+/// Number of words of a piece at its start that are stored at [`stored_piece::LOW`]; the others are stored at [`stored_piece::HIGH`].
 const LOW_WORDS: usize = 4;
 /// Half a depth code, 14 fraction bits, which the depth of a piece includes.
 const HALF_A_CODE: i64 = 1 << 13;

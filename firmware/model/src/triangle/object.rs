@@ -66,8 +66,8 @@ impl Placement {
         &self.matrix
     }
 
-    /// The matrix that turns the normals of the mesh to the world; `None` if they stay as they are, because the light is turned or the
-    /// mesh has turned normals.
+    /// The matrix that transforms the normals of the mesh to the world; `None` if they stay as they are, because the light is turned or the
+    /// mesh has transformed normals.
     pub const fn normals(&self) -> Option<&Normals> {
         self.normals.as_ref()
     }
@@ -225,7 +225,7 @@ fn fit(
     let scale_shift = f.saturating_sub(cut);
     let near = camera.near >> k;
     if is_perspective {
-        // The leading bit of the near plane has at least the number 30, and 40 − f after the change of f.
+        // The leading bit of the near plane is bit 30 or higher, and at least bit 40 − f after the change of f.
         let lead = 40_u32.saturating_sub(scale_shift).max(30);
         if near >> lead == 0 {
             let least = u32::try_from((1_u64 << (lead + k)) >> 9);

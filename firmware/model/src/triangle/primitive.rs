@@ -28,7 +28,7 @@ pub struct Options<'a> {
     pub colour: Option<Rgb565>,
     /// Colours of the light; `None` for white light at the camera, without ambient light. The direction is in the frame constants.
     pub light: Option<&'a MeshLight>,
-    /// The matrix that turns the normals of an object to the axes of the light; `None` if they have these axes.
+    /// The matrix that transforms the normals of an object to the axes of the light; `None` if they have these axes.
     pub normals: Option<&'a Normals>,
     /// Whether the axes of the light are those of the world, and not those of the mesh.
     pub lit_in_world: bool,
@@ -214,7 +214,7 @@ fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     }
 }
 
-/// The light of a vertex in a light other than white light at the camera; `normal` is in the axes of the light.
+/// Lights a vertex, for any light but the default white one at the camera; `normal` is in the axes of the light.
 ///
 /// Not inlined, so that frames with white light at the camera do not load this code into the instruction cache.
 #[inline(never)]

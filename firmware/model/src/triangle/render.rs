@@ -20,14 +20,14 @@ use crate::triangle::volume::Volume;
 /// Counts of the triangles and pixels of a mesh in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Stats {
-    /// Triangles in the mesh: `culled` + `drawn`.
+    /// Number of triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker, the stage that finds pixels: back faces, triangles without area, behind
+    /// Number of triangles that did not reach the walker, the stage that finds pixels: back faces, triangles without area, behind
     /// the near plane or off the picture, and triangles without a pixel centre in their bounds, or tiny and without a covered one.
     pub culled: u32,
-    /// Triangles that went through the clipper, with or without a visible part.
+    /// Number of triangles that went through the clipper, with or without a visible part.
     pub clipped: u32,
-    /// Triangles that reached the walker, whole or in part.
+    /// Number of triangles that reached the walker, whole or in part.
     pub drawn: u32,
     /// Pixels tested by the walker: covered pixels, and pixels just outside the ends of a span. `None` where the triangle engine draws:
     /// its walker tests groups of eight pixels, and its counter `cycles_walking` counts those.
@@ -111,7 +111,7 @@ pub fn trace(
 /// Draws a mesh as [`trace`] does, from its frame constants.
 ///
 /// # Errors
-/// [`RenderError`], also if the frame buffer differs in size from the constants; the frame buffer is then unchanged.
+/// [`RenderError`], even for a frame buffer whose size differs from that of the constants; the frame buffer is then unchanged.
 pub fn trace_frame(
     mesh: &Mesh,
     frame: MeshSetup,

@@ -33,9 +33,9 @@ pub struct CameraVertex {
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenVertex {
-    /// Pixels from the left, 8 fraction bits; s12.8 inside the guard band.
+    /// Distance from the left in pixels, 8 fraction bits; s12.8 inside the guard band.
     pub x: i32,
-    /// Pixels from the top, in the format of `x`.
+    /// Distance from the top, in the format of `x`.
     pub y: i32,
     /// Depth code before rounding, u18.6; larger is nearer.
     pub w: u32,

@@ -216,7 +216,7 @@ fn an_object_with_the_identity_is_the_mesh() {
     }
 }
 
-/// A copy of a mesh with turned normals gives the picture of the mesh, for every shading, winding, clipping and light.
+/// A copy of a mesh with transformed normals gives the picture of the mesh, for every shading, winding, clipping and light.
 #[test]
 fn a_copy_with_turned_normals_gives_the_same_picture() {
     let mut random = Random(33);

@@ -11,7 +11,7 @@ use super::GatewareRenderer;
 use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
 
-/// Words of a program that are projected between two samples of the buttons.
+/// Number of words of a program that are projected between two samples of the buttons.
 const WORDS_A_CALL: usize = 16;
 
 /// There is no room for all segments of a frame.

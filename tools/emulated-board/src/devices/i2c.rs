@@ -15,11 +15,11 @@ use crate::{Device, Events, MainMemory, nanoseconds};
 /// The event, by its bit in the event registers.
 const ENDED: u32 = 1;
 
-/// Cycles of a phase, a third of a bit at 400 kHz.
+/// Number of cycles of a phase, a third of a bit at 400 kHz.
 const PHASE: u64 = (CONFIG_CLOCK_FREQUENCY as u64).div_ceil(3 * 400_000);
-/// Cycles until a rise of SCL passes the spike filter.
+/// Number of cycles until a rise of SCL passes the spike filter.
 const FILTER: u64 = 7;
-/// Cycles between two looks at SCL while a device holds it low.
+/// Number of cycles between two looks at SCL while a device holds it low.
 const POLL_CYCLES: u64 = 16;
 /// Most cycles that a device may hold SCL low.
 const STRETCH: u64 = 1 << 21;
@@ -439,7 +439,7 @@ impl Device for I2c {
 mod tests {
     use super::*;
 
-    /// Cycles of a round.
+    /// Number of cycles of a round.
     const ROUND: u64 = 2000;
 
     /// A master in which rounds of a start and a stop begin at the cycle 0.

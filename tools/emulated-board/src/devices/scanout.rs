@@ -13,14 +13,15 @@ const VBLANK: u32 = 1;
 /// Cycle of the first vertical blanking. The video timing begins at the end of the last visible line.
 const FIRST: u64 = 130;
 
-/// Scales that the block supports, and the scale after a reset.
+/// Scales that the block supports.
 const SCALES: [u32; 3] = [1, 2, 4];
+/// Scale after a reset.
 const DEFAULT_SCALE: u32 = 4;
 
-/// Bytes of a memory word.
+/// Size of a memory word in bytes.
 const WORD: u32 = 16;
 
-/// Cycles of the fetch of a line in addition to one for each word: an estimate.
+/// Number of cycles of the fetch of a line in addition to one for each word: an estimate.
 const FETCH_OVERHEAD: u32 = 30;
 
 /// The scan-out block.

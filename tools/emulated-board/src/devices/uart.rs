@@ -7,8 +7,9 @@ use litex_pac::uart::{EvPending, offset};
 
 use crate::{Device, Events, MainMemory};
 
-/// The events, by their bits in the event registers.
+/// Bit of the event for the transmitter in the event registers.
 const TX: u32 = 1;
+/// Bit of the event for the receiver in the event registers.
 const RX: u32 = 2;
 
 /// The UART.

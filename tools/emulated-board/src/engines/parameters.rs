@@ -1,6 +1,6 @@
 //! The registers of a block that only the block reads: parameters of its work.
 
-/// Words in the window of a block.
+/// Number of words in the window of a block.
 const WORDS: usize = 512;
 
 /// The parameters of a block, which software may write at any time. They read as 0.

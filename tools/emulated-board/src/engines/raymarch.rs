@@ -27,12 +27,12 @@ const COUNTERS: usize = ((offset::UNDECIDED - offset::CYCLES_BUSY) / 4 + 1) as u
 /// Largest depth of a sponge.
 const LEVELS: u8 = 6;
 
-/// Cycles in which a field is drawn, besides those of its rays.
+/// Number of cycles in which a field is drawn, besides those of its rays.
 const LATENCY: u64 = 300;
 
 /// Statistics of a drawn field.
 pub struct Field {
-    /// Cycles that it takes.
+    /// Number of cycles that it takes.
     pub cycles: u64,
     /// Pixels, counted for each eye, and those of them that passed the depth test.
     pub pixels: u32,

@@ -18,8 +18,9 @@ use litex_pac::triangle::{
 pub const MESH: u32 = 0x4200_0000;
 pub const FRAMES: [u32; 2] = [0x4100_0000, 0x4120_0000];
 pub const DEPTH: u32 = 0x4140_0000;
-/// Descriptors and lists of the engine, and of the clipper.
+/// Descriptors of the engine, and of the clipper.
 pub const DESCRIPTORS: [u32; 2] = [0x4600_0000, 0x4680_0000];
+/// Lists of the engine, and of the clipper.
 pub const LISTS: [u32; 2] = [0x4700_0000, 0x4740_0000];
 pub const EXCEPTIONS: u32 = 0x4780_0000;
 pub const LIMIT: u32 = 100_000;

@@ -1,4 +1,4 @@
-//! Ways of data into and out of a board.
+//! Channels of data into and out of a board.
 
 use super::name::BoardName;
 

@@ -24,10 +24,10 @@ use std::time::Duration;
 use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
-/// Ends of the prompts of firmware and BIOS.
+/// Text at the end of the firmware's prompt and of the BIOS's.
 const PROMPTS: [&[u8]; 2] = [b"glint> ", b"litex\x1b[0m> "];
 
-/// Run a board that stays, for programs or in a web page: print its serial port or the page's address, and run until Ctrl-C.
+/// Run a board for programs or in a web page until Ctrl-C: print its serial port or the page's address.
 ///
 /// Without --web every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a
 /// script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens at once;

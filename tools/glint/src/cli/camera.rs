@@ -48,10 +48,10 @@ pub struct CameraArguments {
     view: Option<PathBuf>,
 }
 
-/// Options of any camera, and of one that shows the whole model.
+/// Options that apply to any camera, and to the default one that shows the whole model.
 #[derive(Args)]
 struct LensArguments {
-    /// The axis of the model that is up on the screen, without a camera [default: y for .obj, .gltf and .glb, otherwise z].
+    /// The axis of the model that points up on the screen, if no camera is given [default: y for .obj, .gltf and .glb, otherwise z].
     #[arg(long, value_parser = named(Axis::ALL, Axis::name))]
     up: Option<Axis>,
     /// Enlarge the middle of the picture by this factor, by a narrower field of view.
@@ -240,7 +240,7 @@ impl LensArguments {
     }
 }
 
-/// Refuses a camera, given by `source`, of which an eye is too far away for a mesh.
+/// Refuses a camera that has an eye too far away for a mesh. `source` names the option that gave the camera.
 fn check_eye(view: &View, shown: &Shown, source: &str) -> anyhow::Result<()> {
     let eyes = shown.stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
     let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));

@@ -14,7 +14,7 @@ pub struct InfoArguments {
     board: BoardChoice,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the entries as JSON: an object of texts.
+    /// Print the entries as JSON: an object whose values are strings.
     #[arg(long)]
     json: bool,
 }

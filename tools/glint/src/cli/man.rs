@@ -18,13 +18,13 @@ pub struct ManArguments {
 impl ManArguments {
     /// Writes the pages of `program`.
     pub fn run(self, program: Command) -> anyhow::Result<()> {
-        let made = tempfile::tempdir().context("a folder for the pages")?;
-        clap_mangen::generate_to(program, made.path()).context("manual pages")?;
-        let pages = made.path().read_dir().context("manual pages")?;
+        let made = tempfile::tempdir().context("creating a temporary folder")?;
+        clap_mangen::generate_to(program, made.path()).context("generating the manual pages")?;
+        let pages = made.path().read_dir().context("listing the manual pages")?;
         let mut pages = pages
             .map(|page| Ok(page?.path()))
             .collect::<std::io::Result<Vec<_>>>()
-            .context("manual pages")?;
+            .context("listing the manual pages")?;
         pages.sort();
         std::fs::create_dir_all(&self.folder)
             .with_context(|| format!("{}: cannot be made", self.folder.display()))?;
@@ -34,7 +34,7 @@ impl ManArguments {
         let outputs = names.map(|name| Output::open(&self.folder.join(name), &["1"], [""; 0]));
         let outputs = outputs.collect::<anyhow::Result<Vec<_>>>()?;
         for (page, out) in pages.iter().zip(outputs) {
-            let text = std::fs::read(page).context("manual page")?;
+            let text = std::fs::read(page).context("reading a manual page")?;
             out.write(|out| out.write_all(&text))?;
         }
         say(format_args!(

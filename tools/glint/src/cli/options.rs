@@ -123,7 +123,7 @@ impl OptionArguments {
         self.given.iter().any(|given| given.option.name == name)
     }
 
-    /// Sets the options of `scene`, which has a field or not.
+    /// Sets the given options in `scene`, which may or may not have a field.
     ///
     /// # Errors
     /// A value is not accepted, or the option needs a field.

@@ -40,7 +40,7 @@ pub struct OrbitArguments {
     field: FieldArguments,
     #[command(flatten)]
     camera: CameraArguments,
-    /// Animation to write: an animated PNG, or a GIF, which has 256 colours a frame. `-` is standard output, for a PNG.
+    /// Animation to write: an animated PNG, or a GIF, which has 256 colours per frame. `-` is standard output, for a PNG.
     #[arg(long, value_name = "ANIMATION.png|ANIMATION.gif")]
     out: PathBuf,
     /// Number of frames.

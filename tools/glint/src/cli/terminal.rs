@@ -112,7 +112,7 @@ impl ConsoleArguments {
         replies: &mut Vec<Vec<String>>,
     ) -> anyhow::Result<()> {
         for command in script {
-            let command = command.context("the commands")?;
+            let command = command.context("reading the commands")?;
             let command = command.trim();
             if command.is_empty() || command.starts_with('#') {
                 continue;
@@ -210,10 +210,10 @@ impl RawTerminal {
         if !isatty(&stdin) {
             return Ok(Self(None));
         }
-        let before = tcgetattr(&stdin).context("the terminal's settings")?;
+        let before = tcgetattr(&stdin).context("reading the terminal's settings")?;
         let mut raw = before.clone();
         raw.make_raw();
-        tcsetattr(&stdin, OptionalActions::Flush, &raw).context("the terminal's settings")?;
+        tcsetattr(&stdin, OptionalActions::Flush, &raw).context("setting up the terminal")?;
         Ok(Self(Some(before)))
     }
 }

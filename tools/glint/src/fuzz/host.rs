@@ -31,10 +31,11 @@ pub const WORDS: &[&str] = &[
     "\x1e\n",
 ];
 
-/// Bytes of the data that the conversations upload and download.
+/// Size in bytes of the data that the conversations upload and download.
 const LENGTH: usize = 100;
-/// Address and length of the program of a serial boot.
+/// Address of the program of a serial boot.
 const ADDRESS: u32 = 0x4000_0000;
+/// Length of the program of a serial boot, in bytes.
 const PROGRAM: usize = 200;
 
 /// End of a part of a stream: the next part waits for a command, or for a silence.

@@ -116,8 +116,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Meshes that boards have not built
-    /// in are uploaded.
+    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Each mesh that is not built into
+    /// the firmware is uploaded.
     fn show_scene(
         &mut self,
         scene: &SceneFile,

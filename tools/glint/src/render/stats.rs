@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Cycles and counts of a frame. The option `--stats` writes them to its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stats {
-    /// Cycles of the board's clock that the frame took; `None` from the model, which has no clock.
+    /// Number of cycles of the board's clock that the frame took; `None` from the model, which has no clock.
     pub cycles: Option<u64>,
     /// Counts of the mesh; `None` for a frame without a mesh.
     #[serde(flatten)]
@@ -36,13 +36,13 @@ pub struct Stats {
 /// Counts of triangles and pixels of a frame with a mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TriangleCounts {
-    /// Triangles in the mesh.
+    /// Number of triangles in the mesh.
     pub triangles_in: u32,
-    /// Triangles that did not reach the walker, which tests the pixels of a triangle.
+    /// Number of triangles that did not reach the walker, which tests the pixels of a triangle.
     pub triangles_culled: u32,
-    /// Triangles that went through the clipper.
+    /// Number of triangles that went through the clipper.
     pub triangles_clipped: u32,
-    /// Triangles that reached the walker.
+    /// Number of triangles that reached the walker.
     pub triangles_drawn: u32,
     /// Pixels tested by the walker; `None` from the gateware, whose walker tests groups of eight: `cycles_walking` counts those.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -61,20 +61,20 @@ pub struct RayCounts {
     pub rays: u32,
     /// Evaluations of the field.
     pub evaluations: u64,
-    /// Rays that reached a surface.
+    /// Number of rays that reached a surface.
     pub hits: u32,
-    /// Rays that reached the far limit.
+    /// Number of rays that reached the far limit.
     pub misses: u32,
-    /// Rays that reached the step limit.
+    /// Number of rays that reached the step limit.
     pub undecided: u32,
 }
 
 /// Counts of a wireframe's picture.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WireframeCounts {
-    /// Segments of the program.
+    /// Number of segments of the program.
     pub segments: u32,
-    /// Segments with a part behind the view plane and within the guard band.
+    /// Number of segments with a part behind the view plane and within the guard band.
     pub lines: u32,
     /// Pixels written; a pixel of several lines counts for each of them.
     pub line_pixels: u64,

@@ -8,9 +8,9 @@ use glint_core::digits::Display;
 /// Cycles within which a command is done.
 pub const LIMIT: u64 = 60_000_000;
 
-/// Cycles of a millisecond.
+/// Number of cycles per millisecond.
 pub const MS: u64 = 81_250;
-/// Time in which the digits and LEDs follow: they change each half second.
+/// Time in which the digits and LEDs follow: they change every half second.
 pub const PANEL: u64 = 600 * MS;
 
 /// The built-in list.

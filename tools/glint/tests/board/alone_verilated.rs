@@ -7,7 +7,7 @@ use glint::console::Console;
 use glint::image;
 use virtual_board::virtual_flash::Flash;
 
-/// Cycles in which a serial line of 115,200 baud sends a byte, of which the virtual board's needs one.
+/// Number of cycles in which a serial line of 115,200 baud sends a byte, of which the virtual board's needs one.
 const BYTE: u64 = 7053;
 
 /// The next picture on the monitor, 640×360 pixels, that is not black.

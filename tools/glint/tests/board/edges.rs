@@ -41,7 +41,7 @@ fn edges_are_the_models() {
     let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
     let cases = [
         (plain(&sphere), outside, hidden, gateware),
-        // Without edges the board keeps the list of the previous mesh. The next mesh comes to the place of that one.
+        // Without edges the board keeps the list of the previous mesh. The next mesh is loaded at the same address.
         (plain(&sphere), outside, None, gateware),
         (plain(&other), outside, hidden, gateware),
         (plain(&sponge), inside, over, gateware),

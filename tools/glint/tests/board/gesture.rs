@@ -1,4 +1,4 @@
-//! A hand in front of the virtual image sensor steers the camera of the scene: the whole way from the pins of the sensor's port over the
+//! A hand in front of the virtual image sensor steers the camera of the scene: the whole path from the pins of the sensor's port over the
 //! gesture engine, the firmware and the triangle engine to the monitor.
 
 use crate::common::{console, emulator, mesh};
@@ -15,7 +15,7 @@ use glint_core::picture::Size;
 use std::sync::{Arc, Mutex};
 use virtual_board::virtual_image_sensor::{Hand, ImageSensor, Model, Scene, Timing};
 
-/// Clock cycles of a millisecond.
+/// Number of clock cycles per millisecond.
 const MS: u64 = 81_250;
 /// Size of the sensor's frames.
 const SIZE: [usize; 2] = [320, 240];
@@ -104,7 +104,7 @@ fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) 
 }
 
 /// Largest error of the hand's centre in pixels, and of the camera's angles in degrees and its distance while the hand moves the
-/// camera at up to four turns a second: the lag of the filters, after one camera frame.
+/// camera at up to four turns per second: the lag of the filters, after one camera frame.
 const MOST: [f64; 3] = [0.3, 8.0, 0.2];
 /// The same bound for the first 16 ms, in which the hand starts at full speed: the region of a hand at rest cuts it in a frame.
 const START: f64 = 3.0;
@@ -142,7 +142,7 @@ fn the_camera_follows_the_hand() {
     let mut worst = [0.0_f64; 3];
     let films = std::env::var_os("GLINT_UPDATE").is_some();
     let mut film = Vec::new();
-    // Half of the way; all of it for the animation.
+    // Half of the path; all of it for the animation.
     for step in 0..if films { 19 } else { 10 } {
         if films {
             film.push(Image {

@@ -1,4 +1,4 @@
-//! Pictures and depths of meshes on the monitor, in memory and over the line equal the model's, bit for bit.
+//! Pictures and depths of meshes equal the model's bit for bit: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
     drawn_alike, emulator, mesh, mesh_frame, plain, renderer, running_board, timeless,
@@ -97,7 +97,7 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     }
 }
 
-/// In orthographic projection the triangle engine draws the model's picture, and so does the CPU, also with smooth shading.
+/// In orthographic projection the triangle engine draws the model's picture, and so does the CPU, even with smooth shading.
 #[test]
 fn orthographic_pictures_are_the_models_on_every_backend() {
     let mut board = emulator();

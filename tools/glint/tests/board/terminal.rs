@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::Duration;
 
-/// Bytes of output kept for an error message.
+/// Number of bytes of output kept for an error message.
 const KEPT: usize = 1000;
 
 /// A program with a terminal as its input, as litex_term requires.

@@ -11,11 +11,11 @@ use glint::transfer;
 use glint_core::console::PROMPT;
 use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
 
-/// Cycles of a byte on a line of 1 Mbaud, 8N1.
+/// Number of cycles of a byte on a line of 1 Mbaud, 8N1.
 const BYTE: u64 = 10 * MS / 1_000;
-/// Cycles between two looks at the picture, six blankings.
+/// Number of cycles between two looks at the picture, six blankings.
 const LOOK: u64 = 100 * MS;
-/// Cycles after which a board without an answer has failed.
+/// Number of cycles after which a board without an answer has failed.
 const PATIENCE: u64 = 60_000 * MS;
 /// The mesh of 1 MB.
 const LARGE: &str = "icosphere:46";
@@ -37,7 +37,7 @@ struct Line {
 }
 
 impl Line {
-    /// A board that has started, with a sensor that turns by 20° a second.
+    /// A board that has started, with a sensor that turns by 20° per second.
     fn start() -> Self {
         let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
         let motion = |_| State {

@@ -101,7 +101,7 @@ fn logs_of_a_gyroscope() {
     assert!(!folder.join("x.csv").exists());
 }
 
-/// `--still 0` is a replay without a calibration, also of a log that begins in motion.
+/// `--still 0` is a replay without a calibration, even of a log that begins in motion.
 #[test]
 fn a_rest_of_zero_seconds_is_none() {
     let folder = folder("no-rest");

@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use tungstenite::http::StatusCode;
 use tungstenite::{Error, Message};
 
-/// Bytes of rubbish.
+/// Number of bytes of rubbish.
 const RUBBISH: usize = 10_000_000;
 
 /// The first line of the answer to a request.

@@ -195,8 +195,7 @@ fn read<B: Board>(console: &mut Console<B>, address: u32, length: usize) -> Vec<
     bytes
 }
 
-/// Largest size of a small mesh, in bytes. Loading costs the firmware about 20 cycles per byte, which is one second of
-/// simulation for 10 kB.
+/// Largest size of a small mesh, in bytes.
 const SMALL: usize = 256 << 10;
 
 /// Returns the scenes with meshes of at most `SMALL` bytes, and a scene with two small chunks; without `small`, returns the

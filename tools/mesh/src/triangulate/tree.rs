@@ -8,7 +8,7 @@ pub fn area([ax, ay]: Point, [bx, by]: Point, [cx, cy]: Point) -> f64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// Points of a part of the tree from which on it is searched point by point.
+/// Number of points of a part of the tree from which on it is searched point by point.
 const LEAF: usize = 16;
 
 /// The points of a polygon that are not removed yet.

@@ -372,7 +372,7 @@ fn measure_stiff(only: Option<&str>, on_virtual_board: bool, to: &Folder) -> Res
     }
     ensure!(
         differing.is_empty(),
-        "{} of {} cases differ: mend the code, or state and explain the outcome in tools/reference/stiff",
+        "{} of {} cases differ: fix the code, or state and explain the outcome in tools/reference/stiff",
         differing.len(),
         cases.len()
     );

@@ -7,7 +7,7 @@ use rand_pcg::Pcg64Mcg;
 use super::frame::{Drawn, Frame, Noise, Shape};
 use super::path::{AREA, angles, between};
 
-/// Frames a second.
+/// Number of frames per second.
 const RATE: f64 = 60.0;
 /// The second in which the fault begins, and the one in which it ends.
 const FAULT: [f64; 2] = [2.0, 3.0];

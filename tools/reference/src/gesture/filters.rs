@@ -18,7 +18,7 @@ pub enum Filter {
     LowPass(f64),
     /// α-β filter with the tracking index λ of Kalata (1984).
     AlphaBeta(f64),
-    /// 1€ filter with the corner frequencies at rest and of the speed in Hz, and the slope in Hz for a turn a second.
+    /// 1€ filter with the corner frequencies at rest and of the speed in Hz, and the slope in Hz per turn per second.
     OneEuro([f64; 3]),
     /// The filter in use: the 1€ filter and the dead zone, with the firmware's constants.
     Shipped,
@@ -114,7 +114,7 @@ impl Filter {
         }
     }
 
-    /// Filters the targets of samples at a rate in frames a second; returns azimuth and polar angle in turns.
+    /// Filters the targets of samples at a rate in frames per second; returns azimuth and polar angle in turns.
     pub fn run(self, samples: &[Sample], rate: f64) -> Vec<[f64; 2]> {
         let step = Step::new((1e6 / rate).round() as u32);
         let Some(first) = samples.first() else {
@@ -166,9 +166,9 @@ pub struct Quality {
     pub largest: f64,
 }
 
-/// The samples that filters are compared on, at a rate in frames a second.
+/// The samples that filters are compared on, at a rate in frames per second.
 pub struct Recordings {
-    /// Frames a second.
+    /// Number of frames per second.
     pub rate: f64,
     /// A hand at rest.
     pub rest: Vec<Sample>,

@@ -83,7 +83,7 @@ impl Drawn {
         }
     }
 
-    /// Returns the hand moved by a way in pixels.
+    /// Returns the hand moved by an offset in pixels.
     #[must_use]
     pub fn moved(self, way: [f64; 2]) -> Self {
         let palm = [0, 1].map(|axis| self.palm[axis] + way[axis]);
@@ -177,7 +177,7 @@ impl Frame {
         [sums[1] / sums[0], sums[2] / sums[0]]
     }
 
-    /// The gesture engine's statistics: runs of fewer pixels than the least one are dropped, the rest is counted. The region cuts
+    /// The gesture engine's statistics: runs shorter than the minimum length are dropped, the rest is counted. The region cuts
     /// the runs.
     pub fn statistics(&self, setting: Setting) -> Statistics {
         let Region { first, last } = setting.region;

@@ -15,7 +15,7 @@ pub const AREA: f64 = 2_000.0;
 pub enum Path {
     /// Rest, off the pixels' grid.
     Rest,
-    /// A steady motion to the right over 200 pixels, at this speed in pixels a second, then back to the start.
+    /// A steady motion to the right over 200 pixels, at this speed in pixels per second, then back to the start.
     Sweep(f64),
     /// Reaches from place to place within 0.5 s, each followed by a rest of 0.3 s: minimum-jerk motions, as of an arm.
     Reaches,

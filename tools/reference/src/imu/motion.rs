@@ -143,7 +143,7 @@ impl Motion {
     }
 
     /// Returns the attitude after `seconds` seconds. It is [`Self::attitude`] if there is a
-    /// closed form, otherwise it is integrated from the identity with 16 · `rate` steps a second.
+    /// closed form, otherwise it is integrated from the identity with 16 · `rate` steps per second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);

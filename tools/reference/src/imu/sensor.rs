@@ -32,7 +32,7 @@ pub struct Sensor {
 
 impl Sensor {
     /// Makes a sensor with ranges of ±2000 °/s and ±8 g, whose only error
-    /// is the rounding to counts. It takes `rate` samples a second.
+    /// is the rounding to counts. It takes `rate` samples per second.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,

@@ -118,7 +118,7 @@ pub struct Accuracy {
     pub false_miss: usize,
     /// Pixels where the picture hits and the reference misses.
     pub false_hit: usize,
-    /// Pixels of the picture that are undecided.
+    /// Number of pixels of the picture that are undecided.
     pub undecided: usize,
     /// Absolute difference of the rays' parameters at the hit, over the pixels with a hit in both picture and reference.
     pub depth: Option<Quantiles>,

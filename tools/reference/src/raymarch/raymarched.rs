@@ -122,7 +122,8 @@ fn reach(setup: &FieldSetup, ray: &raymarch::Ray) -> f64 {
     depth(setup, ray, setup.tuning.far)
 }
 
-/// Returns the depth of a ray at its parameter `t` in the model's format, in world units along the camera's n.
+/// Returns the depth of the point at parameter `t` of a ray: its distance along the camera's n, in world units. `t` is in the model's
+/// fixed-point format.
 pub fn depth(setup: &FieldSetup, ray: &raymarch::Ray, t: u32) -> f64 {
     let units = setup.depth_of(ray, t) as f64 * (-21.0 - f64::from(setup.exponent)).exp2();
     units / setup.scale.to_num::<f64>()

@@ -20,7 +20,7 @@ pub struct Raymarcher {
 /// Clocks and distance evaluations that a picture takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
-    /// Clocks from the start of the picture to its end.
+    /// Number of clocks from the start of the picture to its end.
     pub clocks: u64,
     /// Number of evaluations of the field's distance.
     pub evaluations: u64,

@@ -12,11 +12,11 @@ use super::workspace;
 /// Cycles of the calls of a kernel (a measured function of the firmware), in clocks of the soft core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
-    /// Cycles of the fastest call.
+    /// Number of cycles of the fastest call.
     pub min: u64,
     /// Median of the calls' cycles.
     pub median: u64,
-    /// Cycles of the slowest call.
+    /// Number of cycles of the slowest call.
     pub max: u64,
 }
 

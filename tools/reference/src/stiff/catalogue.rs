@@ -82,7 +82,11 @@ pub fn read(folder: &Path) -> Result<Vec<Subject>> {
 fn parse(text: &str) -> Result<Subject> {
     let subject: Subject = toml::from_str(text)?;
     for case in &subject.cases {
-        ensure!(!case.why.is_empty(), "{}: expected a why", case.name);
+        ensure!(
+            !case.why.is_empty(),
+            "{}: expected a non-empty `why`",
+            case.name
+        );
         case.expected()?;
     }
     Ok(subject)

@@ -25,7 +25,7 @@ pub struct Bench {
     /// The band whose flush began last.
     pub flushed_last: Option<Band>,
     pub expected: Vec<Word>,
-    /// Rows of the band buffer per line of the picture; a row is a group of eight pixels.
+    /// Number of rows of the band buffer per line of the picture; a row is a group of eight pixels.
     pub stride: usize,
     pub counters: Counters,
 }

@@ -39,7 +39,7 @@ pub enum End {
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     pub polarity: Polarity,
-    /// Clocks between two lines, and of VSYNC.
+    /// Number of clocks between two lines, and of VSYNC.
     pub blank: usize,
     pub between: usize,
     /// Whether HREF changes at random during VSYNC.

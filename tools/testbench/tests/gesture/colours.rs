@@ -4,7 +4,7 @@ use glint_core::colour::Rgb565;
 use glint_model::gesture::{Channel, channels};
 use glint_testbench::Module;
 
-/// Clocks from a pixel to the comparison with its windows.
+/// Number of clocks from a pixel to the comparison with its windows.
 const LATENCY: u32 = 4;
 
 /// The window of each colour holds just the model's value, so the mark says that the engine has the same one.

@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::segments::{bands, piece, pixels};
 
-/// Columns of a group.
+/// Number of columns of a group.
 const LANES: u32 = 8;
 
 struct Bench {

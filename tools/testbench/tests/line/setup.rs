@@ -66,7 +66,7 @@ fn difficult_segments() {
     }
 }
 
-/// 10,000 segments of 50 pixels have 135 clocks each in a frame, at 60 frames a second and 81.25 MHz.
+/// 10,000 segments of 50 pixels have 135 clocks each in a frame, at 60 frames per second and 81.25 MHz.
 #[test]
 fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     for size in 0..3 {

@@ -28,7 +28,7 @@ const DATA: u32 = 0x47f0_0000;
 /// The word after the last program's results, which the end of all programs sets.
 const DONE: u32 = RESULTS + 128 * PROGRAMS as u32;
 
-/// Bytes of the data window, which loads and stores reach from its middle.
+/// Number of bytes of the data window, which loads and stores reach from its middle.
 const WINDOW: u32 = 4096;
 /// Longest run of an image in cycles.
 const LIMIT: u64 = 100_000_000;
@@ -390,10 +390,10 @@ fn random_programs_leave_the_same_on_both_boards() {
     }
 }
 
-/// Cycles of the firmware that are compared, unless `GLINT_LOCKSTEP_CYCLES` states another number.
+/// Number of cycles of the firmware that are compared, unless `GLINT_LOCKSTEP_CYCLES` states another number.
 const CYCLES: u64 = 3_000_000;
 
-/// Cycles between two comparisons.
+/// Number of cycles between two comparisons.
 const SLICE: u64 = 100_000;
 
 /// Compares each instruction of the firmware: its start, and the commands of the console's transcript. `GLINT_LOCKSTEP_CYCLES=50000000`

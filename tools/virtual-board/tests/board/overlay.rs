@@ -13,13 +13,15 @@ use emulated_board::EmulatedBoard;
 
 use crate::firmware::{command, emulated, image};
 
-/// Columns, rows, and pixels of the first size of a picture.
+/// Width of the smallest picture, in pixels.
 const WIDTH: usize = 320;
+/// Number of pixels of the smallest picture.
 const PIXELS: usize = WIDTH * 180;
-/// A character of the text: width and height; and the position of the first one in both directions.
+/// Width and height of a character, in pixels.
 const CELL: [usize; 2] = [6, 10];
+/// Margin between the text and the edges of the picture, in pixels.
 const MARGIN: usize = 4;
-/// Rows between two lines of text.
+/// Height of a line of text, in pixels.
 const LINE: usize = 11;
 
 /// The colours of the last frame, of the first size.

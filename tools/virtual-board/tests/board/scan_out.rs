@@ -25,7 +25,8 @@ fn bytes(frame: &[u16]) -> Vec<u8> {
     frame.iter().flat_map(|pixel| pixel.to_le_bytes()).collect()
 }
 
-/// Shows a frame, flips to another frame, and compares the monitor's pictures for `frames` video frames.
+/// Shows a frame, requests a flip to another, and checks that the monitor shows the first one, then the second one for the rest of
+/// `frames` video frames.
 fn shows_and_flips(scale: usize, frames: u64) {
     // SAFETY: only addresses of registers are taken; nothing is accessed.
     let (scanout, leds) = unsafe { (scanout::Scanout::steal(), leds::Leds::steal()) };

@@ -75,7 +75,7 @@ fn an_unknown_sensor_and_a_picture_with_another_checksum_fail() {
     let mut unknown = sensor(|_| State::default());
     unknown.chip.fault = Some(Fault::Identity(0x12));
     board.plug(unknown);
-    // The search for a sensor is repeated each 30 ms.
+    // The search for a sensor is repeated every 30 ms.
     board.run(3_000_000);
     let answer = command(&mut board, "selftest");
     assert!(

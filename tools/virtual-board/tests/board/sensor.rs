@@ -220,8 +220,9 @@ impl Part {
     }
 }
 
-/// Start of the first part, and length of the rest after each part, in seconds.
+/// Start of the first part, in seconds.
 const BEGIN: f64 = 0.03;
+/// Length of the rest after each part, in seconds.
 const RESTING: f64 = 0.035;
 
 const SCRIPT: [Part; 6] = [
@@ -299,7 +300,7 @@ fn script(time: f64, stretch: f64) -> (Rotation, State) {
     (turned, state)
 }
 
-/// The camera follows the sensor's motion as computed in f64, also where the pitch passes 90°. The motion takes 0.6 s of
+/// The camera follows the sensor's motion as computed in f64, even where the pitch passes 90°. The motion takes 0.6 s of
 /// board time; with `GLINT_IMU_MOTION` in the environment it has a seventh of the speed and takes 2.6 s.
 #[test]
 fn the_camera_follows_a_script() {

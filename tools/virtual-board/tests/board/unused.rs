@@ -9,14 +9,16 @@ use crate::program::assemble;
 
 /// Where the program leaves its results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
-/// Number of accesses, and of words that the program leaves: two before the first access, two after each, and one at the end.
+/// Number of accesses.
 const ACCESSES: usize = 4;
+/// Number of words that the program leaves: two before the first access, two after each, and one at the end.
 const WORDS: usize = 2 * ACCESSES + 3;
 
 /// Clock cycles until the bus answers an access.
 const TIMEOUT: u32 = 1_000_000;
-/// Cycles between two looks at the results, and the most for all of them.
+/// Number of cycles between two looks at the results.
 const SLICE: u64 = 500_000;
+/// Maximum number of cycles until the results are complete.
 const LIMIT: u64 = 40_000_000;
 
 /// For each access the errors that the bus has counted, and the number of time-outs that it took. `run` runs a board for some cycles and

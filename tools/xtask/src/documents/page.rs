@@ -11,7 +11,7 @@ pub struct Block {
     pub line: usize,
     /// Its text without code. In a row of a table each cell is followed by the headings of its column and of its row.
     pub text: String,
-    /// Its links; for a row of a table also those of the block before the table.
+    /// Its links; for a row of a table, including those of the block before the table.
     pub links: Vec<String>,
 }
 

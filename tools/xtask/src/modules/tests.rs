@@ -1,4 +1,4 @@
-//! Tests the search for circles on small crates, whose files are given as text.
+//! Tests the search for cycles on small crates, whose files are given as text.
 
 use std::path::Path;
 
@@ -14,23 +14,25 @@ fn load(files: &[(&str, &str)]) -> Crate {
     Crate::load(Path::new("lib.rs"), &read).unwrap()
 }
 
-/// The arrows in circles, without `crate::`.
-fn circles(files: &[(&str, &str)]) -> Vec<String> {
-    let circles = load(files).circles();
-    let circles = circles.iter();
-    circles.map(|arrow| arrow.replace("crate::", "")).collect()
+/// The dependencies in cycles, without `crate::`.
+fn cycles(files: &[(&str, &str)]) -> Vec<String> {
+    let cycles = load(files).cycles();
+    let cycles = cycles.iter();
+    cycles
+        .map(|dependency| dependency.replace("crate::", ""))
+        .collect()
 }
 
-/// Returns the arrows in circles of a crate whose modules `a` and `b` have the given texts.
+/// Returns the dependencies in cycles of a crate whose modules `a` and `b` have the given texts.
 fn of_pair(a: &str, b: &str) -> Vec<String> {
-    circles(&[("lib.rs", "mod a; mod b;"), ("a.rs", a), ("b.rs", b)])
+    cycles(&[("lib.rs", "mod a; mod b;"), ("a.rs", a), ("b.rs", b)])
 }
 
 const NONE: [&str; 0] = [];
-const CIRCLE: [&str; 2] = ["a → b (B)", "b → a (A)"];
+const CYCLE: [&str; 2] = ["a → b (B)", "b → a (A)"];
 
 #[test]
-fn imports_down_make_no_circle() {
+fn imports_down_make_no_cycle() {
     assert_eq!(
         of_pair("use crate::b::B; pub struct A(B);", "pub struct B;"),
         NONE
@@ -38,7 +40,7 @@ fn imports_down_make_no_circle() {
 }
 
 #[test]
-fn imports_of_each_other_make_a_circle() {
+fn imports_of_each_other_make_a_cycle() {
     for a in [
         "use crate::b::B; pub struct A(B);",
         "use super::b::B as Other; pub struct A(Other);",
@@ -58,12 +60,12 @@ fn imports_of_each_other_make_a_circle() {
         "pub struct A; mod inner { struct C(super::super::b::B); }",
         "pub struct A; type C = Vec<Option<&'static dyn crate::b::B>>;",
     ] {
-        assert_eq!(of_pair(a, "pub struct B(crate::a::A);"), CIRCLE, "{a}");
+        assert_eq!(of_pair(a, "pub struct B(crate::a::A);"), CYCLE, "{a}");
     }
 }
 
 #[test]
-fn tests_variables_and_other_crates_make_no_arrow() {
+fn tests_variables_and_other_crates_make_no_dependency() {
     for a in [
         "pub struct A; #[cfg(test)] mod tests { use crate::b::B; }",
         "pub struct A; #[cfg(test)] use crate::b::B;",
@@ -83,7 +85,7 @@ fn tests_variables_and_other_crates_make_no_arrow() {
 #[test]
 fn a_reexport_leads_to_the_definition() {
     let files = |root: &str, child: &str| {
-        circles(&[
+        cycles(&[
             ("lib.rs", root),
             (
                 "parent.rs",
@@ -111,8 +113,8 @@ fn a_reexport_leads_to_the_definition() {
 }
 
 #[test]
-fn a_parent_and_its_child_make_a_circle_when_each_uses_the_other() {
-    let circle = [
+fn a_parent_and_its_child_make_a_cycle_when_each_uses_the_other() {
+    let cycle = [
         "parent → parent::child (g)",
         "parent::child → parent (Parent)",
     ];
@@ -121,7 +123,7 @@ fn a_parent_and_its_child_make_a_circle_when_each_uses_the_other() {
         "mod child; pub use child::g; pub struct Parent; fn f() { g() }",
         "mod child; use child::g; pub struct Parent;",
     ] {
-        let found = circles(&[
+        let found = cycles(&[
             ("lib.rs", "mod parent;"),
             ("parent/mod.rs", parent),
             (
@@ -129,7 +131,7 @@ fn a_parent_and_its_child_make_a_circle_when_each_uses_the_other() {
                 "pub fn g() -> super::Parent { super::Parent }",
             ),
         ]);
-        assert_eq!(found, circle, "{parent}");
+        assert_eq!(found, cycle, "{parent}");
     }
 }
 
@@ -138,7 +140,7 @@ fn macros_count_by_order_of_text_and_by_export() {
     let root = "macro_rules! twice { ($x:expr) => { $x + $x } } mod a; fn f() { a::A::new() }";
     let a = "pub struct A; fn f() -> u32 { twice!(1) }";
     assert_eq!(
-        circles(&[("lib.rs", root), ("a.rs", a)]),
+        cycles(&[("lib.rs", root), ("a.rs", a)]),
         ["crate → a (A)", "a → crate (twice!)"]
     );
     let b = "#[macro_export] macro_rules! twice { () => { 2 } } fn f(a: crate::a::A) {}";
@@ -150,7 +152,7 @@ fn macros_count_by_order_of_text_and_by_export() {
 
 #[test]
 fn a_module_and_a_function_may_share_a_name() {
-    let found = circles(&[
+    let found = cycles(&[
         ("lib.rs", "mod render; mod size; pub use render::render;"),
         (
             "render.rs",
@@ -162,7 +164,7 @@ fn a_module_and_a_function_may_share_a_name() {
 }
 
 #[test]
-fn only_the_arrows_of_a_circle_are_shown() {
+fn only_the_dependencies_of_a_cycle_are_shown() {
     let files = [
         ("lib.rs", "mod a; mod b; mod c; mod d;"),
         ("a.rs", "pub fn a() { crate::b::b() }"),
@@ -170,7 +172,7 @@ fn only_the_arrows_of_a_circle_are_shown() {
         ("c.rs", "pub fn c() { crate::a::a(); crate::d::d() }"),
         ("d.rs", "pub fn d() {}"),
     ];
-    assert_eq!(circles(&files), ["a → b (b)", "b → c (c)", "c → a (a)"]);
+    assert_eq!(cycles(&files), ["a → b (b)", "b → c (c)", "c → a (a)"]);
 }
 
 #[test]

@@ -106,7 +106,7 @@ pub struct Excess {
 pub struct Shortfall {
     /// Name of the block.
     pub block: String,
-    /// The least ratio of its clock rate to the soft core's.
+    /// The minimum ratio of its clock rate to the soft core's.
     pub minimum: f64,
     /// The measured ratio.
     pub measured: f64,
@@ -173,12 +173,12 @@ impl Budget {
         limits
     }
 
-    /// Returns the least ratio of a block's clock rate to the soft core's, if it has one.
+    /// Returns the minimum ratio of a block's clock rate to the soft core's, if it has one.
     pub fn ratio(&self, block: &str) -> Option<f64> {
         self.block.get(block)?.ratio
     }
 
-    /// Lists the blocks that have a least ratio.
+    /// Lists the blocks that have a minimum ratio.
     pub fn routed(&self) -> VecDeque<String> {
         let names = self.block.keys();
         names
@@ -187,7 +187,7 @@ impl Budget {
             .collect()
     }
 
-    /// Lists the blocks below their least ratios to `reference`, the soft core's rate in MHz.
+    /// Lists the blocks below their minimum ratios to `reference`, the soft core's rate in MHz.
     pub fn shortfalls(&self, blocks: &[Rate], reference: f64) -> Vec<Shortfall> {
         blocks
             .iter()

@@ -122,7 +122,7 @@ pub fn measure(blocks: VecDeque<String>) -> Result<Rates> {
     names.push_front(REFERENCE.to_owned());
     let mut rates = measure_blocks(names, Seeds::All)?;
     let at = rates.iter().position(|rate| rate.name == REFERENCE);
-    let reference = rates.remove(at.context("the soft core is measured")?);
+    let reference = rates.remove(at.context("the soft core was not measured")?);
     Ok(Rates {
         reference,
         blocks: rates,

@@ -21,13 +21,13 @@ use crate::gateware::{self, Board, Library};
 use crate::{firmware, paths, run, scenes};
 use row::{ALL, COLUMNS, Firmware, Frame, Row, Stats};
 
-/// Bytes of a word of the engines' memory ports.
+/// Size of a word of the engines' memory ports in bytes.
 const WORD: f64 = 16.0;
 
 /// Pictures a second that scan-out reads.
 const REFRESH: f64 = 60.0;
 
-/// Bytes of a pixel of the frame buffer.
+/// Size of a pixel of the frame buffer in bytes.
 const PIXEL: f64 = 2.0;
 
 /// The share of the firmware with all parts that the firmware for a single scene takes at most.
@@ -169,7 +169,7 @@ fn value(row: &Row, name: &str) -> Option<f64> {
     }
 }
 
-/// Fails if a row is beyond a limit of its scene: `fps` is a least value, all others are greatest ones. A single scene's firmware is
+/// Fails if a row is beyond a limit of its scene: `fps` is a minimum, all others are maxima. A single scene's firmware is
 /// limited to [`FIRMWARE_SHARE`] of the `full` bytes with all parts.
 fn within(rows: &[Row], full: f64) -> Result<()> {
     let mut lines = Vec::new();

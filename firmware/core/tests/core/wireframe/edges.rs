@@ -13,7 +13,7 @@ fn of_triangles(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 
 #[test]
 fn closed_and_open_meshes() {
-    // A tetrahedron has 6 edges, also without one of its faces; two triangles with one common edge have 5.
+    // A tetrahedron has 6 edges, even without one of its faces; two triangles with one common edge have 5.
     let tetrahedron = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
     assert_eq!(unique_edges(&mut of_triangles(&tetrahedron)).len(), 6);
     assert_eq!(unique_edges(&mut of_triangles(&tetrahedron[1..])).len(), 6);

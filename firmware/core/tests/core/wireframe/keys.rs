@@ -45,7 +45,7 @@ fn steps() {
     assert_eq!(Key::ZoomIn.step(false), Key::ZoomIn.step(true));
 }
 
-/// Samples of a level each millisecond: returns the times of the presses of button 0 that count.
+/// Samples of a level every millisecond: returns the times of the presses of button 0 that count.
 fn presses(levels: &str) -> Vec<u32> {
     let mut debouncer = Debouncer::default();
     // The clock wraps during the samples.

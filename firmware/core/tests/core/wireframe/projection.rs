@@ -101,7 +101,7 @@ fn any_coordinate() -> impl Strategy<Value = i32> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Behind the view plane every end is the f64 position rounded to nearest, also after a cut by the guard band.
+    /// Behind the view plane every end is the f64 position rounded to nearest, even after a cut by the guard band.
     #[test]
     fn every_end_is_rounded_once(
         viewing in any_viewing(),

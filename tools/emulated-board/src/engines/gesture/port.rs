@@ -37,9 +37,9 @@ pub struct Port {
     frame: Vec<Levels>,
     /// The next period in `frame`.
     at: usize,
-    /// The period in which VSYNC changes next; that behind the frame if there is none.
+    /// The period in which VSYNC changes next; the one after the frame if there is none.
     change: usize,
-    /// Half periods of the sensor's clock in which `frame` began, counted from the start of the board.
+    /// Half period of the sensor's clock in which `frame` began, counted from the start of the board.
     begin: u64,
     /// The time in which it began.
     first: Time,

@@ -6,7 +6,7 @@ use std::thread;
 use glint_model::FrameBuffer;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
 
-/// Rows of a strip: those of the largest block of the prepass.
+/// Number of rows of a strip: that of the largest block of the prepass.
 const ROWS: usize = 16;
 
 /// Draws a field into a picture that has its triangles. Returns the counts of its rays, and the number of pixels that are behind a

@@ -11,7 +11,7 @@ use super::region::{COUNT_BITS, Regions, list_words};
 use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 
-/// Words of 32 bits of a descriptor: the engine has flat shading.
+/// Number of words of 32 bits of a descriptor: the engine has flat shading.
 const DESCRIPTOR: usize = words(Shading::Flat);
 
 /// The room for the output in memory.
@@ -21,7 +21,7 @@ pub struct OutputLimits {
     places: [u32; 3],
     descriptor_limit: u32,
     list_shift: u32,
-    /// Words of 16 bytes of the table of lengths and all lists.
+    /// Number of words of 16 bytes of the table of lengths and all lists.
     list_words: u64,
     exception_limit: u32,
 }
@@ -174,7 +174,7 @@ impl Output {
             let list = 4 * list_word(band, self.room.list_shift) as usize;
             let (first, end) = (list + from as usize, list + to as usize);
             put(lists, first, self.lists.get(first..end));
-            // The end of a pass writes the incomplete last word of each list, also if the list has not grown.
+            // The end of a pass writes the incomplete last word of each list, even if the list has not grown.
             written += (to / 4 - from / 4 + u32::from(to % 4 > 0)) as usize;
         }
         put(lists, 0, Some(self.counts.lengths()));

@@ -14,10 +14,10 @@ use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 use crate::engines::raymarch::Raymarcher;
 
-/// Words of 16 bytes of a descriptor.
+/// Number of words of 16 bytes of a descriptor.
 const DESCRIPTOR: u32 = 3;
 
-/// The first and the last word of a line that was drawn; without one, the first is behind the last.
+/// The first and the last word of a line that was drawn; without one, the first is after the last.
 type Extent = [i32; 2];
 
 const EMPTY: Extent = [i32::MAX, 0];

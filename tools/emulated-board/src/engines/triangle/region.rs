@@ -7,13 +7,13 @@ use litex_pac::triangle::{Error, Size as SizeCode};
 
 use crate::MainMemory;
 
-/// Bits of a count of descriptors or entries.
+/// Number of bits of a count of descriptors or entries.
 pub const COUNT_BITS: u32 = 20;
 
 /// Largest valid `list_shift`: longer lists would exceed the counter of entries.
 const LAST_SHIFT: u32 = COUNT_BITS - 3;
 
-/// Bytes of a word of memory.
+/// Size of a word of memory in bytes.
 pub const WORD: u32 = 16;
 
 /// The size with a code in a register; `None` for the code that is none.

@@ -8,18 +8,18 @@ use glint_core::picture::Size;
 use glint_model::line::{Line, Segment};
 use litex_pac::triangle::{Counters, Error};
 
-/// Cycles of a pass that is refused, from its request to its end.
+/// Number of cycles of a pass that is refused, from its request to its end.
 pub const REFUSAL: u64 = 20;
-/// Cycles from `cancel` until the engine is ready again: the band buffer is cleared, a row a clock.
+/// Number of cycles from `cancel` until the engine is ready again: the band buffer is cleared, one row per clock.
 pub const RECOVERY: u64 = 2_100;
 
-/// Cycles of any geometry pass: parameters are copied, and lists emptied and closed.
+/// Number of cycles of any geometry pass: parameters are copied, and lists emptied and closed.
 const GEOMETRY: u64 = 400;
-/// Cycles of any raster pass.
+/// Number of cycles of any raster pass.
 const RASTER: u64 = 250;
-/// Cycles between the last group of a band and its flush.
+/// Number of cycles between the last group of a band and its flush.
 const BAND: u64 = 16;
-/// Cycles of a triangle's entry into a band.
+/// Number of cycles of a triangle's entry into a band.
 const ENTRY: u64 = 8;
 
 /// Statistics of a pass.
@@ -35,13 +35,13 @@ pub struct Work {
 /// Quantities that determine the time of a geometry pass.
 #[derive(Default)]
 pub struct GeometryTime {
-    /// Triangles of the mesh.
+    /// Number of triangles of the mesh.
     pub triangles: u32,
     /// Triangles drawn.
     pub drawn: u32,
     /// Vertices fetched.
     pub vertices: u32,
-    /// Cycles of the set-up of lines.
+    /// Number of cycles of the set-up of lines.
     lines: u64,
 }
 
@@ -71,12 +71,12 @@ impl GeometryTime {
 /// The time of a raster pass.
 #[derive(Default)]
 pub struct RasterTime {
-    /// Cycles in which groups of pixels are drawn.
+    /// Number of cycles in which groups of pixels are drawn.
     pub walking: u64,
     cycles: u64,
-    /// Cycles of drawing the current band.
+    /// Number of cycles of drawing the current band.
     band: u64,
-    /// Cycles of the flush of the previous band.
+    /// Number of cycles of the flush of the previous band.
     flush: u64,
 }
 

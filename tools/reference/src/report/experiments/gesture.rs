@@ -15,10 +15,10 @@ use crate::gesture::path::{Path, record};
 use crate::report::cycles::Cycles;
 use crate::report::provenance::Provenance;
 
-/// Frames a second at which filters are compared.
+/// Number of frames per second at which filters are compared.
 pub const RATE: f64 = 60.0;
 
-/// Errors of the hand's centre: a line of `gesture-centre.csv`. Errors are in pixels, of each coordinate.
+/// Errors of the hand's centre: a line of `gesture-centre.csv`. Errors are in pixels, per coordinate.
 #[derive(Serialize, Deserialize)]
 pub struct Centre {
     /// Shape and area of the hand.
@@ -48,7 +48,7 @@ pub struct Row {
     pub shipped: bool,
     /// RMS in degrees of the camera's motion while the hand rests.
     pub rest: f64,
-    /// Lag in ms behind a steady motion of 112° a second.
+    /// Lag in ms behind a steady motion of 112° per second.
     pub lag: f64,
     /// RMS in degrees of the tracking error during reaches.
     pub tracking: f64,

@@ -33,13 +33,13 @@ pub struct Row {
     pub argmax: String,
     /// Number of inputs.
     pub samples: u64,
-    /// Bits of a stored number, where these are the cost.
+    /// Number of bits of a stored number, where these are the cost.
     pub bits: Option<u32>,
-    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Cycles of the slowest call on the soft core.
+    /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit with which the row was measured.
     pub commit: String,

@@ -47,7 +47,7 @@ pub struct Cycles {
     pub width: u32,
     /// Name of the quality with the thresholds of the rays; `None` without a field.
     pub rays: Option<String>,
-    /// Cycles of the frame on the whole SoC, drawn alone.
+    /// Number of cycles of the frame on the whole SoC, drawn alone.
     pub cycles: u64,
     /// Commit with which the frame was measured.
     pub commit: String,

@@ -49,11 +49,11 @@ pub struct Row {
     /// Number of phases (inputs as fractions of a turn) at which a symmetry of the circle does not hold bit for bit. `None` if
     /// the inputs are not phases.
     pub asymmetric: Option<u64>,
-    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Cycles of the slowest call on the soft core.
+    /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit with which the kernel was measured.
     pub commit: String,

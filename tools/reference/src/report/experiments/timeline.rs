@@ -22,17 +22,17 @@ pub struct Row {
     pub scene: String,
     /// Width of the frame in pixels.
     pub width: u32,
-    /// Cycles of the frame, drawn alone.
+    /// Number of cycles of the frame, drawn alone.
     pub cycles: u64,
     /// Cycles without a pass of the engines.
     pub soft_core: u64,
-    /// Cycles of geometry passes.
+    /// Number of cycles of geometry passes.
     pub geometry: u64,
-    /// Cycles of raster passes.
+    /// Number of cycles of raster passes.
     pub raster: u64,
-    /// Cycles in which memory refused a command of the engines; in some of them nothing waits.
+    /// Number of cycles in which memory refused a command of the engines; in some of them nothing waits.
     pub refused: u64,
-    /// Words of 16 bytes that the engines read and wrote.
+    /// Number of words of 16 bytes that the engines read and wrote.
     pub words: u64,
     /// Evaluations of the field; `None` without a field.
     pub evaluations: Option<u64>,

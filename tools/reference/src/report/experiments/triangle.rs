@@ -181,11 +181,11 @@ pub struct Row {
     pub clipped: u32,
     /// Number of covered pixels, counted by the model.
     pub pixels: u64,
-    /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
+    /// Number of cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
-    /// Cycles of the geometry pass of a frame drawn alone.
+    /// Number of cycles of the geometry pass of a frame drawn alone.
     pub cycles_geometry: u64,
-    /// Cycles of the raster pass of a frame drawn alone.
+    /// Number of cycles of the raster pass of a frame drawn alone.
     pub cycles_raster: u64,
     /// Mean cycles of a frame among many that are drawn back to back.
     pub cycles_frame: f64,
@@ -226,7 +226,7 @@ pub struct Row {
 pub struct CpuRow {
     /// Name of the scene.
     pub scene: String,
-    /// Cycles of a frame.
+    /// Number of cycles of a frame.
     pub cycles: u64,
     /// Commit with which the scene was measured.
     pub commit: String,
@@ -291,7 +291,7 @@ fn measure_cases<R: Send>(
         let mut renderer = BoardRenderer::new(console).with_backend(backend);
         let mesh = (case.mesh)()?;
         let subject = Subject::mesh(Mesh::new_checked(&mesh)?);
-        let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
+        let size = Size::of(case.size.0, case.size.1).context("not the size of a picture")?;
         let frame = Frame::new(subject, ahead(case.half_width)?, size);
         let expected = render::on_model(&frame)?;
         let stats = renderer.show(&frame, Route::Memory, &mut |_, _| {})?;

@@ -108,7 +108,7 @@ fn fit(input: Fitted) -> Result<Outcome> {
     let place = Matrix::translation(input.place.map(number))?;
     let matrix = Matrix::scale([number(input.scale); 3])?.then(&place)?;
     let meshes = std::iter::once((mesh(&bytes), matrix));
-    let sphere = Sphere::around(meshes).context("a mesh")?;
+    let sphere = Sphere::around(meshes).context("no mesh")?;
     let angle = input
         .angle
         .map(|x| Turns::from_degrees(Q32_32::from_num(x)));
@@ -208,7 +208,7 @@ fn orthographic_depth(input: Orthographic) -> Result<Outcome> {
         };
         // Depths of vertices have 6 fraction bits more than codes.
         let code = (found.w + (1 << 5)) >> 6;
-        let depth = frame.depth.distance(code).context("a surface")?;
+        let depth = frame.depth.distance(code).context("no surface")?;
         let exact = distance + f64::from(y) / 16384.0;
         worst = worst.max((depth.to_num::<f64>() - exact).abs() / step);
     }

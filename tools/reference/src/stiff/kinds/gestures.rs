@@ -121,7 +121,7 @@ struct Filtered {
 struct Way {
     from: i32,
     to: i32,
-    /// Part of the way, in 2^-16.
+    /// Part of the distance, in 2^-16.
     gain: u32,
 }
 

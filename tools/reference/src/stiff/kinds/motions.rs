@@ -1,4 +1,4 @@
-//! Small parts of the way from a motion sensor's registers to an attitude: times, temperatures, tilt, bias at rest, and products.
+//! Small parts of the path from a motion sensor's registers to an attitude: times, temperatures, tilt, bias at rest, and products.
 
 use anyhow::{Context, Result};
 use glint_core::calibration::{RestBias, Units};
@@ -46,7 +46,7 @@ pub fn kinds() -> Vec<Kind> {
 }
 
 fn quaternion(parts: [i32; 4]) -> Result<Quaternion> {
-    Quaternion::new(parts.map(Q2_30::from_bits)).context("an attitude")
+    Quaternion::new(parts.map(Q2_30::from_bits)).context("expected an attitude")
 }
 
 /// The times in µs that the clock of the samples gives to reads, each of a time in µs and whether it has a new sample.

@@ -105,7 +105,7 @@ fn steering(
     let mut camera = Quaternion::IDENTITY;
     for parts in attitudes {
         let attitude = Quaternion::new(parts.map(Q2_30::from_bits));
-        camera = steering.follow(attitude.context("an attitude")?);
+        camera = steering.follow(attitude.context("expected an attitude")?);
     }
     let [w, x, y, z] = camera.parts();
     Ok(Outcome::exact(format!("({w}, {x}, {y}, {z})")))

@@ -24,7 +24,7 @@ struct Line {
     start: u64,
     /// Silences in ms, each of which ends with the sender's first frame again.
     silences: Vec<u64>,
-    /// Bytes that the receiver has room for.
+    /// Number of bytes that the receiver has room for.
     room: usize,
 }
 

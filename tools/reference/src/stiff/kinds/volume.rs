@@ -88,7 +88,7 @@ fn deep_volume(Deep { near, far, cubes }: Deep) -> Result<Outcome> {
         cube(second, 1.0, blue)?,
     ];
     let frame = Frame::new(Subject::Objects(&objects), ahead(near), Size::W320);
-    let scale = frame.constants()?.depth_scale().context("a depth scale")?;
+    let scale = frame.constants()?.depth_scale().context("no depth scale")?;
     let k = f64::from(scale.mantissa) * 2f64.powi(scale.exponent);
     let picture = Picture::of_frame(&frame);
     let largest = picture.depth.iter().max().copied().unwrap_or_default();

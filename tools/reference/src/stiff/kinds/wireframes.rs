@@ -58,7 +58,7 @@ fn segment(Viewed { segment, plane }: Viewed) -> Result<Outcome> {
     let program = Program::new_checked(&bytes)?;
     let moved = Motion::default()
         .pose()
-        .segment(program.segments().next().context("a segment")?);
+        .segment(program.segments().next().context("no segment")?);
     let ends = Projection::new(program.viewing(), Size::W640).line(moved);
     let pixels = draw(&bytes, Size::W640)?.pixels;
     Ok(Outcome::exact(match ends {

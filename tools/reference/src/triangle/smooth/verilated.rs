@@ -17,7 +17,7 @@ pub struct Rasterizer {
 
 /// A band (strip of lines) of a picture, drawn.
 pub struct Band {
-    /// Clocks from the first triangle until the rasterizer is idle.
+    /// Number of clocks from the first triangle until the rasterizer is idle.
     pub clocks: u64,
     /// The covered pixels of each group: bit 0 is the leftmost one.
     pub masks: Vec<u8>,

@@ -38,7 +38,7 @@ pub struct Bench {
     pub errors: [u64; 2],
     pub kept: [Option<Flags>; 2],
     pub recovery: Recovery,
-    /// Clocks until the engine is ready again.
+    /// Number of clocks until the engine is ready again.
     pub ready_in: u64,
     /// Length in clocks of each pass in the engine; `ends` has the result of each pass.
     pub runs: [u64; 2],

@@ -16,8 +16,9 @@ pub const CANCELLED: u64 = 7;
 pub const TRIANGLES: u64 = 8;
 pub const LINES: u64 = 9;
 
-/// Index of the geometry pass in arrays of both passes; `RASTER` is the index of the raster pass.
+/// Index of the geometry pass in arrays of both passes.
 pub const GEOMETRY: usize = 0;
+/// Index of the raster pass in arrays of both passes.
 pub const RASTER: usize = 1;
 pub const NAMES: [&str; 2] = ["geometry", "raster"];
 
@@ -185,7 +186,7 @@ pub fn regions(
 /// Limits of a build of the module.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// Bytes of memory.
+    /// Number of bytes of memory.
     pub memory: u64,
     /// Number of picture sizes.
     pub sizes: usize,

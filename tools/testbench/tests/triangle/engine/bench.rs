@@ -20,7 +20,7 @@ pub const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
 pub const LIST_SHIFT: u32 = 11;
-/// Number of words behind a picture that are checked not to change: more than a bank of the band buffer holds.
+/// Number of words after a picture that are checked not to change: more than a bank of the band buffer holds.
 const BEHIND: usize = 4096;
 /// Largest number of exceptions (triangles left to the clipper) that the engine may write. There is also room for this number
 /// of descriptors of three words each; a descriptor for smooth shading takes six.
@@ -356,7 +356,7 @@ impl Bench {
     /// is the table of the lists' lengths, one for each band.
     ///
     /// # Panics
-    /// When the frame does not end, or a word behind the picture changes.
+    /// When the frame does not end, or a word after the picture changes.
     pub fn draw_raw(
         &mut self,
         name: &str,

@@ -12,7 +12,7 @@ pub const CLEAR: u16 = 0x1234;
 /// A frame drawn by the model.
 pub struct Expected {
     pub size: (u32, u32),
-    /// Frame constants and options of the mesh, of several ones those of the first one.
+    /// Frame constants and options of the mesh, or of the first one if there are several.
     pub frame: MeshSetup,
     pub options: Options<'static>,
     pub colour: Vec<u16>,

@@ -157,7 +157,7 @@ fn fields_are_drawn_without_triangles() {
     }
 }
 
-/// Without a field the picture has the clear colour, also after a field that was cancelled.
+/// Without a field the picture has the clear colour, even after a field that was cancelled.
 #[test]
 fn pictures_without_a_field_are_clear() {
     let mut random = Pcg64Mcg::new(4);

@@ -13,7 +13,7 @@ use super::expected::{Expected, SIZES, expected};
 use super::gathered::Gathered;
 use super::generated;
 
-/// Clocks of a frame at 60 frames a second and 81.25 MHz.
+/// Number of clocks of a frame at 60 frames per second and 81.25 MHz.
 const FRAME_CLOCKS: u64 = 81_250_000 / 60;
 
 /// Draws segments, and compares the frame with the model's. Returns the clocks of both passes.
@@ -90,7 +90,7 @@ fn face(distance: f64, colour: u16) -> Vec<u8> {
     meshes::mesh(&[triangle([0, 1, 2]), triangle([0, 2, 3])], 100)
 }
 
-/// Lines and faces of one list keep their order, also where their depths are equal.
+/// Lines and faces of one list keep their order, even where their depths are equal.
 #[test]
 fn lines_and_faces_in_turn() {
     let mut numbers = Pcg64Mcg::new(23);

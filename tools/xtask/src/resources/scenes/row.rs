@@ -32,7 +32,7 @@ pub struct Stats {
 /// What a scene's frame takes.
 pub struct Frame {
     pub stats: Stats,
-    /// Frames a second, when one follows the other.
+    /// Number of frames per second, when one follows the other.
     pub rate: f64,
     /// Megabytes a second of main memory: the engines' at this rate, and scan-out's.
     pub memory: f64,

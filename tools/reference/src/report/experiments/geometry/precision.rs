@@ -29,11 +29,11 @@ pub struct Row {
     pub rms: f64,
     /// Number of errors.
     pub samples: u64,
-    /// Cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
+    /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
     /// Median of the cycles of the calls on the soft core.
     pub cycles_median: Option<u64>,
-    /// Cycles of the slowest call on the soft core.
+    /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
     /// Commit with which the row was measured.
     pub commit: String,
@@ -41,7 +41,7 @@ pub struct Row {
     pub tools: String,
 }
 
-/// Number of chains of matrices, and of turned normals.
+/// Number of chains of matrices, and of transformed normals.
 const ROUNDS: u32 = 20_000;
 /// Number of rotations of a chain.
 const CHAIN: u32 = 8;

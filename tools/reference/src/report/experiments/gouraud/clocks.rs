@@ -21,7 +21,7 @@ pub struct Row {
     pub pixels: u64,
     /// Number of groups with a covered pixel.
     pub groups: u64,
-    /// Clocks of all bands.
+    /// Number of clocks of all bands.
     pub clocks: u64,
     /// Whether the clocks were measured. Computed ones are the sum over the bands of the larger of two numbers: the measured clocks
     /// with flat triangles, and the sum of the groups' clocks.
@@ -55,8 +55,10 @@ pub fn measure() -> Result<Vec<Row>> {
     ] {
         eprintln!("{name} on the verilated rasterizer …");
         let scene = scenes.iter().find(|scene| scene.name == name);
-        let triangles = scene.context("a scene of this name")?.triangles();
-        let size = triangles.first().context("a triangle")?.size;
+        let triangles = scene
+            .with_context(|| format!("no scene {name}"))?
+            .triangles();
+        let size = triangles.first().context("the scene has no triangle")?.size;
         let smooth: Vec<Setup> = triangles
             .iter()
             .filter_map(|triangle| triangle.setup())

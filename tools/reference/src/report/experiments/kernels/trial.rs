@@ -10,7 +10,7 @@ pub struct Trial {
     pub config: String,
     /// Whether Glint uses the configuration.
     pub shipped: bool,
-    /// Bits of a stored number, where these are the cost.
+    /// Number of bits of a stored number, where these are the cost.
     pub bits: Option<u32>,
     /// Errors at all inputs.
     pub errors: Errors,

@@ -14,11 +14,12 @@ use crate::emulated::{Emulated, begin, command, cycles, start, view};
 use crate::report::progress::bar;
 use crate::report::provenance::Provenance;
 
-/// Frames of a turn.
+/// Number of frames of a turn.
 pub const FRAMES: u32 = 2_500;
 
-/// Azimuth and polar angle in degrees of the first camera, and its distance: as after the start of the board.
+/// Azimuth and polar angle in degrees of the first camera: as after the start of the board.
 const START: [u32; 2] = [40, 65];
+/// Distance of the first camera: as after the start of the board.
 const DISTANCE: &str = "2.5";
 
 /// The camera and the pictures after some turns: a line of `long-orbit.csv`.
@@ -26,7 +27,7 @@ const DISTANCE: &str = "2.5";
 pub struct Row {
     /// Turns so far.
     pub turns: u32,
-    /// Frames of these turns.
+    /// Number of frames of these turns.
     pub frames: u64,
     /// Largest difference of a basis vector's length from 1, over the cameras of one more turn.
     pub length: f64,

@@ -76,7 +76,7 @@ impl Path {
 
     fn attitude(self, time: f64) -> Result<Quaternion> {
         let attitude = self.motion().attitude((time - BEGIN).max(0.0));
-        attitude.context("a motion with an attitude in closed form")
+        attitude.context("the motion has no attitude in closed form")
     }
 }
 
@@ -93,9 +93,9 @@ pub struct Row {
     pub inclination: f64,
     /// Largest error of a length or an angle of the basis of a camera that the sensor turns.
     pub basis: f64,
-    /// Samples that the firmware has taken.
+    /// Number of samples that the firmware has taken.
     pub samples: u64,
-    /// Samples of the sensor that the firmware has not taken.
+    /// Number of samples of the sensor that the firmware has not taken.
     pub lost: u64,
     /// Gaps in the samples, of more than half a second.
     pub gaps: u64,
@@ -261,7 +261,7 @@ impl Bench {
         let time = measured.ok().and_then(|measured| measured.time(number));
         let truth = self
             .path
-            .attitude(time.context("the time of the last sample")?)?;
+            .attitude(time.context("the last sample has no time")?)?;
         // What turns the true attitude to the firmware's, about the axes of the world.
         let error = status.attitude.times(truth.inverse());
         let [heading, ..] = error.angles();

@@ -199,7 +199,7 @@ impl Bench {
         let mut sensor = image_sensor(moving_hand([320, 240]));
         let still = sensor.source.frame(0.0);
         sensor.source = Box::new(Still(still));
-        // 20 frames a second, of few periods, which take time on the host.
+        // 20 frames per second, of few periods, which take time on the host.
         sensor.timing.clock = 4_000_000;
         sensor.timing.blank = [3, 20, 20];
         self.board.inner().plug_image_sensor(sensor);
@@ -253,7 +253,7 @@ impl Bench {
         let gaps = |bench: &mut Self| value::<u64>(&mut bench.board, "imu", "gaps");
         self.board.inner().plug(turning_sensor());
         self.run(1_000);
-        let sensor = self.board.inner().unplug().context("a sensor")?;
+        let sensor = self.board.inner().unplug().context("no sensor")?;
         self.run(100);
         let (before, gaps_before) = (attitude(self)?, gaps(self)?);
         let micros = |board: &mut Emulated, micros: u64| cycles(board, 1_000) * micros / 1_000_000;

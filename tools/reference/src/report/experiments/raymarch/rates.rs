@@ -189,7 +189,7 @@ pub struct Row {
     pub rays: u32,
     /// Number of evaluations of the field's distance in a frame.
     pub evaluations: u64,
-    /// Cycles of a frame drawn alone, from the first register write until the firmware sees the end.
+    /// Number of cycles of a frame drawn alone, from the first register write until the firmware sees the end.
     pub cycles_alone: u64,
     /// Mean cycles of a frame among several that are drawn back to back. They are measured for the slowest pose of a view only.
     pub cycles_frame: Option<f64>,
@@ -244,7 +244,7 @@ fn draw(
     let mut console = Console::new(&mut board);
     console.greet()?;
     let mut renderer = BoardRenderer::new(console).with_backend(Backend::Gateware);
-    let size = Size::of(case.size.0, case.size.1).context("the size of a picture")?;
+    let size = Size::of(case.size.0, case.size.1).context("not the size of a picture")?;
     let field = Field::parse(case.field).map_err(|error| anyhow::anyhow!("{error}"))?;
     let stereo = case.stereo.map(Stereo::parse).transpose();
     let stereo = stereo.map_err(|error| anyhow::anyhow!("{error}"))?;
