@@ -222,12 +222,10 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     };
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
-    let start = [
-        "backend gateware",
-        &render::size_command(size),
-        "render",
-        "info",
-    ];
+    send(&mut console, &["backend gateware".to_owned()]);
+    // The monitor takes its first picture in the middle of a video frame, while nothing is shown.
+    console.board().board.inner().monitor().turn_on();
+    let start = [&render::size_command(size), "render", "info"];
     let mut replies = send(&mut console, &start.map(str::to_owned));
     let bytes = read(
         &mut console,
@@ -237,7 +235,6 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let pixels = bytes.chunks_exact(2);
     let pixels = pixels.map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]));
     console.board().expect("the start", pixels.collect());
-    console.board().board.inner().monitor().turn_on();
     // The firmware's count of video frames when the last scene was drawn.
     let mut drawn = replies.number("video_frames");
 
