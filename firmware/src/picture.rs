@@ -69,7 +69,7 @@ struct Content {
     mark: Option<Mark>,
 }
 
-/// The last picture, and what is wanted of the next one.
+/// The last picture, and requests for the next one.
 #[derive(Default)]
 pub struct Picture {
     /// What the last picture shows; `None` if the next one is wanted anyway.

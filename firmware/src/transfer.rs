@@ -16,7 +16,7 @@ use glint_scene::Name;
 use crate::arena::Loan;
 use crate::terminal::{ConsoleUart, Terminal};
 
-/// Number of bytes whose CRC-32 is computed in a turn, about half a millisecond of work.
+/// Number of bytes whose CRC-32 is computed in a turn.
 const SUMMED: usize = 4 << 10;
 /// Largest number of times in a turn that bytes are exchanged with the UART's queues, up to 256 received ones each time.
 const EXCHANGES: u32 = 8;
@@ -49,8 +49,8 @@ pub struct Transfer {
 }
 
 enum Stage {
-    /// The CRC-32 of the memory is computed: that of the data to send, or that of what is in the memory for an upload, which may be the
-    /// announced data already. A tool may have written them there, bypassing the cache, or a transfer may have been interrupted near its
+    /// Computes the CRC-32 of the memory: of a download's data, or of the bytes that the memory holds before an upload. These may be the
+    /// announced data already: a tool may have written them there, bypassing the cache, or a transfer may have been interrupted near its
     /// end.
     Sum(Sum),
     Receive(Party<Receiving<Loan>>),

@@ -49,7 +49,7 @@ pub type Rgb = [u8; 3];
 /// The constants of a field, by the registers that hold them (docs/registers.md). Numbers have the formats of docs/formats/raymarch.md.
 #[derive(Clone, Copy)]
 pub struct Field<'a> {
-    /// What is drawn. The driver sets `enable`.
+    /// Fields of the register `control`, except `enable`, which the driver sets.
     pub control: Control,
     /// The solid.
     pub solid: Solid,

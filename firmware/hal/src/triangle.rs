@@ -2,7 +2,7 @@
 //!
 //! A frame takes a geometry pass for each of its meshes and one raster pass. A geometry pass writes descriptors and band lists of a
 //! mesh, and a list of the triangles that need clipping. The raster pass draws a frame from these lists, and from a second set
-//! that the program may write (docs/formats.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
+//! that the program may write (docs/formats/triangle.md, "Descriptors and band lists"). A geometry and a raster pass may run at the same
 //! time, for two frames.
 //!
 //! The engine accesses memory by address and bypasses the CPU's data cache, so starting a pass is unsafe: see
@@ -82,7 +82,7 @@ pub struct Lists {
 /// A segment of a line, or the header of a list of segments: 8 words.
 pub type Segment = [u32; 8];
 
-/// A geometry pass. The numbers are those of docs/formats.md, "Frame constants".
+/// A geometry pass. The numbers are those of docs/formats/camera.md, "Frame constants".
 #[derive(Clone, Copy)]
 pub struct Geometry<'a> {
     /// The records of the mesh.

@@ -10,7 +10,7 @@ use glint_core::matrix::MatrixError;
 use glint_core::object::MAX_OBJECTS;
 use glint_core::picture::Size;
 
-/// Reason why an option cannot be set. `Display` states the option and what is expected.
+/// Reason why an option is refused. Its text names the option and the expected value.
 #[derive(Clone, Copy, Debug)]
 pub enum SettingError<'l> {
     /// The camera is out of range.
