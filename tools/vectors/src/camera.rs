@@ -40,7 +40,7 @@ impl Camera {
         };
         let world = frame(normalised(towards), random.direction());
         let camera = frame(normalised([a, b, 1.0]), [0.6, -0.64, 0.48]);
-        // Applies the rotation that turns the vectors of `camera` into those of `world` to the three unit vectors.
+        // Rotates the three unit vectors by the rotation that maps the vectors of `camera` to the vectors of `world`.
         let [u, v, n] = [0, 1, 2]
             .map(|axis| [0, 1, 2].map(|i| (0..3).map(|k| world[k][i] * camera[k][axis]).sum()));
         Self {
@@ -53,7 +53,7 @@ impl Camera {
         }
     }
 
-    /// Random camera whose eye has coordinates between −1 and 1, and that looks in a random direction.
+    /// Random camera: eye coordinates between −1 and 1, random viewing direction.
     pub fn inside(random: &mut Random) -> Self {
         let eye = [0; 3].map(|_| random.real(-1.0, 1.0));
         let (half_width, near) = (random.logarithmic(0.05, 4.0), random.logarithmic(0.01, 0.5));
@@ -94,7 +94,7 @@ impl Camera {
         .unwrap()
     }
 
-    /// Converts a view, which has fixed-point coordinates, to a camera.
+    /// Converts a fixed-point view to a camera.
     #[must_use]
     pub fn of(view: &View) -> Self {
         let basis = |row: [Q2_23; 3]| row.map(|x| x.to_num::<f64>());
@@ -108,8 +108,7 @@ impl Camera {
         }
     }
 
-    /// Projects a position: returns x and y on a picture of this size, in pixels, and the distance z along
-    /// the viewing direction.
+    /// Projects a position onto a picture of this size: returns x and y in pixels, and the distance z along the viewing direction.
     #[must_use]
     pub fn project(&self, position: [f64; 3], width: u32, height: u32) -> [f64; 3] {
         let d = [0, 1, 2].map(|i| position[i] - self.eye[i]);

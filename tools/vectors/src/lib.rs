@@ -1,5 +1,5 @@
-//! Inputs for tests that several crates share: random numbers, cameras in `f64`, models, meshes, triangles and segments on the
-//! screen, and scenes.
+//! Test inputs shared by several crates: random numbers, cameras in `f64`, models, meshes, scenes, and triangles and segments in
+//! screen coordinates.
 
 pub mod camera;
 pub mod math;

@@ -6,7 +6,7 @@ pub fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Vector product of two vectors.
+/// Cross product of two vectors.
 #[must_use]
 pub fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [

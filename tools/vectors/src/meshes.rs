@@ -13,7 +13,7 @@ pub const ONE: i32 = 1 << 14;
 /// A triangle: the positions of its corners in Q2.14, and its RGB565 colour.
 pub type Triangle = ([[i16; 3]; 3], u16);
 
-/// Encodes a mesh of `triangles`, each of which has its own three vertices, in chunks of at most `most` vertices.
+/// Encodes a mesh of `triangles`, each with its own three vertices, in chunks of at most `most` vertices.
 #[must_use]
 pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     let mut body = Vec::new();
@@ -24,7 +24,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     };
     let mut vertices = 0;
     for chunk in &chunks {
-        // A chunk must have at least one vertex, so a chunk without triangles gets an unused vertex.
+        // A chunk needs at least one vertex, so a chunk without triangles gets an unused vertex.
         let count = (3 * chunk.len()).max(1);
         vertices += count;
         let header = ChunkHeader {
@@ -33,7 +33,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
         };
         body.extend(header.to_bytes());
         let corners = chunk.iter().flat_map(|(corners, _)| *corners);
-        // Vertices get random normals of any length and random colours; both matter only for smooth shading.
+        // Vertices get random normals of any length and random colours, which only smooth shading uses.
         let mut random = Pcg64Mcg::new(count as u128);
         for position in corners.chain(std::iter::repeat([0; 3])).take(count) {
             let reach = [1 << 7, 1 << 13, i16::MAX][random.random_range(0..3)];
@@ -48,7 +48,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
             let triangle = mesh::Triangle {
                 indices: [0, 1, 2].map(|corner| 3 * number + corner),
                 colour: Rgb565(*colour),
-                // The normal of a triangle only dims its colour, so any vector may be used: here the position of a corner.
+                // A triangle's normal only dims its colour, so any vector serves: here the position of a corner.
                 normal: corners[0],
             };
             body.extend(triangle.to_bytes());
@@ -74,8 +74,7 @@ pub fn mesh(triangles: &[Triangle], most: usize) -> Vec<u8> {
     [header.to_bytes().to_vec(), body].concat()
 }
 
-/// Camera at (0, -2, 0) that looks along +y: a point (x, y, z) appears at the distance y + 2, farther right for larger x,
-/// and higher for larger z.
+/// Camera at (0, -2, 0) that looks along +y: a point (x, y, z) has depth y + 2; larger x is farther right, larger z is higher.
 #[must_use]
 pub fn ahead(half_width: f64, near: f64) -> View {
     let camera = Camera {
@@ -95,7 +94,7 @@ pub fn at(x: f64, y: f64, z: f64) -> [i16; 3] {
     [x, y, z].map(|c| (c * f64::from(ONE)).round() as i16)
 }
 
-/// Makes `count` random triangles of about `size` world units at random positions.
+/// Makes `count` random triangles of about `size` world units each at random positions.
 pub fn random(random: &mut Pcg64Mcg, count: usize, size: f64) -> Vec<Triangle> {
     let reach = (size * f64::from(ONE)) as i32;
     (0..count)

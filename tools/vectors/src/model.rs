@@ -102,7 +102,7 @@ impl Model {
         }
     }
 
-    /// The same triangles, with the order of the three corners of each rotated by `turns` positions.
+    /// This model with the three corners of each triangle cyclically shifted by `turns` positions.
     #[must_use]
     pub fn rotated(&self, turns: usize) -> Self {
         let mut model = self.clone();
@@ -113,7 +113,7 @@ impl Model {
         model
     }
 
-    /// The same triangles, each with the opposite orientation.
+    /// This model with each triangle's winding order reversed.
     #[must_use]
     pub fn flipped(&self) -> Self {
         let mut model = self.clone();
@@ -121,10 +121,10 @@ impl Model {
         model
     }
 
-    /// Encodes the model as a mesh, in as many chunks as it needs; each triangle has its own colour and its geometric normal.
+    /// Encodes the model as a mesh of one or more chunks; each triangle has its own colour and its geometric normal.
     ///
     /// # Panics
-    /// If the model has no vertex, a triangle refers to a missing position, or the mesh would be too large.
+    /// If the model has no vertex, a triangle's position index is out of range, or the mesh would be too large.
     #[must_use]
     pub fn encoded(&self) -> Vec<u8> {
         let vertices: Vec<Vertex> = self

@@ -6,7 +6,7 @@ use glint_model::{DrawnTriangle, Frame, FrameBuffer, Options, Projected, Stats, 
 
 use crate::model::Model;
 
-/// A picture that was drawn by the model.
+/// A picture drawn by the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     /// Number of columns.
@@ -15,7 +15,7 @@ pub struct Picture {
     pub height: u32,
     /// RGB565 colours of the pixels, line by line.
     pub colour: Vec<u16>,
-    /// Depth codes of the pixels, line by line; 0 without a triangle.
+    /// Depth codes of the pixels, line by line; 0 where no triangle covers the pixel.
     pub depth: Vec<u32>,
     /// The model's counts of triangles and pixels.
     pub stats: Stats,
@@ -23,7 +23,7 @@ pub struct Picture {
     pub drawn: Vec<DrawnTriangle>,
 }
 
-/// Colour of pixels without a triangle, RGB565.
+/// Background colour, RGB565.
 pub const CLEAR: u16 = 0x0841;
 
 impl Picture {
@@ -61,7 +61,7 @@ impl Picture {
         let mut scratch =
             vec![Projected::Behind; mesh.chunks().map(|c| c.vertex_count()).max().unwrap()];
         let mut picture = Self::blank(size);
-        // The renderer must overwrite these values in every pixel, even in those without a triangle.
+        // Initial values that the renderer must overwrite in every pixel, the background included.
         picture.colour.fill(0xDEAD);
         picture.depth.fill(0xDEAD);
         let mut drawn = Vec::new();
@@ -96,7 +96,7 @@ impl Picture {
         Self::of_bytes(&model.encoded(), view, size, cull)
     }
 
-    /// Renders a frame. The list of drawn triangles stays empty.
+    /// Renders a frame. Leaves the list of drawn triangles empty.
     ///
     /// # Panics
     /// If the renderer refuses the frame.

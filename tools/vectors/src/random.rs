@@ -1,8 +1,8 @@
-//! Random numbers, equal on every machine.
+//! Random numbers, reproducible on every machine.
 
 use crate::math::{dot, normalised};
 
-/// The random number generator SplitMix64. The number in it is its state, which is initially the seed.
+/// The random number generator SplitMix64. Its field is the state, initially the seed.
 pub struct Random(pub u64);
 
 impl Random {
@@ -19,22 +19,22 @@ impl Random {
         self.bits() & 1 == 0
     }
 
-    /// An integer from `low` to `high`, both included.
+    /// An integer from `low` to `high`, inclusive.
     pub fn integer(&mut self, low: i64, high: i64) -> i64 {
         low + (self.bits() % (high - low + 1) as u64) as i64
     }
 
-    /// A number from `low`, included, to `high`, excluded.
+    /// A number in `low..high`.
     pub fn real(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// A number from `low`, included, to `high`, excluded, whose logarithm is uniformly distributed.
+    /// A number in `low..high` whose logarithm is uniformly distributed.
     pub fn logarithmic(&mut self, low: f64, high: f64) -> f64 {
         self.real(low.ln(), high.ln()).exp()
     }
 
-    /// A unit vector, uniform on the sphere.
+    /// A unit vector, uniformly distributed on the sphere.
     pub fn direction(&mut self) -> [f64; 3] {
         loop {
             let v = [0; 3].map(|_| self.real(-1.0, 1.0));

@@ -24,8 +24,7 @@ pub fn inside() -> View {
     camera.rounded()
 }
 
-/// A fan of `parts` front faces around a common corner, in the plane with this `y`. The distance of this plane from the
-/// camera `ahead` is y + 2.
+/// A fan of `parts` front faces around a common corner, in the plane at `y`. The plane is y + 2 in front of the camera `ahead`.
 fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
     let rim = |part: usize| {
         let (sin, cos) = (std::f64::consts::TAU * part as f64 / parts as f64).sin_cos();
@@ -41,7 +40,7 @@ fn fan(y: f64, radius: f64, parts: usize) -> Vec<Triangle> {
         .collect()
 }
 
-/// Makes all scenes. `generated` must return the mesh of the model with a given name, such as `icosphere:6`.
+/// Makes all scenes. `generated` returns the mesh of the model with a given name, such as `icosphere:6`.
 #[must_use]
 pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
     let mut random = Pcg64Mcg::new(1);
@@ -86,8 +85,8 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
             0x07e0,
         ),
     ];
-    // A point that appears at a pixel centre in a picture of 320x180, where a world unit is 128 pixels wide, and at a pixel
-    // corner in larger pictures.
+    // A point that projects onto a pixel centre at 320x180, where a world unit spans 128 pixels, and onto a pixel corner in
+    // larger pictures.
     let centre = |x: i32, z: i32| {
         at(
             f64::from(2 * x + 1) / 256.0,
@@ -196,5 +195,5 @@ pub fn scenes(generated: impl Fn(&str) -> Vec<u8>) -> Vec<Scene> {
 /// degrees.
 fn spherical(r: i32, theta: i32, phi: i32) -> View {
     let [theta, phi] = [theta, phi].map(|angle| Turns::from_degrees(Q32_32::from_num(angle)));
-    View::spherical(Q32_32::from_num(r), theta, phi).expect("a camera within the limits")
+    View::spherical(Q32_32::from_num(r), theta, phi).expect("a camera within the limits of a view")
 }

@@ -1,4 +1,4 @@
-//! Segments on the screen: random ones, difficult ones, and those of which the rate of the line engine is stated.
+//! Segments in screen coordinates: random ones, edge cases, and those that measure the rate of the line engine.
 
 use glint_core::colour::Rgb565;
 use glint_model::line::{LineDepth, Segment};
@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 /// Largest depth w, u18.6.
 pub const NEAREST: u32 = ((1 << 18) - 1) << 6;
 
-/// A vertex at a position in 1/256 pixel, moved into the range of positions.
+/// A vertex at a position in 1/256 pixel, clamped to the range of positions.
 fn vertex([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     let inside = |x: i32| x.clamp(-(1 << 19), (1 << 19) - 1);
     ScreenVertex {
@@ -19,8 +19,8 @@ fn vertex([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     }
 }
 
-/// Makes a random segment in or near a picture with a size code: most have up to 60 pixels, some are anywhere in
-/// the guard band, and a third are on coarse grids, where they meet centres, borders and ties.
+/// Makes a random segment in or near a picture with a size code. Most have up to 60 pixels, some lie anywhere in the guard band,
+/// and a third lie on coarse grids, where they touch pixel centres and borders and cause ties.
 #[must_use]
 pub fn random(random: &mut Pcg64Mcg, size: usize) -> Segment {
     let grid = [1, 1, 1, 1, 64, 128][random.random_range(0..6usize)];
@@ -59,8 +59,8 @@ pub fn random(random: &mut Pcg64Mcg, size: usize) -> Segment {
     }
 }
 
-/// Makes horizontal, vertical and diagonal segments, in both directions: without length, within a pixel, across the picture and across
-/// the whole range of positions, with ends on centres and borders and beside them.
+/// Makes horizontal, vertical and diagonal segments, in both directions: of length 0, within a pixel, across the picture and
+/// across the whole range of positions, with end points on and beside pixel centres and borders.
 #[must_use]
 pub fn difficult(size: usize) -> Vec<Segment> {
     let (width, height) = SIZES[size];
@@ -114,7 +114,7 @@ pub fn difficult(size: usize) -> Vec<Segment> {
     segments
 }
 
-/// Makes segments of 50 pixels in all directions, wholly in the picture.
+/// Makes segments of 50 pixels in all directions, inside the picture.
 #[must_use]
 pub fn of_50_pixels(size: usize, count: usize) -> Vec<Segment> {
     let mut random = Pcg64Mcg::new(7);

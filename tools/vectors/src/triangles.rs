@@ -1,4 +1,4 @@
-//! Triangles in screen coordinates, for tests of setup and walker.
+//! Triangles in screen coordinates, for tests of triangle setup and of the walker.
 
 use glint_model::triangle::setup::{Bounds, Oriented, Setup};
 use glint_model::triangle::vertex::GUARD;
@@ -6,7 +6,7 @@ use glint_model::{SIZES, ScreenVertex};
 
 use crate::random::Random;
 
-/// Width and height in pixels of the picture for which the triangles are made.
+/// Width and height of the triangles' picture in pixels.
 pub const SIZE: (u32, u32) = SIZES[0];
 /// Depth of all vertices, in the format of `ScreenVertex::w`.
 pub const FLAT: u32 = 1000 * 64;
@@ -33,8 +33,7 @@ pub fn set_up(
     Some((oriented, Setup::new(&oriented, bounds)))
 }
 
-/// Makes a random triangle of any size and shape; many have vertices on pixel centres and pixel edges, some cover the
-/// whole guard band.
+/// Makes a random triangle of any size and shape: many have vertices on pixel centres and edges, some cover the whole guard band.
 pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
     let guard = i64::from(GUARD) + 128;
     let anywhere =
@@ -53,7 +52,7 @@ pub fn random_triangle(random: &mut Random) -> [ScreenVertex; 3] {
             anywhere(random),
         ],
         _ => {
-            // A sliver: its third vertex `c` is near the middle of the line between `a` and `b`.
+            // Makes a sliver: the third vertex `c` is near the midpoint of `a` and `b`.
             let (a, b) = (near(random, 256 * 200, 1), near(random, 256 * 200, 1));
             let c = ScreenVertex {
                 x: (a.x + b.x) / 2 + random.integer(-3, 3) as i32,

@@ -5,10 +5,10 @@ use std::fs;
 
 use crate::paths::root;
 
-/// Text of a cell for a file that a block does not have, such as the model of a block that computes nothing.
+/// Cell of a file that a block does not have, such as the model of a block that computes nothing.
 const ABSENT: &str = "–";
 
-/// Cells of a row of a table, without code marks.
+/// Cells of a table row, without backquotes.
 fn cells(row: &str) -> Vec<String> {
     let row = row.trim().trim_matches('|');
     row.split('|')
@@ -16,7 +16,7 @@ fn cells(row: &str) -> Vec<String> {
         .collect()
 }
 
-/// Rows of the table of blocks; the first is its header.
+/// Rows of the table of blocks, from its header.
 fn table() -> Vec<Vec<String>> {
     let page = fs::read_to_string(root().join("docs/architecture.md")).unwrap();
     page.lines()

@@ -11,21 +11,24 @@ use crate::{firmware, paths, run};
 const PACKAGES: [(&str, &str); 8] = [
     (
         "ccache",
-        "keeps the objects of the C library for the BIOS of the next board",
+        "caches the objects of the C library for the BIOS of each board",
     ),
     ("chromium", "opens the live page in tests"),
     ("clang-19", "compiles the verilated SoC"),
     ("gcc-riscv64-unknown-elf", "compiles the LiteX BIOS"),
     (
         "libclang-rt-19-dev",
-        "counts the branches that the verilated SoC takes",
+        "provides branch counters for the verilated SoC",
     ),
-    ("llvm-19", "prepares these counts for the compiler"),
+    ("llvm-19", "merges the branch counts for the compiler"),
     ("make", "builds the LiteX BIOS"),
-    ("python3-venv", "holds the Python packages"),
+    (
+        "python3-venv",
+        "provides the environment of the Python packages",
+    ),
 ];
 
-/// Rust target of the board in a web page.
+/// Rust target of the live page's emulated board.
 pub const WEB_TARGET: &str = "wasm32-unknown-unknown";
 
 /// Rust targets.
@@ -37,15 +40,15 @@ const REQUIREMENTS: [&str; 2] = [
     "tools/reference/requirements.txt",
 ];
 
-/// Installs missing prerequisites. Returns quickly if none is missing.
+/// Installs missing prerequisites. Returns quickly if everything is installed.
 ///
 /// # Errors
-/// Lists each prerequisite that is still missing, and the command that installs it.
+/// Lists each missing prerequisite with the command that installs it.
 pub fn bootstrap() -> Result<()> {
     all([debian_packages(), rust_targets(), python_environment()])
 }
 
-/// Installs what a build of the Rust crates needs: as [`bootstrap`], without the Python environment.
+/// Installs the prerequisites of the Rust crates: all of [`bootstrap`] but the Python environment.
 ///
 /// # Errors
 /// As [`bootstrap`].
@@ -53,7 +56,7 @@ pub fn programs() -> Result<()> {
     all([debian_packages(), rust_targets()])
 }
 
-/// Joins the errors of prerequisites that are still missing.
+/// Joins the errors of missing prerequisites.
 fn all<const COUNT: usize>(outcomes: [Result<()>; COUNT]) -> Result<()> {
     let missing: Vec<String> = outcomes
         .into_iter()
@@ -99,7 +102,7 @@ fn debian_packages() -> Result<()> {
     .with_context(|| format!("Debian packages: run: {by_hand}"))
 }
 
-/// Whether a package's program runs. It may also have been installed in another way than as this package.
+/// Whether the program of a package runs. The program may come from another source than this package.
 fn is_present(package: &str) -> bool {
     match package {
         "gcc-riscv64-unknown-elf" => {
@@ -109,17 +112,17 @@ fn is_present(package: &str) -> bool {
             let program = "echo 'int main() { return 0; }' | clang++-19 -fprofile-generate -x c++ -o /dev/null -";
             run::succeeds(Command::new("sh").args(["-c", program]))
         }
-        // The program itself has no option for its version.
+        // The program has no `--version` option.
         "llvm-19" => run::succeeds(Command::new("llvm-profdata-19").args(["merge", "--version"])),
         "python3-venv" => run::succeeds(Command::new("python3").args(["-c", "import ensurepip"])),
         program => run::succeeds(Command::new(program).arg("--version")),
     }
 }
 
-/// Installs the missing ones of the Rust targets.
+/// Installs missing Rust targets.
 ///
 /// # Errors
-/// Names the command that installs them.
+/// Names the command that installs the missing targets.
 pub fn rust_targets() -> Result<()> {
     let mut missing = Vec::new();
     for target in RUST_TARGETS {
@@ -147,7 +150,7 @@ pub fn rust_targets() -> Result<()> {
     })
 }
 
-/// Makes the Python environment, with Debian's package for it.
+/// Creates the Python environment with Debian's package `python3-venv`.
 ///
 /// # Errors
 /// Python is missing or too old, or its packages cannot be installed.
@@ -187,7 +190,7 @@ pub fn python_environment() -> Result<()> {
 mod tests {
     use super::*;
 
-    /// The tests run after the set-up, which would install a package again and again whose program is not recognised.
+    /// The tests run after the set-up, so every program must be found: an unrecognised one would be installed at each run.
     #[test]
     fn no_package_is_missing_after_the_setup() {
         for (package, _) in PACKAGES {

@@ -1,4 +1,4 @@
-//! `cargo xtask demo`: builds the prerequisites, then runs the program.
+//! `cargo xtask demo`: builds everything that the demo needs, then runs `glint demo`.
 
 use anyhow::Result;
 
@@ -13,7 +13,7 @@ pub fn demo(arguments: &[String]) -> Result<()> {
     bootstrap::bootstrap()?;
     gateware::build(Board::Virtual)?;
     firmware::build(Board::Virtual, &[])?;
-    // The usual folder is the demo's own.
+    // The default folder is the demo's own.
     let mut arguments = arguments.to_vec();
     if !arguments
         .iter()

@@ -1,4 +1,4 @@
-//! Checks README.md and the pages of docs: figures of accuracy, speed and cost are linked to the report, and links have targets.
+//! Checks README.md and the pages of docs: figures of accuracy, speed and cost link to the report, and no link is broken.
 
 mod claim;
 mod page;
@@ -10,7 +10,7 @@ use std::path::{Component, Path, PathBuf};
 use crate::paths::root;
 use page::Page;
 
-/// The pages in a folder, by their paths from the root.
+/// The pages in a folder, as paths from the root.
 fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {
     let files = fs::read_dir(root().join(folder)).expect("the folder is there");
     let paths = files.map(|file| Path::new(folder).join(file.expect("readable").file_name()));
@@ -25,12 +25,12 @@ fn pages_in(folder: &str) -> Vec<(PathBuf, Page)> {
     paths.into_iter().map(read).collect()
 }
 
-/// The pages that are not the report.
+/// The pages outside the report.
 fn pages_of_users() -> Vec<(PathBuf, Page)> {
     ["", "docs", "docs/formats"].map(pages_in).concat()
 }
 
-/// Path from the root of the file to which a link in `page` leads, and the link's anchor; `None` for a link to another site.
+/// Target file of a link in `page`, as a path from the root, and the link's anchor; `None` for a link to another site.
 fn target<'a>(page: &Path, link: &'a str) -> Option<(PathBuf, Option<&'a str>)> {
     if link.contains("://") || link.starts_with("mailto:") {
         return None;
@@ -55,13 +55,13 @@ fn target<'a>(page: &Path, link: &'a str) -> Option<(PathBuf, Option<&'a str>)> 
     Some((path, anchor))
 }
 
-/// Whether figures are generated on the page at this path: a page of the report, or of the resources.
+/// Whether the figures of the page at this path are generated: a page of the report, or of the resources.
 fn is_report(path: &Path) -> bool {
     let generated = ["docs/resources.md", "docs/scene-builds.md"];
     path.starts_with("docs/report") || generated.iter().any(|page| path == Path::new(page))
 }
 
-/// Claims of the page at this path that have no link to the report in their block, with their positions.
+/// Claims of the page at this path whose block does not link to the report, with their positions.
 fn unlinked(path: &Path, page: &Page) -> Vec<String> {
     let leads_to_report =
         |link: &String| target(path, link).is_some_and(|(target, _)| is_report(&target));
@@ -97,7 +97,7 @@ fn a_claim_needs_a_link_to_the_report_in_its_block() {
 fn every_claim_is_linked_to_the_report() {
     let mut claims = Vec::new();
     for (path, page) in pages_of_users() {
-        // The changelog may state figures as they were at the time of a change.
+        // The changelog may state the figures of the time of a change.
         if is_report(&path) || path == Path::new("CHANGELOG.md") {
             continue;
         }

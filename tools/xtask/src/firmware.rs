@@ -1,4 +1,4 @@
-//! `cargo xtask firmware`: the firmware as the image that the BIOS loads.
+//! `cargo xtask firmware`: builds the firmware image that the BIOS loads.
 
 use std::fs;
 use std::ops::Range;
@@ -18,14 +18,14 @@ use crate::{paths, run};
 /// Package of the firmware.
 const FIRMWARE: &str = "glint-firmware";
 
-/// Feature with kernels of other crates.
+/// Feature with kernels of other crates for comparison.
 const PEERS: &str = "peers";
 
 /// Rust target of the soft core: RV32IM without an operating system.
 pub const TARGET: &str = "riscv32im-unknown-none-elf";
 
-/// Size in bytes of the main memory of `board`. The virtual board's and the Urbana's is in the register access crate; the description
-/// of any other board is an output of its gateware build.
+/// Size in bytes of the main memory of `board`. The register access crate has the size for the virtual board and the Urbana; any
+/// other board's gateware build writes it to `csr.json`.
 fn main_ram(board: Board) -> Result<u64> {
     if board != Board::Ulx3s {
         return Ok(MAIN_RAM.size.into());
@@ -33,14 +33,14 @@ fn main_ram(board: Board) -> Result<u64> {
     let path = board.folder().join("csr.json");
     let text = fs::read_to_string(&path).with_context(|| {
         format!(
-            "reading {} (`cargo xtask gateware --board {}` makes it)",
+            "reading {} (run `cargo xtask gateware --board {}` first)",
             path.display(),
             board.name()
         )
     })?;
     let soc: serde_json::Value = serde_json::from_str(&text)?;
     let size = soc["memories"]["main_ram"]["size"].as_u64();
-    size.with_context(|| format!("{} states no size of main memory", path.display()))
+    size.with_context(|| format!("{}: expected the size of main memory", path.display()))
 }
 
 /// The sizes of a firmware image in bytes.
@@ -51,13 +51,13 @@ pub struct Image {
     pub code: u64,
     /// Constants.
     pub constants: u64,
-    /// Variables: those with a value at start, which are in the image too, and those that are 0 at start.
+    /// Variables: the initialised ones, which are also in the image, and the ones that start at 0.
     pub variables: u64,
-    /// Addresses of the stack, which grows down from the end.
+    /// Address range of the stack, which grows down from the end.
     pub stack: Range<u64>,
 }
 
-/// Builds the firmware for `board` with all of its parts, and with `features`. The image is `target/firmware/glint.bin` for the virtual
+/// Builds the firmware for `board` with all parts and with `features`. The image is `target/firmware/glint.bin` for the virtual
 /// board and the Urbana, `glint-BOARD.bin` for another board, `glint-FEATURE….bin` with features.
 ///
 /// # Errors
@@ -67,8 +67,9 @@ pub fn build(board: Board, features: &[&str]) -> Result<Image> {
     compile(board, features, true, features, for_speed)
 }
 
-/// Checks that the firmware of the report's kernels compiles and fits the memory: it fills the SRAM of the soft core more than any other.
-/// Unlike [`build`] it takes the other crates as the standard firmware has them. The code in the SRAM is of the firmware's crate.
+/// Checks that the firmware with the report's kernels compiles and fits the memory: it needs more SRAM of the soft core than any other
+/// build. Unlike [`build`] it compiles the other crates with the standard optimisation. All code in the SRAM comes from the firmware's
+/// crate.
 ///
 /// # Errors
 /// As [`build`].
@@ -78,8 +79,8 @@ pub fn check_peers() -> Result<Image> {
     compile(Board::Virtual, &suffixes, true, &[PEERS], Some(&for_speed))
 }
 
-/// Builds the firmware for `board` with the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`, or
-/// `glint-all.bin` for all built-in scenes; the names of board and features are in it as for [`build`].
+/// Builds the firmware for `board` with only the parts that `scenes` need, and with `features`. The image is `glint-SCENE….bin`,
+/// or `glint-all.bin` for all built-in scenes; its name includes board and features as for [`build`].
 ///
 /// # Errors
 /// As [`build`].
@@ -95,8 +96,8 @@ pub fn build_for(board: Board, scenes: &[SceneFile], features: &[&str]) -> Resul
     compile(board, &names, false, &parts, None)
 }
 
-/// Builds the firmware with Cargo features: the default ones or not, and others. `suffixes` become parts of the image's name, and the
-/// part `for_speed` of the Cargo profile has optimisation for speed.
+/// Builds the firmware with `features`, and the default features if `has_default`. `suffixes` are appended to the image's name;
+/// the section `for_speed` of the Cargo profile is optimised for speed.
 fn compile(
     board: Board,
     suffixes: &[&str],
@@ -126,11 +127,11 @@ fn compile(
     }
     cargo.arg("--features").arg(features.join(","));
     cargo.env("GLINT_MAIN_RAM_MB", (main_ram >> 20).to_string());
-    // Benchmarked functions of other crates that are generic are compiled in the firmware's crate.
+    // Generic functions of other crates are compiled in the firmware's crate, so its optimisation level applies to their benchmarks.
     if let Some(part) = for_speed {
         cargo.arg("--config").arg(format!("{part}.opt-level = 3"));
     }
-    // The firmware has a target folder of its own, because cargo locks a target folder during a build.
+    // A separate target folder, because cargo locks a target folder during a build.
     cargo
         .arg("--target-dir")
         .arg(&built)
@@ -159,7 +160,7 @@ fn compile(
     Ok(image)
 }
 
-/// Writes a file only if its contents change, so that builds which depend on it are not repeated.
+/// Writes a file only if its contents change, to avoid a rebuild of everything that depends on it.
 fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     if fs::read(path).is_ok_and(|old| old == bytes) {
         return Ok(());
@@ -167,7 +168,7 @@ fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(path, bytes).with_context(|| format!("writing {}", path.display()))
 }
 
-/// Returns the image of an ELF file, which starts at the base of main memory.
+/// Returns the memory image of an ELF file, from the base of main memory.
 fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let endian = file.endian();
@@ -184,14 +185,14 @@ fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
     let windows_end = symbol("_windows_end")?;
     ensure!(
         windows_end <= end,
-        "the windows end at {windows_end:#010x}, the SoC's main memory at {end:#010x}: expected no more"
+        "the windows end at {windows_end:#010x}: expected at most the end of main memory, {end:#010x}"
     );
 
     let fast = symbol("_fast")?..symbol("_fast")? + symbol("_fast_size")?;
     let sram = u64::from(SRAM.base)..u64::from(SRAM.base) + u64::from(SRAM.size);
     ensure!(
         sram.start <= fast.start && fast.end <= sram.end,
-        "memory.x has code at {fast:#x?}, the SoC its memory beside the processor at {sram:#x?}"
+        "memory.x places fast code at {fast:#x?}: expected the SoC's SRAM {sram:#x?}"
     );
 
     let mut image = Vec::new();
@@ -207,7 +208,7 @@ fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
         };
         ensure!(
             base <= address && address + length <= symbol("_frame_a")?,
-            "a segment lies at {address:#010x} to {:#010x}, expected it in the program's part of main memory",
+            "the segment {address:#010x} to {:#010x}: expected a segment in the program's part of main memory",
             address + length
         );
         if data.is_empty() {
@@ -216,7 +217,7 @@ fn image(elf: &[u8], main_ram: u64) -> Result<Vec<u8>> {
         let offset = (address - base) as usize;
         ensure!(
             offset >= image.len(),
-            "the segment at {address:#010x} overlaps the one before"
+            "the segment at {address:#010x} overlaps the previous segment"
         );
         image.resize(offset, 0);
         image.extend_from_slice(data);
@@ -232,7 +233,7 @@ fn symbol(file: &ElfFile32<Endianness>, name: &str) -> Result<u64> {
         .with_context(|| format!("no symbol {name}"))
 }
 
-/// The sizes of an ELF file, whose image has this length.
+/// The sizes of an ELF file whose image has this `length`.
 fn sizes(elf: &[u8], length: u64) -> Result<Image> {
     let file = ElfFile32::<Endianness>::parse(elf).context("not an ELF file")?;
     let size = |wanted: &[SectionKind]| -> u64 {
@@ -261,7 +262,7 @@ mod tests {
 
     use crate::paths;
 
-    /// Lists origin and length of each memory window of a file of `firmware/windows`, in the notation of the documents.
+    /// Lists origin and length of each memory window in a file of `firmware/windows`, as the documents write them.
     fn windows(memory_x: &str) -> Vec<(String, String)> {
         let windows = memory_x.lines().filter_map(|line| {
             let (_, rest) = line.split_once(": ORIGIN = 0x")?;
@@ -274,7 +275,7 @@ mod tests {
         windows.collect()
     }
 
-    /// The features of a manifest by default: the parts of the firmware.
+    /// The default features of a manifest, which are the parts of the firmware.
     fn default_features(manifest: &str) -> Vec<String> {
         let text = fs::read_to_string(paths::root().join(manifest)).unwrap();
         let manifest: toml::Table = toml::from_str(&text).unwrap();
@@ -301,7 +302,7 @@ mod tests {
             let windows = windows(&read(&format!("firmware/windows/{file}")));
             assert_eq!(windows.len(), 13, "{windows:?}");
             let documented = read(page);
-            // The last window is in the SRAM, which the text mentions.
+            // The last window is in the SRAM; the page describes it in prose.
             for (origin, length) in windows
                 .iter()
                 .filter(|(origin, _)| origin.starts_with("0x4"))

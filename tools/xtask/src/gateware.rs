@@ -18,7 +18,7 @@ use glint_scene_file::Needs;
 
 use crate::{paths, run, scenes};
 
-/// A board that the gateware is built for.
+/// A target board of the gateware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Board {
     /// The verilated SoC.
@@ -30,7 +30,7 @@ pub enum Board {
 }
 
 impl Board {
-    /// Name in paths and on the command line of `glint_soc`.
+    /// Name in paths and in arguments of `glint_soc`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Virtual => "virtual",
@@ -45,7 +45,7 @@ impl Board {
     }
 }
 
-/// The options of a build on the command line of `cargo xtask gateware` and of the program `glint_soc`.
+/// The build options that `cargo xtask gateware` and the program `glint_soc` share.
 #[derive(clap::Args)]
 pub struct Options {
     /// Build exactly what these scenes need: names of built-in scenes, scene files, or `all`
@@ -54,7 +54,7 @@ pub struct Options {
     /// Build the triangle engine with smooth shading
     #[arg(long)]
     smooth: bool,
-    /// Leave out the memory of depths, which a build without `triangle` does not need for pictures
+    /// Leave out the depth buffer, which a build without `triangle` does not need for pictures
     #[arg(long)]
     no_depths: bool,
     /// Fields of the raymarcher: `all`, `round`, `faces` or `sponge` (docs/raymarch.md), or features with commas between them:
@@ -64,7 +64,7 @@ pub struct Options {
     /// Evaluations of the field per clock: 1, 2 or 4 [default: those of the fields]
     #[arg(long)]
     lanes: Option<String>,
-    /// Frequency of the system clock, a multiple of 0.25 [default: 81.25; 40 for the ulx3s; that of the scenes]
+    /// Frequency of the system clock in MHz, a multiple of 0.25 [default: the scenes' frequency, else 81.25, or 40 for the ulx3s]
     #[arg(long, value_name = "MHZ")]
     clock: Option<String>,
     /// Optional blocks of the build: `scanout`, `triangle`, `raymarch` (without `triangle` the gateware draws fields alone), `line` (a
@@ -74,7 +74,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// The options of `glint_soc`.
+    /// The options as arguments of `glint_soc`.
     ///
     /// # Errors
     /// A scene cannot be read, or the scenes state different clocks.
@@ -123,7 +123,7 @@ pub fn build(board: Board) -> Result<()> {
     build_with(board, &[])
 }
 
-/// Builds the gateware of `board` with command-line options of `glint_soc`, and replaces the build without options.
+/// Builds the gateware of `board` with `options` of `glint_soc` in the folder of the standard build, which it replaces.
 ///
 /// # Errors
 /// As [`build`].
@@ -137,8 +137,8 @@ pub fn build_with(board: Board, options: &[&str]) -> Result<()> {
     }
 }
 
-/// Builds the virtual board as `library` with command-line options of `glint_soc` in `target/gateware/virtual-NAME`, and leaves the
-/// standard build as it is. Returns the folder.
+/// Builds the virtual board as `library` with `options` of `glint_soc` in `target/gateware/virtual-NAME`, beside the standard
+/// build. Returns the folder.
 ///
 /// # Errors
 /// As [`build`].
@@ -148,8 +148,8 @@ pub fn build_beside(name: &str, options: &[&str], library: Library) -> Result<Pa
     Ok(folder)
 }
 
-/// Generates the gateware of a board with command-line options of `glint_soc` in `target/gateware/BOARD-NAME`, and leaves the
-/// standard build as it is. Returns the folder.
+/// Generates the gateware of a board with `options` of `glint_soc` in `target/gateware/BOARD-NAME`, beside the standard build.
+/// Returns the folder.
 ///
 /// # Errors
 /// As [`build`].
@@ -161,7 +161,7 @@ pub fn generate_beside(board: Board, name: &str, options: &[&str]) -> Result<Pat
     Ok(folder)
 }
 
-/// Builds a second library of the virtual board, which writes waveforms and is slower.
+/// Builds the slower library of the virtual board that writes waveforms.
 ///
 /// # Errors
 /// As [`build`].
@@ -198,25 +198,25 @@ fn generate(board: Board, folder: &Path, options: &[&str]) -> Result<()> {
             .arg(folder)
             .args(options)
             .current_dir(folder)
-            // LiteX compiles the C library for each BIOS again: the same commands on the same sources, in another folder.
+            // ccache, because LiteX compiles the same C library again in another folder for each BIOS.
             .env("CCACHE", "ccache")
             .env("CCACHE_DIR", paths::target().join("ccache"))
             .env("CCACHE_BASEDIR", paths::target())
             .env("CCACHE_NOHASHDIR", "1")
             .env("PYTHONPATH", gateware),
     )
-    .context("the gateware generator: `cargo xtask bootstrap` installs its packages")?;
+    .context("running the gateware generator (`cargo xtask bootstrap` installs its packages)")?;
     fs::write(&stamp, inputs).with_context(|| format!("writing {}", stamp.display()))
 }
 
 /// Compiler options for the library of the virtual board.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Library {
-    /// For speed, with a profile of its branches.
+    /// Optimised for speed, with a branch profile.
     Profiled,
-    /// Once, with little optimisation and no profile: a shorter build, for a board that runs a few frames.
+    /// Little optimisation and no profile: a shorter build for a board that runs only a few frames.
     Quick,
-    /// Able to write waveforms.
+    /// With output of waveforms.
     Waveforms,
 }
 
@@ -238,7 +238,7 @@ fn verilate(folder: &Path, library: Library) -> Result<()> {
     )
 }
 
-/// Makes a bitstream of the output of [`generate`], and prints its summary.
+/// Builds a bitstream from the output of [`generate`], and prints its summary.
 fn make_bitstream(folder: &Path) -> Result<()> {
     let gateware = paths::root().join("gateware");
     let stamp = folder.join("bitstream.stamp");
@@ -275,11 +275,10 @@ fn ecp5_step(folder: &Path, step: &str, name: &str) -> Result<()> {
     )
 }
 
-/// The cells of a design and those of its FPGA, by the names of their kinds.
+/// Numbers of used and available cells by kind.
 pub type Cells = BTreeMap<String, [u64; 2]>;
 
-/// Counts the cells of the ULX3S's build with command-line options of `glint_soc`, which is made in `target/gateware/ulx3s-NAME`.
-/// Nothing is placed or routed.
+/// Counts the cells of the ULX3S's build with `options` of `glint_soc` in `target/gateware/ulx3s-NAME`. The build stops after synthesis.
 ///
 /// # Errors
 /// As [`build`].
@@ -343,7 +342,7 @@ fn files(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Whether the last build had the same fingerprint `inputs`, which it wrote to the file `stamp`.
+/// Whether the file `stamp` has the fingerprint `inputs`, that is, the last build had the same inputs.
 fn is_current(stamp: &Path, inputs: &str) -> bool {
     fs::read_to_string(stamp).is_ok_and(|last| last == inputs)
 }

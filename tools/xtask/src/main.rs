@@ -38,9 +38,9 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Task {
-    /// Install missing prerequisites: Debian packages, Rust targets, the Python environment
+    /// Install missing prerequisites: Install Debian packages, Rust targets and the Python environment
     Bootstrap,
-    /// Build the SoC of a board
+    /// Build the gateware of a board
     Gateware {
         /// Board to build for
         #[arg(long, value_enum, default_value = "virtual")]
@@ -75,7 +75,7 @@ enum Task {
         #[arg(long, value_delimiter = ',')]
         features: Vec<String>,
     },
-    /// Build the live page with the emulated board in it: a folder of files for any web server
+    /// Build the live page with the emulated board, as a folder of files for any web server
     Web {
         /// Folder to write [default: target/web]
         #[arg(long, value_name = "FOLDER")]
@@ -97,30 +97,30 @@ enum Task {
     Modules,
     /// Measure the FPGA resources of the gateware; fail beyond the limits of gateware/budget.toml
     Resources {
-        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`,
-        /// the own blocks]
+        /// Names of the blocks to measure, as in docs/resources.md; `soc` is the whole design [default: all; with `--route`, all
+        /// but those of other projects]
         blocks: Vec<String>,
         /// Place and route on an ECP5 instead: clock rates of the blocks and of VexRiscv
         #[arg(long)]
         route: bool,
-        /// Print the sizes of the instances in the blocks [default: soc] instead, the largest first
+        /// Print the sizes of the instances in the blocks [default: soc] instead, largest first
         #[arg(long, conflicts_with = "route")]
         tree: bool,
-        /// Depth of the tree
+        /// Depth of the printed tree of instances
         #[arg(long, requires = "tree", default_value_t = 3)]
         depth: usize,
-        /// Measure the build of the Urbana for each built-in scene and for all scenes, and the cycles of their frames
+        /// Measure the Urbana's build for each built-in scene and for all scenes, and the cycles of the scenes' frames
         #[arg(long, conflicts_with_all = ["blocks", "route", "tree", "json"])]
         scenes: bool,
         /// Print JSON; progress goes to standard error
         #[arg(long)]
         json: bool,
-        /// Write docs/resources.md; with `--route`, both cells and clock rates; with `--scenes`, docs/scene-builds.md
+        /// Write docs/resources.md (with `--route`, cells and clock rates; with `--scenes`, docs/scene-builds.md instead)
         #[arg(long, conflicts_with_all = ["blocks", "tree"])]
         write: bool,
     },
-    /// Build the virtual board for each scene, and with each single block; fail if one does not answer, or does not draw its scene as
-    /// the complete build does, in as many cycles at most
+    /// Build the virtual board for each scene and with each single block; fail if a board does not answer, or draws its scene
+    /// differently or in more cycles than the complete build
     Walk {
         /// Builds to walk: names of scenes, and `only-BLOCK` [default: all]
         builds: Vec<String>,
@@ -131,10 +131,10 @@ enum Task {
         /// `timeline`, `long`, `stiff`; or `pages`: rebuild all pages from their tables [default: all pages, as a workflow of
         /// independent jobs]
         page: Option<String>,
-        /// Measure samples, into target/report
+        /// Measure samples only; write to target/report
         #[arg(long)]
         quick: bool,
-        /// Jobs at a time, without a page
+        /// Number of parallel jobs, without a page
         #[arg(long, value_name = "N", default_value_t = 2)]
         workers: u32,
         /// Options of the page, which `cargo xtask report PAGE -- --help` lists; without a page, targets and options of Snakemake
@@ -154,7 +154,7 @@ fn main() -> Result<()> {
             let options = options.arguments()?;
             let options: Vec<_> = options.iter().map(String::as_str).collect();
             if board == gateware::Board::Ulx3s {
-                // Its only tools are those of the set-up.
+                // The set-up installs all tools of this build.
                 bootstrap::bootstrap()?;
             }
             gateware::build_with(board, &options)?;

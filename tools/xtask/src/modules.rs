@@ -1,13 +1,13 @@
-//! `cargo xtask modules`: the structure of the sources.
+//! `cargo xtask modules`: checks the module structure of the sources.
 //!
-//! The command checks two rules: no cycle of modules in a crate, and no `#[path]`.
+//! Two rules: no dependency cycle of modules in a crate, and no `#[path]`.
 //!
-//! A dependency of module A on module B counts when A names an item that B defines. B is the module that defines the item, not one that
-//! re-exports it. These do not count: a re-export (`pub use child::X`) of an item from below, the name of a module alone, code under
-//! `#[cfg(test)]`, method calls. A module is a file; an inline module belongs to the file around it. Each target of a package is a crate of
-//! its own. The check reads tokens: a path counts wherever it stands, even in the arguments of a macro.
+//! Module A depends on module B if A names an item that B defines. B is the defining module, not a re-exporting one. Not counted: a
+//! re-export (`pub use child::X`) of an item from a child module, the name of a module alone, code under `#[cfg(test)]`, method calls.
+//! A module is a file, with its inline modules. Each target of a package is a separate crate. The check reads tokens, so it counts
+//! paths anywhere, even in the arguments of a macro.
 //!
-//! `cargo modules dependencies --acyclic` does the same with rust-analyzer, which takes minutes to compile.
+//! `cargo modules dependencies --acyclic` makes the same check with rust-analyzer, but takes minutes to compile.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -25,7 +25,7 @@ use crate::paths;
 /// Checks the rules for the whole workspace.
 ///
 /// # Errors
-/// A rule is violated, or a source cannot be read. The error lists every violation on a line of its own.
+/// A rule is violated, or a source cannot be read. The error lists each violation on its own line.
 pub fn check() -> Result<()> {
     let mut faults = BTreeSet::new();
     for target in targets()? {
@@ -36,7 +36,7 @@ pub fn check() -> Result<()> {
         faults.extend(
             dependencies
                 .iter()
-                .map(|dependency| format!("{}: in a cycle: {dependency}", target.name)),
+                .map(|dependency| format!("{}: dependency in a cycle: {dependency}", target.name)),
         );
     }
     if !faults.is_empty() {
@@ -95,10 +95,10 @@ fn targets() -> Result<Vec<Target>> {
 /// Segments of a path, such as `crate`, `a` and `B` of `crate::a::B`. The path of a module starts with `crate`.
 type Segments = Vec<String>;
 
-/// An item: the module that defines it, and its name there. That of a macro ends with `!`.
+/// An item: the defining module and the name, which ends with `!` for a macro.
 type Item = (Segments, String);
 
-/// Imports that are being looked up: their modules and paths.
+/// Imports in progress of a lookup: modules and paths.
 type Seen = BTreeSet<(Segments, Segments)>;
 
 /// Reads the text of a source file; `None` if no such file exists.
@@ -112,7 +112,7 @@ struct Crate {
     path_attributes: Vec<String>,
 }
 
-/// What a file defines, imports and names. Levels count the inline modules around a path.
+/// The definitions, imports and named paths of a file. The level of a path is the number of inline modules around it.
 #[derive(Default)]
 struct Module {
     children: Vec<String>,
@@ -141,7 +141,7 @@ impl Crate {
         Ok(sources)
     }
 
-    /// Adds the module in the first of `files` that exists, whose child modules are below `folder`.
+    /// Adds the module in the first existing file of `files`; its child modules are below `folder`.
     fn add(
         &mut self,
         name: Segments,
@@ -173,8 +173,8 @@ impl Crate {
         Ok(())
     }
 
-    /// The item that `path` names in `module` below `level` inline modules. `None` for names of other crates and of modules. `seen` has the
-    /// imports that led here, because imports may import each other.
+    /// The item that `path` names in `module` below `level` inline modules. `None` for names of other crates and of modules.
+    /// `seen` has the imports of the lookup so far, because imports may be circular.
     fn item(
         &self,
         module: &[String],
@@ -213,7 +213,7 @@ impl Crate {
         if scope.defined.contains(name) {
             return Some((module.to_vec(), name.to_owned()));
         }
-        // A macro is visible in the modules that follow it, or exported, and few share a name.
+        // A macro is visible in later modules or exported, and its name is nearly always unique: the first definition is taken.
         if name.ends_with('!') {
             let mut modules = self.modules.iter();
             let (definer, _) = modules.find(|(_, module)| module.defined.contains(name))?;
@@ -240,7 +240,7 @@ impl Crate {
         })
     }
 
-    /// The dependencies of the crate, each with a name that makes it.
+    /// The dependencies of the crate, each with the name of an item that causes it.
     fn dependencies(&self) -> BTreeMap<(Segments, Segments), String> {
         let mut dependencies = BTreeMap::new();
         for (name, module) in &self.modules {
@@ -262,7 +262,7 @@ impl Crate {
         dependencies
     }
 
-    /// The dependencies on cycles, and between them.
+    /// The dependencies within cycles, and on paths between cycles.
     fn cycles(&self) -> Vec<String> {
         let mut dependencies = self.dependencies();
         loop {
@@ -286,8 +286,8 @@ impl Crate {
 }
 
 impl Module {
-    /// Reads tokens below `level` inline modules. With `has_items` they are those of a module, and the names after `fn`, `struct` and so on
-    /// are its items.
+    /// Reads tokens below `level` inline modules. With `has_items` the tokens are those of a module, whose items are the names
+    /// after `fn`, `struct` and so on.
     fn scan(&mut self, tokens: TokenStream, level: usize, has_items: bool) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let (mut at, mut is_public) = (0, false);
@@ -312,7 +312,7 @@ impl Module {
                 }
                 TokenTree::Group(group) => {
                     self.scan(group.stream(), level, false);
-                    // The group of `pub(crate)` does not end the visibility.
+                    // The group `(crate)` in `pub(crate)` is part of the visibility.
                     is_public &= group.delimiter() == Delimiter::Parenthesis;
                 }
                 TokenTree::Ident(word) if word == "pub" => is_public = true,
@@ -355,14 +355,14 @@ impl Module {
                     if next.is_some_and(|token| is_punct(token, '!')) {
                         path.last_mut().expect("it has a name").push('!');
                     }
-                    // Of single names, those of variables are left out.
+                    // A single name may be a variable: skip it unless its form shows an item.
                     let is_call = matches!(next, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
                     let is_item = path.len() > 1
                         || is_call
                         || path[0].ends_with('!')
                         || path[0].starts_with(char::is_uppercase);
                     let is_method = matches!(&tokens[..start], [.., a, b] if !is_punct(a, '.') && is_punct(b, '.'));
-                    // `::name` is another crate, or belongs to the type before.
+                    // `::name` names another crate, or an item of the preceding type.
                     let is_absolute = matches!(&tokens[..start], [.., a, b] if is_punct(a, ':') && is_punct(b, ':'));
                     if is_item && !is_method && !is_absolute {
                         self.paths.push((level, path));
@@ -406,7 +406,7 @@ impl Module {
                         path.clear();
                     }
                     TokenTree::Punct(punct) if punct.as_char() == '*' => name = None,
-                    // `use ::name` is another crate.
+                    // `use ::name` imports from another crate.
                     TokenTree::Punct(_) if at == 0 => break,
                     TokenTree::Punct(_) | TokenTree::Literal(_) => {}
                 }
@@ -423,7 +423,7 @@ impl Module {
     }
 }
 
-/// Number of tokens to the end of an item, which is its `;` or its block.
+/// Number of tokens up to the end of an item, its `;` or its block.
 fn item_length(tokens: &[TokenTree]) -> usize {
     let is_end = |token: &TokenTree| match token {
         TokenTree::Group(group) => group.delimiter() == Delimiter::Brace,
@@ -446,7 +446,7 @@ fn text_of(token: &TokenTree) -> Option<String> {
     }
 }
 
-/// The text of an identifier, without the `r#` of a raw one.
+/// The text of an identifier, without the prefix `r#`.
 fn text(ident: &Ident) -> String {
     let text = ident.to_string();
     text.strip_prefix("r#").map(str::to_owned).unwrap_or(text)

@@ -1,4 +1,4 @@
-//! `cargo xtask report`: builds what a page of the report needs and measures it, or the whole report as a workflow of independent jobs.
+//! `cargo xtask report`: builds and measures a page of the report, or the whole report as a workflow of independent jobs.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -9,15 +9,14 @@ use anyhow::{Context, Result, ensure};
 use crate::gateware::{self, Board, Library};
 use crate::{bootstrap, firmware, paths, run};
 
-/// The description of the workflow.
+/// The Snakemake description of the workflow.
 const WORKFLOW: &str = "tools/reference/workflow/Snakefile";
 
-/// File with the checksums of all that the jobs run.
+/// File with the checksums of the jobs' programs and sources.
 const STAMP: &str = "inputs.sha256";
 
-/// Builds everything, makes the measurements of the report's page `name`, and writes the page. With `pages` as name it writes all pages
-/// from the tables of earlier measurements, and with `--help` as an argument it lists the options of the page. For these it builds only
-/// the report program.
+/// Builds everything, makes the measurements of the report's page `name`, and writes the page. The name `pages` writes all pages from the
+/// tables of earlier measurements; the argument `--help` lists the options of the page. Both build only the report program.
 ///
 /// # Errors
 /// A build or a measurement fails.
@@ -43,9 +42,8 @@ pub fn page(name: &str, arguments: &[String]) -> Result<()> {
     run::program("glint-reference", "report", name, arguments)
 }
 
-/// Builds the gateware that the page `name` needs beside the virtual board: for `raymarch` the SoCs whose raymarchers evaluate the sponge
-/// or spheres four times a clock and the raymarcher without a SoC, for `gouraud` the rasterizer, for `quality` and `timeline` the SoC
-/// with smooth shading.
+/// Builds the gateware that the page `name` needs beside the virtual board. `raymarch`: SoCs with four lanes for the sponge and for
+/// spheres, and the raymarcher without a SoC. `gouraud`: the rasterizer. `quality` and `timeline`: the SoC with smooth shading.
 fn build_parts(name: &str) -> Result<()> {
     match name {
         "raymarch" => {
@@ -73,9 +71,9 @@ fn model(module: &str) -> Result<()> {
     )
 }
 
-/// Builds everything and runs the whole report with `workers` jobs at a time: into docs/report, or with `quick`, which measures samples,
-/// into target/report/quick/pages. Jobs that an interrupted run has finished are not run again, unless what they run has changed.
-/// `arguments` go to Snakemake, among them targets other than the report.
+/// Builds everything and runs the whole report with `workers` jobs at a time, into docs/report; `quick` measures samples only,
+/// into target/report/quick/pages. Jobs finished by an interrupted run are skipped, unless their programs or sources have changed.
+/// `arguments`, such as other targets, are passed to Snakemake.
 ///
 /// # Errors
 /// A build or a job fails, or another report runs.
@@ -93,7 +91,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     let folder = paths::target().join("report");
     let folder = folder.join(if quick { "quick" } else { "whole" });
     fs::create_dir_all(&folder).with_context(|| format!("creating {}", folder.display()))?;
-    // Snakemake's own lock stays when it is killed.
+    // An own lock, because a killed Snakemake leaves its lock.
     let lock = File::create(folder.join("lock")).context("creating the lock of the report")?;
     ensure!(
         lock.try_lock().is_ok(),
@@ -127,7 +125,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     let committed = paths::root().join("docs/report");
     for file in fs::read_dir(&pages).with_context(|| format!("reading {}", pages.display()))? {
         let file = file?;
-        // Snakemake leaves a file with a timestamp in the folder.
+        // Snakemake leaves a timestamp file in the folder.
         if file.file_name().as_encoded_bytes().starts_with(b".") {
             continue;
         }
@@ -138,7 +136,7 @@ pub fn whole(quick: bool, workers: u32, arguments: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Writes the checksums of all that the jobs run to a file that is their input.
+/// Writes the checksums of the jobs' programs and sources to a file, an input of the jobs.
 fn write_stamp(folder: &Path, quick: bool) -> Result<()> {
     let target = paths::target();
     let mut files = vec![

@@ -13,16 +13,16 @@ use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use crate::paths;
 
-/// Number of the last lines of output shown on failure. The log has all lines.
+/// Number of output lines shown on failure, from the end. The log has all lines.
 const SHOWN_ON_FAILURE: usize = 60;
 
 /// Progress lines of the running steps.
 static SPINNERS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Whether progress goes to standard error instead of standard output.
+/// Whether to print progress to standard error instead of standard output.
 static TO_STDERR: AtomicBool = AtomicBool::new(false);
 
-/// Sends progress to standard error from now on, for commands whose standard output is data.
+/// Prints progress to standard error from now on, for commands with data on standard output.
 pub fn progress_to_stderr() {
     TO_STDERR.store(true, Ordering::Relaxed);
 }
@@ -38,8 +38,8 @@ pub fn print_progress(line: &str) {
     });
 }
 
-/// Returns the command of a check by cargo. It is not incremental, which in a build from nothing costs time and space and gains
-/// nothing. Nor has it debug information, a tenth of the time: a panic names its line without.
+/// Returns the cargo command of a check. The build is not incremental: a clean build only loses time and space by it. It has no
+/// debug information, which takes a tenth of the time: panics name their lines without it.
 pub fn cargo(arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
     command
@@ -54,7 +54,7 @@ pub fn cargo(arguments: &[&str]) -> Command {
 /// prints one line with the run time at the end.
 ///
 /// # Errors
-/// The program cannot be started, or fails; then the end of its output is printed.
+/// The program cannot be started, or fails. The end of a failed program's output is printed.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
     watched_step(name, command, |_| ())
 }
@@ -78,8 +78,8 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
     let mut child = command
         .spawn()
         .with_context(|| format!("{name}: cannot start `{program}`"))?;
-    // `command` still holds the writing ends of the pipe. They are dropped here, so that reading ends when the child process
-    // closes its copies.
+    // `command` still holds the writing ends of the pipe. Drop them here: reading ends only when all writing ends are closed,
+    // those of the child process too.
     command.stdout(Stdio::null()).stderr(Stdio::null());
     let mut tail = VecDeque::new();
     let mut lines = BufReader::new(reader);
@@ -102,7 +102,7 @@ pub fn watched_step(name: &str, command: &mut Command, mut watch: impl FnMut(&st
         print_progress(&format!("  ok   {seconds:6.1} s  {name}"));
         return Ok(());
     }
-    // One write prints everything, because another step may print at the same time.
+    // One write, because another step may print at the same time.
     let tail: String = tail.iter().map(|line| format!("\n    {line}")).collect();
     print_progress(&format!("  FAIL {seconds:6.1} s  {name}{tail}"));
     bail!("{name} failed ({status}); see {}", log_path.display())
@@ -171,7 +171,7 @@ fn spinner(name: &str) -> ProgressBar {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("  {spinner} {elapsed:>8}  {prefix}  {msg:.dim}")
-        .expect("the template is constant and valid");
+        .expect("a valid constant template");
     let bar = SPINNERS.add(
         ProgressBar::new_spinner()
             .with_style(style)

@@ -1,6 +1,6 @@
 //! The Rust tests: builds the test programs, and runs three of them at a time.
 //!
-//! `cargo test` runs the programs one after another, and the long ones end with a test on one core. Three programs at a time keep
+//! `cargo test` runs the programs one after another, and long programs end with a single test on one core. Three programs at a time keep
 //! both cores of a small machine busy.
 
 use std::ffi::OsStr;
@@ -17,14 +17,14 @@ use crate::{paths, run};
 /// Number of programs that run at a time.
 const AT_A_TIME: usize = 3;
 
-/// Option of cargo that optimises the references little. To optimise them as for the report takes longer than their tests then save.
+/// Options of cargo for little optimisation of the references. Full optimisation, as for the report, takes more time than it
+/// saves in the tests.
 const QUICK_BUILD: [&str; 2] = [
     "--config",
     "profile.dev.package.glint-reference.opt-level=1",
 ];
 
-/// The programs that take longest, by package and target, the longest first. They run before all others, so that none of them is left
-/// alone at the end.
+/// The longest-running programs, by package and target, longest first. They start first, so that no long program runs alone at the end.
 const LONGEST: [(&str, &str); 6] = [
     ("glint", "board"),
     ("glint", "soc"),
@@ -37,13 +37,13 @@ const LONGEST: [(&str, &str); 6] = [
 /// A built test program.
 struct Program {
     path: PathBuf,
-    /// Folder of the package, in which its tests run.
+    /// Folder of the package, the working directory of its tests.
     package: PathBuf,
     target: String,
 }
 
 impl Program {
-    /// The program's position in [`LONGEST`], or the length of the list.
+    /// The program's position in [`LONGEST`]; the list's length if absent.
     fn rank(&self) -> usize {
         let is_it = |(package, target): &(&str, &str)| {
             self.package.ends_with(package) && self.target == *target
@@ -58,7 +58,7 @@ impl Program {
     }
 }
 
-/// The parts of cargo's messages that tell of a built test program.
+/// The fields of cargo's messages about a built test program.
 #[derive(Deserialize)]
 struct Artifact {
     executable: Option<PathBuf>,
@@ -77,11 +77,11 @@ struct Profile {
     test: bool,
 }
 
-/// The built test programs.
+/// All test programs of a build.
 pub struct Programs(Vec<Program>);
 
 impl Programs {
-    /// Builds the test programs that `selection` selects, as arguments of `cargo test`; without a selection all of them.
+    /// Builds the test programs of `selection`, arguments of `cargo test`; of the whole workspace if it is empty.
     ///
     /// # Errors
     /// The build fails.
@@ -111,7 +111,7 @@ impl Programs {
     pub fn run(self, environment: &[(&str, &OsStr)]) -> Result<u32> {
         let waiting = Mutex::new(self.0.into_iter());
         let results = Mutex::new(Results::default());
-        // A function of its own, because the guard of an expression in `while let` would live until the program has ended.
+        // A separate function, because in `while let` the lock's guard would live until the program ends.
         let next = || lock(&waiting).next();
         thread::scope(|scope| {
             for _ in 0..AT_A_TIME {
@@ -135,7 +135,7 @@ impl Programs {
     }
 }
 
-/// Runs the examples in the documentation. Returns the number of passed ones.
+/// Runs the examples in the documentation. Returns the number of passed examples.
 ///
 /// # Errors
 /// An example fails.
@@ -160,7 +160,7 @@ struct Results {
     failed: Vec<String>,
 }
 
-/// Runs `command`, which runs tests, as the step `name`, and adds its results.
+/// Runs the test `command` as the step `name`, and adds its results.
 fn run_tests(
     name: &str,
     mut command: Command,
@@ -187,7 +187,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().expect("tests do not panic")
 }
 
-/// Returns the test program of a line of cargo's output, which also has lines that are not messages.
+/// Returns the test program named by a line of cargo's output; `None` for any other line.
 fn test_program(line: &str) -> Option<Program> {
     let Artifact {
         executable: Some(path),

@@ -1,4 +1,4 @@
-//! `cargo xtask scenes`: the built-in scenes in the form of the firmware, from the files of the folder `scenes`.
+//! `cargo xtask scenes`: generates the firmware's built-in scenes from the files of the folder `scenes`.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use glint_scene_file::{NAMES, SceneFile, built_in};
 
 use crate::generated;
 
-/// Generates `firmware/src/scenes/table.rs`. With `check` nothing is written: the file must equal the generated text.
+/// Generates `firmware/src/scenes/table.rs`. With `check`, compares the file with the generated text instead of writing it.
 ///
 /// # Errors
 /// The file cannot be written, or (with `check`) is stale.
@@ -36,7 +36,7 @@ pub fn read(names: &[String]) -> Result<Vec<SceneFile>> {
     Ok(scenes)
 }
 
-/// The frequency of the system clock in MHz that scenes state; `None` if none does.
+/// The frequency of the system clock in MHz that the scenes state; `None` if no scene states a frequency.
 ///
 /// # Errors
 /// Two scenes state different frequencies.
@@ -45,7 +45,7 @@ pub fn clock(scenes: &[SceneFile]) -> Result<Option<f64>> {
     for scene in scenes {
         match (stated, scene.clock()) {
             (Some((name, one)), Some(other)) if one != other => bail!(
-                "scenes {name} and {}: clocks of {one} and {other} MHz, expected one clock",
+                "scenes {name} and {}: expected equal clocks, found {one} and {other} MHz",
                 scene.name()
             ),
             (None, Some(clock)) => stated = Some((scene.name(), clock)),

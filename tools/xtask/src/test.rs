@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every check, on a machine that it sets up itself.
+//! `cargo xtask test`: sets up the machine, then runs every check.
 
 use std::process::Command;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,7 +14,7 @@ use crate::{bootstrap, firmware, modules, pac, paths, resources, run, scenes, wa
 
 /// Sets up, builds and tests everything. A failed check does not stop the other checks; a failed build stops the command.
 ///
-/// The Python packages and the gateware's builds and checks run beside those of cargo, because most of them keep one core busy. The
+/// The Python packages and the gateware's builds and checks run in parallel with cargo's, because most of them use one core. The
 /// Rust tests wait for the gateware tests, which build the verilated models that the Rust tests use.
 ///
 /// # Errors
@@ -32,7 +32,7 @@ pub fn test() -> Result<()> {
                 .and_then(|()| gateware::build(Board::Virtual))
                 .and_then(|()| gateware::build(Board::Urbana));
             let is_built = built.is_ok();
-            // Errors of sending are ignored: the receiver is gone only if another build has failed.
+            // Errors of sending are ignored: the receiver is dropped only if another build has failed.
             let _ = gateware_is_built.send(built);
             if !is_built {
                 return;
@@ -70,8 +70,8 @@ pub fn test() -> Result<()> {
     results.finish()
 }
 
-/// Sets up and runs the tests on the virtual board, the firmware's and those of `glint`, on a board whose system clock has
-/// `megahertz` MHz. The board is built beside the standard one.
+/// Sets up, and runs the firmware's and `glint`'s tests on a virtual board with a system clock of `megahertz` MHz. The standard
+/// build of the board is kept.
 ///
 /// # Errors
 /// A build or a test fails.
@@ -127,8 +127,8 @@ fn cargo(name: &str, arguments: &[&str]) -> Result<u32> {
     Ok(1)
 }
 
-/// Runs a cargo command as a check, with clippy as the compiler and warnings as errors. `cargo clippy` does the same, but
-/// `cargo doc` would then compile every crate again, because it would use another compiler.
+/// Runs a cargo command as a check with clippy as the compiler and warnings as errors. `cargo clippy` uses another compiler than
+/// `cargo doc`, which would then compile every crate again.
 fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
     run::step(
         name,
@@ -140,7 +140,7 @@ fn linted(name: &str, arguments: &[&str]) -> Result<u32> {
     Ok(1)
 }
 
-/// Runs a Python program as a check: the gateware tests, or the proofs.
+/// Runs a Python program as a check, such as the gateware tests or the proofs.
 fn gateware_check(name: &str, program: &str) -> Result<u32> {
     run::step(
         name,

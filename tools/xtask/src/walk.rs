@@ -1,9 +1,9 @@
-//! `cargo xtask walk`: builds of the virtual board that have only some blocks, each run with its firmware.
+//! `cargo xtask walk`: tests builds of the virtual board with only some blocks, each with its own firmware.
 //!
-//! A build is that of a scene, or of a single optional block with the blocks which this one is a part of. Each has to start and to
-//! answer `info` with its blocks. The build of a scene draws the scene's picture with the firmware for the scene; the picture has to
-//! equal that of the complete build, which has all blocks and all parts of the firmware, in no more cycles. That firmware has to refuse
-//! the commands of all other parts, and depths if the gateware has none.
+//! A build is for a scene, or has a single optional block with the blocks that contain it. Each board must start and answer `info`
+//! with its blocks. The build for a scene draws the scene with its own firmware: the picture must equal that of the complete build
+//! (all blocks, all parts of the firmware), in no more cycles. The scene's firmware must refuse the commands of all other parts,
+//! and depths if the gateware has no depth buffer.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -22,10 +22,10 @@ use crate::{bootstrap, firmware, paths, run, scenes};
 /// Prefix of the name of a build with a single block.
 const ONLY: &str = "only-";
 
-/// The builds of a test run, one of each kind: a scene, and a single block.
+/// The builds of a test run, one of each kind: for a scene, and with a single block.
 pub const SAMPLE: [&str; 2] = ["wireframe", "only-gesture"];
 
-/// A command of each part of the firmware that has one. Without the field, `sphere` is not reached.
+/// A command of each part of the firmware that has commands. `field sphere:1` needs both `FIELD` and `SPHERES`.
 const COMMANDS: [(Feature, &str); 19] = [
     (feature::MESH, "cull on"),
     (feature::OBJECT, "object"),
@@ -48,7 +48,7 @@ const COMMANDS: [(Feature, &str); 19] = [
     (feature::BENCH, "bench"),
 ];
 
-/// The statistics of a frame from `glint render --stats`, as far as a walk compares them.
+/// The compared statistics of a frame, from `glint render --stats`.
 #[derive(Deserialize)]
 struct Stats {
     cycles: u64,
@@ -63,13 +63,13 @@ struct Build {
     firmware: PathBuf,
 }
 
-/// A frame that a build has drawn.
+/// A frame drawn by a build.
 struct Frame {
     png: Vec<u8>,
     cycles: u64,
 }
 
-/// Sets up, and walks the builds `names`, or all of them if it is empty: names of scenes, and `only-BLOCK`.
+/// Sets up, and tests the builds `names`, or all builds if `names` is empty: names of scenes, and `only-BLOCK`.
 ///
 /// # Errors
 /// As [`walk`].
@@ -80,10 +80,10 @@ pub fn set_up_and_walk(names: &[String]) -> Result<()> {
     walk(names)
 }
 
-/// Walks builds, when `glint` and the firmware with all parts are built.
+/// Tests builds, after `glint` and the firmware with all parts are built.
 ///
 /// # Errors
-/// A name is unknown, a build fails, does not answer, or draws another picture than the complete build, or takes more cycles.
+/// A name is unknown, a build fails, a board does not answer, its picture differs from the complete build's, or it takes more cycles.
 pub fn walk(names: &[String]) -> Result<()> {
     let all: Vec<SceneFile> = scenes::all().collect();
     let everything = || all.iter().map(SceneFile::name).map(str::to_owned);
@@ -115,7 +115,7 @@ pub fn walk(names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Runs the build with a single block, with the firmware that has all parts. Returns the result as one line for the log.
+/// Runs the build with a single block, with the complete firmware. Returns the result as one line for the log.
 fn subset(name: &str) -> Result<String> {
     let block = Block::ALL.into_iter().find(|block| block.name() == name);
     let Some(block) = block else {
@@ -129,8 +129,7 @@ fn subset(name: &str) -> Result<String> {
     Ok(format!("{ONLY}{name}: answers"))
 }
 
-/// Draws a scene's picture on its own build and on the `complete` one. Returns the result as one line for the
-/// log.
+/// Draws a scene's picture on its own build and on the `complete` build. Returns the result as one line for the log.
 fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     let own = Build::of_scene(scene)?;
     let blocks: Vec<_> = scene.needs().blocks.into_iter().collect();
@@ -139,11 +138,11 @@ fn of_scene(scene: &SceneFile, complete: &Build) -> Result<String> {
     let [own, reference] = [own.draw(scene)?, complete.draw(scene)?];
     ensure!(
         own.png == reference.png,
-        "its picture differs from that of the complete build"
+        "the picture differs from that of the complete build"
     );
     ensure!(
         own.cycles <= reference.cycles,
-        "a frame takes {} cycles, {} on the complete build: expected no more",
+        "a frame takes {} cycles: expected at most {}, as on the complete build",
         own.cycles,
         reference.cycles
     );
@@ -185,7 +184,7 @@ impl Build {
         })
     }
 
-    /// Builds what a scene needs.
+    /// Builds the virtual board and the firmware for a scene.
     fn of_scene(scene: &SceneFile) -> Result<Self> {
         let name = scene.name();
         let options = scene.needs().options();
@@ -198,7 +197,7 @@ impl Build {
         })
     }
 
-    /// Fails unless `info` has exactly these blocks.
+    /// Fails unless `info` lists exactly these blocks.
     fn answers(&self, blocks: &[Block]) -> Result<()> {
         let bits: u32 = blocks.iter().map(|block| block.bit()).sum();
         let expected = format!("blocks {bits:#x}");
@@ -219,8 +218,8 @@ impl Build {
         Ok(())
     }
 
-    /// Fails unless the firmware refuses the commands of each part that the scene does not need, on the emulated board, and depths that
-    /// the gateware lacks.
+    /// Fails unless the firmware, on the emulated board, refuses the commands of each part that the scene does not need, and
+    /// depths if the gateware has no depth buffer.
     fn refuses_others(&self, scene: &SceneFile) -> Result<()> {
         let needs = scene.needs().features;
         for (part, command) in COMMANDS {
@@ -284,7 +283,7 @@ impl Build {
         })
     }
 
-    /// `glint` with these arguments, which runs this build with its firmware.
+    /// `glint` with these arguments, for this build and its firmware.
     fn glint(&self, arguments: &[&Path]) -> Command {
         let mut command = Command::new(paths::target().join("debug/glint"));
         command

@@ -1,4 +1,4 @@
-//! `cargo xtask web`: the live page with its board in it, as a folder of files for any web server.
+//! `cargo xtask web`: builds the live page with the emulated board, as a folder of files for any web server.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,16 +10,16 @@ use crate::bootstrap::{self, WEB_TARGET};
 use crate::gateware::Board;
 use crate::{firmware, paths, run};
 
-/// Cargo profile of the board in the page.
+/// Cargo profile of the emulated board.
 const PROFILE: &str = "wasm";
 
-/// Folders with the files of the page, and of its worker.
+/// Folders with the files of the page and of its web worker.
 const SOURCES: [&str; 2] = ["tools/live-page/web", "tools/emulated-board-wasm/web"];
 
-/// The board's file in the folder, which marks a folder as made by this command.
+/// The emulated board's file in the output folder, by which this command recognises its own output.
 const BOARD: &str = "board.wasm";
 
-/// Builds the folder `out`, by default `target/web`. It replaces an earlier one.
+/// Builds the folder `out`, by default `target/web`. It replaces an earlier build.
 ///
 /// # Errors
 /// A build fails, or the folder has other files.
@@ -63,7 +63,7 @@ pub fn build(out: Option<&Path>) -> Result<()> {
     Ok(())
 }
 
-/// The files of a folder, each with its name.
+/// The files of a folder, with their names.
 fn files_of(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     let entries = fs::read_dir(folder).with_context(|| folder.display().to_string())?;
     let file = |entry: std::io::Result<fs::DirEntry>| {
@@ -74,11 +74,13 @@ fn files_of(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     entries.map(file).collect()
 }
 
-/// Copies files to the folder `out` instead of an earlier one. Returns their number of bytes.
+/// Replaces the folder `out` by these files. Returns their total size in bytes.
 fn replace(out: &Path, files: &[(PathBuf, String)]) -> Result<u64> {
     let has_files = fs::read_dir(out).is_ok_and(|mut entries| entries.next().is_some());
     if has_files && !out.join(BOARD).is_file() {
-        bail!("expected an empty folder, or one of `cargo xtask web`; found other files");
+        bail!(
+            "expected an empty folder or an earlier build of `cargo xtask web`; found other files"
+        );
     }
     let part = out.with_extension("part");
     if part.exists() {
@@ -104,7 +106,7 @@ mod tests {
     #[test]
     fn a_folder_with_other_files_stays() {
         let folder = paths::target().join("tmp/xtask-web");
-        // The folder of an earlier run.
+        // The output of an earlier run.
         let _ = fs::remove_dir_all(&folder);
         fs::create_dir_all(&folder).unwrap();
         let source = folder.join("source");

@@ -1,24 +1,24 @@
-//! Claims of accuracy, speed or cost in a text: numbers with a unit that only a measurement has.
+//! Claims of accuracy, speed or cost in a text: numbers with a unit that only measurements have.
 //!
-//! Numbers of a specification have other units: a frequency Hz, a time-out or a period s, ms or µs, a position fractions of a
-//! pixel, a limit of a circuit clocks, a bound of a rounding units of its format.
+//! Specified numbers have other units: Hz for frequencies, s, ms or µs for time-outs and periods, fractions of a pixel for
+//! positions, clocks for limits of a circuit, units of the format for rounding bounds.
 
 use std::sync::LazyLock;
 
 use regex_lite::Regex;
 
-/// A number, with separators of thousands.
+/// A number, with optional thousands separators.
 const NUMBER: &str = r"\b\d[\d,]*(?:\.\d+)?";
 
-/// What follows the number of a claim.
+/// Units of claims.
 const UNITS: [&str; 11] = [
-    // Speed: of the soft core and of frames by counters, of a circuit as a mean or as a rate.
+    // Speed: of the soft core and of frames, by counters; of a circuit, as a mean or a rate.
     r"(?: million)? cycles",
     r"(?: million)? (?:\w+ )?(?:frames|pictures|instructions) (?:a|per) second",
     r" fps",
     r" clocks (?:a|an|per|for each) \w+",
     r" million clocks",
-    // Time that a command takes.
+    // Run time of a command.
     r"(?: (?:minutes|seconds|s of (?:CPU|processor) time)\b|(?: \w+)+, m?s\b)",
     // Cost in cells of an FPGA.
     r" (?:more |fewer |other )?(?:LUT4?s?|FFs?|flip-flops|DSP48\w*|MULT18\w*|RAMB36\w*|block RAMs|DP16KD|slices|control sets)\b",
@@ -30,10 +30,10 @@ const UNITS: [&str; 11] = [
     r"(?:(?: ?%| times|×|x) (?:fewer|less|more|faster|slower|smaller|larger|longer|shorter|as \w+)\b|x speed-up)",
 ];
 
-/// Claims whose number has decimals: a mean of clocks, and an error in pixels.
+/// Claims only with a decimal number: a mean of clocks, and an error in pixels.
 const DECIMALS: &str = r"\b\d+\.\d+ clocks\b|\b\d\.\d+(?:/256)? (?:pixels?|px)\b";
 
-/// What a text says to be measured.
+/// A figure that the text itself calls measured.
 const MEASURED: &str = r"\bmeasures?\b[^.;:]{0,20} \d+\.\d";
 
 static CLAIM: LazyLock<Regex> = LazyLock::new(|| {

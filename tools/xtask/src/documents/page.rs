@@ -7,29 +7,29 @@ use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 /// A paragraph, an item of a list or a row of a table.
 #[derive(Clone, Debug, Default)]
 pub struct Block {
-    /// Number of its first line, from 1.
+    /// Number of the first line, from 1.
     pub line: usize,
-    /// Its text without code. In a row of a table each cell is followed by the headings of its column and of its row.
+    /// Text without code. In a table row each cell is followed by the headings of its column and row.
     pub text: String,
-    /// Its links; for a row of a table, including those of the block before the table.
+    /// Links; those of a table row include the links of the block before the table.
     pub links: Vec<String>,
 }
 
 /// A parsed page.
 #[derive(Clone, Debug, Default)]
 pub struct Page {
-    /// All blocks, in the order of the page.
+    /// Blocks in the order of the page.
     pub blocks: Vec<Block>,
-    /// Links and sources of images, with the numbers of their lines.
+    /// Links and image sources, with their line numbers.
     pub links: Vec<(usize, String)>,
     /// Anchors of the headings, as GitHub makes them.
     pub anchors: Vec<String>,
 }
 
-/// A table while it is read.
+/// State of the parser within a table.
 #[derive(Default)]
 struct Table {
-    /// Links of the block before the table and of the headings.
+    /// Links of the block before the table, and of the headings.
     links: Vec<String>,
     headings: Vec<String>,
     cells: Vec<String>,
@@ -103,7 +103,7 @@ impl Page {
         page
     }
 
-    /// Adds a block unless it has no text, and begins the next one.
+    /// Ends the current block: adds it if it has text.
     fn finish(&mut self, block: &mut Block) {
         let block = std::mem::take(block);
         if !block.text.trim().is_empty() {
@@ -112,7 +112,7 @@ impl Page {
     }
 }
 
-/// The cells of a row, each with the headings of its column and of its row.
+/// The cells of a row, each with the headings of its column and row.
 fn row(headings: &[String], cells: &[String]) -> String {
     let first = cells.first().map_or("", String::as_str);
     let with_headings =

@@ -1,4 +1,4 @@
-//! Tests the search for cycles on small crates, whose files are given as text.
+//! Tests the search for cycles on small crates with files given as text.
 
 use std::path::Path;
 
