@@ -1,12 +1,12 @@
-//! Files that `cargo xtask` builds, as programs find them at run time.
+//! Finds the files that `cargo xtask` builds, when a program runs.
 
 use std::env;
 use std::path::{Path, PathBuf};
 
-/// Environment variable with the path of the clone whose builds programs use.
+/// Environment variable with the path of the clone that contains the built files.
 pub const HOME: &str = "GLINT_HOME";
 
-/// No build of a file was found.
+/// A built file was not found.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{file}: found in none of {searched}; run `{command}` in a clone of Glint, and set {HOME} to the path of the clone"
@@ -20,12 +20,12 @@ pub struct NotBuilt {
     pub command: &'static str,
 }
 
-/// Finds a file of the folder `target` of a clone, which `command` builds. The clone is the one that the variable `GLINT_HOME`
-/// names. If the variable is not set, it is the first folder with the file among those above the running program, then the
-/// current folder and those above it.
+/// Finds a file in the folder `target` of a clone of Glint; `command` is the command that builds the file. The variable
+/// `GLINT_HOME` gives the path of the clone. If the variable is not set, the function takes the first folder with the file among
+/// the folders above the running program, the current folder and the folders above the current folder.
 ///
 /// # Errors
-/// No folder has the file.
+/// No folder contains the file.
 pub fn find(file: &str, command: &'static str) -> Result<PathBuf, NotBuilt> {
     let file = Path::new("target").join(file);
     if let Some(home) = env::var_os(HOME) {

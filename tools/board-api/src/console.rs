@@ -1,11 +1,11 @@
-//! The firmware's console as programs use it: sends a command, and reads its reply line by line.
+//! A client of the firmware's console: sends a command, and reads its reply line by line.
 
 use crate::line::{Board, BoardError};
 use glint_core::console::PROMPT;
 use glint_core::wire::{self, MAX_FRAME};
 use std::hash::{BuildHasher, RandomState};
 
-/// An error of a command that was sent to the console.
+/// An error of a console command.
 #[derive(Debug, thiserror::Error)]
 pub enum ConsoleError {
     /// An error of the board.
@@ -19,7 +19,7 @@ pub enum ConsoleError {
         /// The text after `error: ` in the reply.
         reason: String,
     },
-    /// The board sent nothing during the whole time-out, before its reply was complete.
+    /// The board sent nothing for the whole time-out, before its reply was complete.
     #[error(
         "waited {waited_ms} ms of the board's time for {expected}; the last lines were {last:?}"
     )]
@@ -28,19 +28,19 @@ pub enum ConsoleError {
         expected: String,
         /// Length of the time-out, in milliseconds of the board's time.
         waited_ms: u64,
-        /// The end of the received text.
+        /// The last part of the received text.
         last: String,
     },
-    /// The board keeps sending, without the expected reply.
+    /// The board keeps sending other text than the expected reply.
     #[error(
         "expected {expected}, found more than {limit} bytes of other text; the last lines were {last:?}"
     )]
     Endless {
         /// The awaited text.
         expected: String,
-        /// The number of bytes that the text may have.
+        /// The maximum number of bytes of other text.
         limit: usize,
-        /// The end of the received text.
+        /// The last part of the received text.
         last: String,
     },
     /// A reply that does not have the expected form.
@@ -60,21 +60,22 @@ pub const PATIENCE_MS: u64 = 30_000;
 
 /// Maximum length of a line in bytes.
 const MAX_LINE: usize = 64 << 10;
-/// Maximum length in bytes of a reply, with what the board still has to say before it.
+/// Maximum length in bytes of a reply, including earlier output that arrives before it.
 const MAX_REPLY: usize = 1 << 20;
 
-/// Number of times that [`Console::synchronise`] asks a silent board for an answer.
+/// Maximum number of unanswered attempts of [`Console::synchronise`].
 const ATTEMPTS: u32 = 7;
-/// Time-out of its first attempt in milliseconds, which doubles up to that of a reply: a board that starts loses what comes before.
+/// Time-out of the first attempt of [`Console::synchronise`] in milliseconds; it doubles up to the time-out of a reply, because a
+/// board that is starting loses its input.
 const FIRST_PATIENCE_MS: u64 = 1_000;
 
 /// The console of a board.
 pub struct Console<'b, B: ?Sized = dyn Board> {
     board: &'b mut B,
-    /// Received bytes that have not been used yet.
+    /// Received bytes that have not been processed yet.
     pending: Vec<u8>,
     patience_ms: u64,
-    /// Number of bytes that may come until the reply to the present command is complete.
+    /// Number of bytes that may arrive before the reply to the current command must be complete.
     allowance: usize,
 }
 
@@ -98,20 +99,20 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Allows the reply to the command that was sent last this number of bytes more than the usual 1 MiB.
+    /// Allows the reply to the last command `bytes` more than the default maximum of 1 MiB.
     pub fn allow(&mut self, bytes: usize) {
         self.allowance = self.allowance.saturating_add(bytes);
     }
 
-    /// Adds bytes that other code has read from the board to those that the console has received.
+    /// Adds bytes that other code has read from the board to the received bytes.
     pub fn hear(&mut self, said: &[u8]) {
         self.pending.extend_from_slice(said);
     }
 
-    /// Waits for the first prompt after a start, and returns the text before it.
+    /// Waits for the first prompt after a start of the board, and returns the text before the prompt.
     ///
     /// # Errors
-    /// [`ConsoleError::Silence`] without a prompt.
+    /// [`ConsoleError::Silence`] if no prompt arrives.
     pub fn greet(&mut self) -> Result<String, ConsoleError> {
         let mut said = String::new();
         loop {
@@ -129,14 +130,14 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Begins a conversation with a board that others have used: cancels an unfinished transfer, and drops all that the board still
-    /// has to say to earlier commands, so that no line of it is taken for a later reply.
+    /// Synchronises with a board that other programs have used: cancels an unfinished transfer, and drops the remaining output of
+    /// earlier commands, so that it is not read as part of a later reply.
     ///
     /// # Errors
-    /// [`ConsoleError::Silence`] without an answer.
+    /// [`ConsoleError::Silence`] if the board does not answer.
     pub fn synchronise(&mut self) -> Result<(), ConsoleError> {
         self.reset_transfer()?;
-        // Each state has random keys, so earlier programs have sent other numbers.
+        // Each `RandomState` has random keys, so the number differs from the numbers that earlier programs have sent.
         let number = RandomState::new().hash_one(0);
         self.allowance = MAX_REPLY;
         let patience_ms = self.patience_ms;
@@ -148,7 +149,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
             self.patience_ms = patience_ms;
             match found {
                 Ok(true) => return Ok(()),
-                // The board has ended a transfer, and dropped what came with its end, or has refused an earlier line.
+                // The board has ended a transfer and dropped the input after it, or has refused an earlier line.
                 Ok(false) => {}
                 Err(ConsoleError::Silence { .. }) if silences + 1 < ATTEMPTS => silences += 1,
                 Err(error) => return Err(error),
@@ -157,13 +158,14 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Asks the board to print a word. Returns whether it has, and false if it has ended a transfer or a command in error first.
+    /// Sends a command that prints a word. Returns true if the board has printed the word, and false if it has first ended a
+    /// transfer, or a command with an error.
     fn echo(&mut self, word: &str) -> Result<bool, ConsoleError> {
         let command = format!("echo {word}");
         self.board.write(format!("\0{command}\r").as_bytes())?;
         loop {
             let line = self.next_line(&command)?;
-            // The prompt may stand before the word, but the command that the board repeats is not the reply.
+            // The prompt may precede the word, but the echo of the command is not the reply.
             let before = line.strip_suffix(word);
             if before.is_some_and(|before| before.is_empty() || before.ends_with(PROMPT)) {
                 return self.lines(&command, &mut |_| {}).map(|_| true);
@@ -174,10 +176,10 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         }
     }
 
-    /// Cancels an unfinished transfer on the board, if there is one.
+    /// Cancels an unfinished transfer on the board, if any.
     ///
     /// # Errors
-    /// An error of the board.
+    /// Reading from or writing to the board fails.
     pub fn reset_transfer(&mut self) -> Result<(), BoardError> {
         let mut frame = [0; MAX_FRAME];
         let length = wire::reset(&mut frame);
@@ -193,10 +195,11 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         self.reply(command)
     }
 
-    /// Sends a command that starts a transfer, and waits until the board is ready for it. Calls `on_line` with each line before.
+    /// Sends a command that starts a transfer, and waits until the board is ready for it. Calls `on_line` with each line before
+    /// `ready`.
     ///
     /// # Errors
-    /// The firmware refuses the command, ends it without a transfer, or does not answer.
+    /// The firmware refuses the command, ends the command without a transfer, or does not answer.
     pub fn command_with_transfer(
         &mut self,
         command: &str,
@@ -211,7 +214,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     }
 
     /// Calls `on_line` with each line of a reply up to `ready` or the final `ok`. Returns true if the reply ends with `ready`,
-    /// which says that the board waits for a transfer.
+    /// which means that the board waits for a transfer.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -235,7 +238,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     /// Sends `info KEY` and returns the first word of the value in the reply.
     ///
     /// # Errors
-    /// An unknown key, or no answer.
+    /// The key is unknown, or the board does not answer.
     pub fn info(&mut self, key: &str) -> Result<String, ConsoleError> {
         let command = format!("info {key}");
         let lines = self.command(&command)?;
@@ -243,8 +246,8 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
         Ok(found.split(' ').next().unwrap_or_default().to_owned())
     }
 
-    /// Returns the board, and the received bytes that the console has not used yet. A transfer takes its first bytes from these,
-    /// and puts back the bytes that follow the transfer.
+    /// Returns the board, and the received bytes that the console has not processed yet. A transfer reads its first bytes from
+    /// this buffer, and returns the bytes after the transfer to it.
     pub fn line(&mut self) -> (&mut B, &mut Vec<u8>) {
         (self.board, &mut self.pending)
     }
@@ -336,7 +339,7 @@ impl<'b, B: Board + ?Sized> Console<'b, B> {
     }
 }
 
-/// The error for a reply that ends in another way than `expected`.
+/// The error for a reply that does not end with `expected`.
 pub fn unexpected(command: &str, expected: &str, found: &str) -> ConsoleError {
     ConsoleError::Reply {
         command: command.to_owned(),
@@ -355,10 +358,10 @@ fn refused(command: &str, line: &str) -> Result<(), ConsoleError> {
     }
 }
 
-/// The parsed value of the line `key value` in a reply.
+/// Returns the parsed value of the line `key value` in a reply.
 ///
 /// # Errors
-/// [`ConsoleError::Reply`] without such a line, or for a value of another type.
+/// [`ConsoleError::Reply`] if there is no such line, or its value has another type.
 pub fn value<T: std::str::FromStr>(
     command: &str,
     lines: &[String],
@@ -382,7 +385,7 @@ fn find(bytes: &[u8], wanted: &[u8]) -> Option<usize> {
         .position(|window| window == wanted)
 }
 
-/// Converts bytes to text, without the escape sequences of terminals.
+/// Converts bytes to text, and removes the escape sequences of terminals.
 fn plain(bytes: &[u8]) -> String {
     let mut text = Vec::with_capacity(bytes.len());
     let mut rest = bytes.iter();

@@ -1,14 +1,14 @@
-//! Boards as programs see them.
+//! The interface between programs and boards.
 //!
 //! | module | purpose |
 //! |---|---|
 //! | [`mod@line`] | the serial line of a board, and direct access to its memory |
 //! | [`console`], [`transfer`] | protocols of the firmware on the line: commands, uploads, downloads |
-//! | [`simulation`] | what simulated boards have in common, and the line to one |
-//! | [`pace`] | holds a simulated board back to real time |
+//! | [`simulation`] | common parts of simulated boards, and their serial line |
+//! | [`pace`] | limits a simulated board to real time |
 //! | [`built`] | finds the files that `cargo xtask` builds |
 //!
-//! The boards themselves are in other crates.
+//! Other crates implement the boards.
 #![forbid(unsafe_code)]
 
 pub mod built;

@@ -2,7 +2,7 @@
 
 use std::io;
 
-/// An error in the access to a board.
+/// An error of an access to a board.
 #[derive(Debug, thiserror::Error)]
 pub enum BoardError {
     /// Reading from or writing to the serial line failed.
@@ -22,32 +22,32 @@ impl BoardError {
 
 /// A board that the host reaches over its serial line.
 pub trait Board {
-    /// Sends `bytes` to the board, and returns when the line has accepted all of them.
+    /// Sends `bytes` to the board, and returns when the line has accepted all bytes.
     ///
     /// # Errors
-    /// The line is broken.
+    /// The line has failed.
     fn write(&mut self, bytes: &[u8]) -> Result<(), BoardError>;
 
-    /// Reads what the board has sent, and appends it to the buffer `bytes`. If the board has sent nothing yet, the call waits for
-    /// the first byte, at most `wait_ms` milliseconds of the board's time.
+    /// Reads the bytes that the board has sent, and appends them to the buffer `bytes`. If no byte has arrived, the call waits
+    /// for one, at most `wait_ms` milliseconds of the board's time.
     ///
     /// # Errors
-    /// The line is broken.
+    /// The line has failed.
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError>;
 
-    /// The board's time in milliseconds. All waits are measured in it, because a simulated board may run slower than real time.
+    /// The board's time in milliseconds. All time-outs use it, because a simulated board may run slower than real time.
     fn now_ms(&self) -> u64;
 
-    /// Direct access to the board's main memory; `None` for a board that offers its serial line only.
+    /// Direct access to the board's main memory; `None` for a board that has a serial line only.
     fn memory(&mut self) -> Option<&mut dyn Memory> {
         None
     }
 }
 
-/// Reads the output of `board` as [`Board::read`] does. Each call of `step` reads for at most the given milliseconds.
+/// Reads the output of `board` as [`Board::read`] does. Each call of `step` reads for at most the given number of milliseconds.
 ///
 /// # Errors
-/// Errors of `step`.
+/// Those of `step`.
 pub fn read_in_steps<B: Board>(
     board: &mut B,
     bytes: &mut Vec<u8>,
@@ -67,7 +67,7 @@ pub fn read_in_steps<B: Board>(
 
 /// Direct access to a board's main memory; addresses are those of the board's CPU.
 pub trait Memory {
-    /// Fills `bytes` with the main memory from `address` on.
+    /// Reads main memory from `address` on into `bytes`.
     ///
     /// # Errors
     /// The range is not in main memory.

@@ -1,4 +1,4 @@
-//! Holds a simulated board back to real time.
+//! Limits the speed of a simulated board to real time.
 
 use std::time::{Duration, Instant};
 
@@ -7,11 +7,11 @@ pub trait Clock {
     /// Time since the start of the clock.
     fn now(&self) -> Duration;
 
-    /// Waits for `time`. Where nothing can wait, it returns at once, and the board is early for a while.
+    /// Waits for `time`. On a platform that cannot wait, the call returns immediately, and the board is early for a while.
     fn wait(&self, time: Duration);
 }
 
-/// The clock of the system.
+/// The system's clock.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemClock(Instant);
 
@@ -33,20 +33,20 @@ impl Clock for SystemClock {
     }
 }
 
-/// Delay of a board behind real time that it catches up. A longer delay stays.
+/// Longest delay behind real time that a board catches up. A longer delay remains.
 const MAX_DELAY: Duration = Duration::from_millis(50);
 
-/// The relation of a board's cycles to real time.
+/// Relates a board's cycles to real time.
 #[derive(Clone, Debug)]
 pub struct Pace<C> {
     clock: C,
     clock_hz: u32,
-    /// A time, and the cycle of the board that belongs to it.
+    /// A time, and the board's cycle at that time.
     origin: (Duration, u64),
 }
 
 impl<C: Clock> Pace<C> {
-    /// The pace of a board with a system clock of `clock_hz` Hz that has run `cycle` cycles now.
+    /// The pace of a board that has a system clock of `clock_hz` Hz and is now at cycle `cycle`.
     #[must_use]
     pub fn new(clock: C, clock_hz: u32, cycle: u64) -> Self {
         Self {
@@ -61,8 +61,8 @@ impl<C: Clock> Pace<C> {
         &self.clock
     }
 
-    /// Waits until real time has reached the board's cycle `cycle`. A board that is late by more than 50 ms continues from there,
-    /// without catching up.
+    /// Waits until real time has reached cycle `cycle` of the board. A board that is more than 50 ms late continues without
+    /// catching up.
     pub fn wait(&mut self, cycle: u64) {
         let early = self.early(cycle);
         if !early.is_zero() {
@@ -70,7 +70,7 @@ impl<C: Clock> Pace<C> {
         }
     }
 
-    /// Returns how early a board is that has run `cycle` cycles.
+    /// Returns the time by which a board at cycle `cycle` is ahead of real time.
     pub fn early(&mut self, cycle: u64) -> Duration {
         let now = self.clock.now();
         let (start, first) = self.origin;
@@ -92,7 +92,7 @@ mod tests {
 
     const CLOCK_HZ: u32 = 1_000_000;
 
-    /// A clock that is set by hand.
+    /// A clock that the test sets.
     #[derive(Default)]
     struct Set(Cell<Duration>);
 
@@ -118,7 +118,7 @@ mod tests {
         // A delay of 40 ms is caught up.
         assert_eq!(early(100, 60), 0);
         assert_eq!(early(100, 110), 10);
-        // A delay of 90 ms stays.
+        // A delay of 90 ms remains.
         assert_eq!(early(200, 110), 0);
         assert_eq!(early(200, 115), 5);
         pace.wait(7 + 115_000);

@@ -10,7 +10,7 @@ use virtual_mpu6050::Wires;
 /// Clock cycles to simulate between two checks for bytes from the board.
 const SLICE: u64 = 1000;
 
-/// A board with a UART, simulated.
+/// A simulated board with a UART.
 pub trait Uart {
     /// Runs `cycles` cycles of the system clock.
     fn run(&mut self, cycles: u64);
@@ -24,7 +24,7 @@ pub trait Uart {
     /// Sends bytes to the UART.
     fn uart_write(&mut self, bytes: &[u8]);
 
-    /// Number of bytes that the UART has not received yet.
+    /// Number of sent bytes that the UART has not received yet.
     fn uart_queued(&self) -> usize;
 
     /// Moves the unread serial output to the end of `output`.
@@ -42,9 +42,9 @@ pub struct Frame {
     pub pixels: Vec<u16>,
 }
 
-/// Common parts of the simulated boards.
+/// Functions that the simulated boards have in common.
 pub trait Simulation: Uart {
-    /// Fills `bytes` with main memory from `address` on.
+    /// Reads main memory from `address` on into `bytes`.
     ///
     /// # Errors
     /// The range is not in main memory.
@@ -56,13 +56,13 @@ pub trait Simulation: Uart {
     /// The range is not in main memory.
     fn write_memory(&mut self, address: u32, bytes: &[u8]) -> Result<(), BoardError>;
 
-    /// Connects a motion sensor to the I2C bus instead of the present one, if any.
+    /// Connects a motion sensor to the I2C bus; replaces the connected sensor, if any.
     fn plug(&mut self, sensor: Wires);
 
-    /// Connects a SPI flash instead of the present one, if any.
+    /// Connects an SPI flash; replaces the connected flash, if any.
     fn plug_flash(&mut self, flash: Flash);
 
-    /// Connects an image sensor instead of the present one, if any.
+    /// Connects an image sensor; replaces the connected sensor, if any.
     fn plug_image_sensor(&mut self, sensor: ImageSensor);
 
     /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
@@ -77,21 +77,22 @@ pub trait Simulation: Uart {
     /// The 16 LEDs, one bit each.
     fn leds(&self) -> u16;
 
-    /// The last whole frame on the monitor, if one has been shown since the call that returned the blanking number `last`, with its own
-    /// number. The first call is made with 0.
+    /// The last complete frame on the monitor with the number of its blanking, or `None` if no frame has been shown since the
+    /// blanking number `last` of an earlier call. The first call passes 0.
     ///
     /// # Errors
-    /// The picture on the monitor is not that of a frame.
+    /// The picture on the monitor is not a frame.
     fn new_frame(&mut self, last: u64) -> Result<Option<(u64, Frame)>, BoardError>;
 
-    /// Captures the next whole frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a line.
+    /// Captures the next complete frame on the monitor, and returns its RGB565 colours. A frame has 1280 / `scale` pixels in a
+    /// line.
     ///
     /// # Errors
-    /// There is no video, or the frame has another size.
+    /// The monitor has no signal, or the frame has another size.
     fn monitor_frame(&mut self, scale: usize) -> Result<Vec<u16>, BoardError>;
 }
 
-/// The methods of [`Uart`] for a board that has methods of the same names.
+/// Implements [`Uart`] by a board's methods of the same names.
 #[macro_export]
 macro_rules! own_uart {
     () => {
@@ -121,7 +122,7 @@ macro_rules! own_uart {
     };
 }
 
-/// The methods of [`Simulation`] for the pins of a board that has methods of the same names.
+/// Implements the pins of [`Simulation`] by a board's methods of the same names.
 #[macro_export]
 macro_rules! own_pins {
     () => {
@@ -155,7 +156,7 @@ macro_rules! own_pins {
     };
 }
 
-/// Reads the cycles of a simulated board from another thread.
+/// Lets another thread read the cycle count of a simulated board.
 #[derive(Clone, Debug)]
 pub struct Meter {
     cycles: Arc<AtomicU64>,
@@ -190,12 +191,12 @@ impl<S: Uart> SimulatedBoard<S> {
         Self { board, meter }
     }
 
-    /// The cycles that the board has run, for another thread.
+    /// The cycle count of the board, for another thread.
     pub fn meter(&self) -> Meter {
         self.meter.clone()
     }
 
-    /// Runs the board, and counts its cycles for other threads.
+    /// Runs the board, and publishes its cycle count to other threads.
     fn advance(&mut self, cycles: u64) {
         self.board.run(cycles);
         let cycles = self.board.cycles();

@@ -1,4 +1,4 @@
-//! Uploads and downloads over a board's line, by the transfer protocol of `glint-core`.
+//! Uploads and downloads over a board's line, with the transfer protocol of `glint-core`.
 
 use crate::console::{self, Console, ConsoleError};
 use crate::line::{Board, BoardError};
@@ -15,7 +15,7 @@ pub enum TransferError {
     /// An error of the board.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// An error of the transfer's protocol.
+    /// An error of the transfer protocol.
     #[error("{0}")]
     Failed(Failure),
     /// A transfer through memory on a board that offers no direct access to its memory.
@@ -25,16 +25,16 @@ pub enum TransferError {
     NoMemory,
 }
 
-/// A callback that gets the number of bytes transferred so far, and the total.
+/// A callback that receives the number of bytes transferred so far and the total number of bytes.
 pub type Progress<'p> = dyn FnMut(u64, u64) + 'p;
 
 /// Longest wait for bytes from the board in one read, in milliseconds of the board's time.
 const LOOK_MS: u64 = 2;
 
-/// Uploads a mesh under a name, by default `model`, and shows it.
+/// Uploads a mesh under a name, by default `model`, and draws it.
 ///
 /// # Errors
-/// The transfer fails or the firmware refuses the mesh; the board still shows its last frame.
+/// The transfer fails or the firmware refuses the mesh; the board then still shows its last frame.
 pub fn upload<B: Board + ?Sized>(
     console: &mut Console<B>,
     mesh: &[u8],
@@ -49,11 +49,11 @@ pub fn upload<B: Board + ?Sized>(
     announce(console, &command, mesh, session, progress, &mut |_| {})
 }
 
-/// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board asks for them. Calls
-/// `on_line` with each line of the reply but `ready` and `ok`.
+/// Sends the console command `name` with the length and CRC-32 of `data`, and uploads the data if the board requests them. Calls
+/// `on_line` with each line of the reply except `ready` and `ok`.
 ///
 /// # Errors
-/// The transfer fails, or the firmware refuses.
+/// The transfer fails, or the firmware refuses the command.
 pub fn upload_for<B: Board + ?Sized>(
     console: &mut Console<B>,
     name: &str,
@@ -66,13 +66,13 @@ pub fn upload_for<B: Board + ?Sized>(
     announce(console, &command, data, session, progress, on_line)
 }
 
-/// The console command `name` with the length and CRC-32 of `data`.
+/// Returns the console command `name` with the length and CRC-32 of `data`.
 fn command_for(name: &str, data: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(data);
     format!("{name} {length} {crc32:08x}")
 }
 
-/// Sends a console command that announces `data`, and uploads the data if the board asks for them.
+/// Sends a console command that announces `data`, and uploads the data if the board requests them.
 fn announce<B: Board + ?Sized>(
     console: &mut Console<B>,
     command: &str,
@@ -90,7 +90,8 @@ fn announce<B: Board + ?Sized>(
     if is_ready {
         let (board, pending) = console.line();
         let sent = send(board, pending, data, session, progress);
-        // The rest of the reply is read even after a failed transfer, so that it is not taken for the reply to the next command.
+        // The rest of the reply is read even after a failed transfer: otherwise it would be read as the reply to the next
+        // command.
         let reply = console.lines(command, on_line);
         sent?;
         reply?;
@@ -101,8 +102,8 @@ fn announce<B: Board + ?Sized>(
     Ok(())
 }
 
-/// Writes data directly to the board's staging memory, where uploads arrive, if they fit there. At the next upload of the same data
-/// the board finds their CRC-32 there, and skips the transfer.
+/// Writes data directly to the board's staging memory, where uploads arrive, if they fit there. At the next upload of the same
+/// data the board finds their CRC-32 in the staging memory, and skips the transfer.
 ///
 /// # Errors
 /// [`TransferError::NoMemory`], or the data exceed the board's memory.
@@ -127,7 +128,7 @@ pub fn stage<B: Board + ?Sized>(
 /// for `key`.
 ///
 /// # Errors
-/// [`TransferError::NoMemory`], or an unknown key.
+/// [`TransferError::NoMemory`], or the key is unknown.
 pub fn read_memory<B: Board + ?Sized>(
     console: &mut Console<B>,
     key: &str,
@@ -157,7 +158,7 @@ fn parse_address(key: &str, word: &str) -> Result<u32, ConsoleError> {
         })
 }
 
-/// Sends a console command such as `frame`, and downloads the `length` bytes that the board then sends.
+/// Sends a console command such as `frame`, and downloads the `length` bytes that the board sends after it.
 ///
 /// # Errors
 /// The board refuses the command, the transfer fails, or the length differs.
@@ -184,7 +185,7 @@ pub fn download<B: Board + ?Sized>(
     Ok(data)
 }
 
-/// Sends data to a board that waits for it. Bytes that the board sends after the transfer stay in `pending`.
+/// Sends data to a board that waits for a transfer. Bytes that the board sends after the transfer remain in `pending`.
 ///
 /// # Errors
 /// The transfer fails.
@@ -199,8 +200,8 @@ pub fn send<B: Board + ?Sized>(
     run(board, pending, &mut sender, progress)
 }
 
-/// Receives data from a board that is ready to send, and returns the data's length. Bytes that the board sends after
-/// the transfer stay in `pending`.
+/// Receives data from a board that is ready to send, and returns the data's length. Bytes that the board sends after the transfer
+/// remain in `pending`.
 ///
 /// # Errors
 /// The transfer fails.

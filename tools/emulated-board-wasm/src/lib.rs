@@ -1,8 +1,8 @@
-//! The emulated board and the session of the live page, as WebAssembly for a worker of the page.
+//! The emulated board and the session of the live page, as WebAssembly for a web worker of the page.
 //!
-//! The worker (`web/worker.js`) puts bytes into the [`inbox`] and says what they are by [`start`], [`receive_text`] and [`receive_bytes`];
-//! [`run`] runs the board until it is ahead of the page's clock, and [`take`] hands the messages for the page to `deliver`. All
-//! numbers and bytes are those of docs/live-page.md.
+//! The worker (`web/worker.js`) writes bytes to the [`inbox`] and passes them on by [`start`], [`receive_text`] or
+//! [`receive_bytes`]; [`run`] runs the board until it is ahead of the page's clock, and [`take`] passes the messages for the page
+//! to `deliver`. docs/live-page.md defines all numbers and bytes.
 
 use std::cell::RefCell;
 use std::panic;
@@ -15,28 +15,28 @@ use glint_board_api::pace::Clock;
 use glint_board_api::{BoardError, SimulatedBoard};
 use glint_live_page::{Channels, Live, LiveSimulation, Message, Session, Viewer};
 
-/// Longest time that the board runs before the worker looks for messages from the page; the work of an engine may take longer.
+/// Longest time that the board runs before the worker checks for messages from the page; a pass of an engine may take longer.
 const TURN: Duration = Duration::from_millis(8);
 
-/// Time between two measurements on the console.
+/// Interval of the measurements on the console.
 const SAMPLE_PERIOD: Duration = Duration::from_millis(250);
 
-// SAFETY: these are the functions of `web/worker.js`. `deliver` reads the bytes during the call, in the module's own memory.
+// SAFETY: `web/worker.js` implements these functions. `deliver` reads the bytes of the module's memory during the call only.
 unsafe extern "C" {
     /// Time in ms since the start of the worker.
     safe fn now() -> f64;
 
-    /// Takes `length` bytes of this kind that begin at `start`.
+    /// Delivers the `length` bytes from address `start` on, a message of the kind `kind`.
     safe fn deliver(kind: Kind, start: *const u8, length: usize);
 }
 
-/// What the worker gets.
+/// Kinds of messages to the worker.
 #[repr(u32)]
 #[derive(Clone, Copy)]
 enum Kind {
-    /// A message to the page that is a text.
+    /// A text message to the page.
     Text = 0,
-    /// A message to the page that is a picture.
+    /// A picture for the page.
     Picture = 1,
     /// The reason why the board has stopped.
     End = 2,
@@ -46,7 +46,7 @@ fn send(kind: Kind, bytes: &[u8]) {
     deliver(kind, bytes.as_ptr(), bytes.len());
 }
 
-/// The clock of the page. Only the worker can wait.
+/// The page's clock. The wait is left to the worker: this module cannot wait.
 struct PageClock;
 
 impl Clock for PageClock {
@@ -69,7 +69,7 @@ thread_local! {
     static PAGE: RefCell<Option<Page>> = const { RefCell::new(None) };
 }
 
-/// Makes room for `length` bytes, and returns their address, to which the worker writes them before the next call.
+/// Resizes the inbox to `length` bytes, and returns its address, where the worker writes the bytes before the next call.
 #[unsafe(no_mangle)]
 pub extern "C" fn inbox(length: usize) -> *mut u8 {
     INBOX.with_borrow_mut(|inbox| {
@@ -112,7 +112,7 @@ fn opened(firmware: &[u8]) -> Result<Page, ConsoleError> {
     })
 }
 
-/// Takes the text in the inbox, a message from the page.
+/// Receives the text in the inbox, a message from the page.
 #[unsafe(no_mangle)]
 pub extern "C" fn receive_text() {
     receive(|page, bytes| {
@@ -121,7 +121,7 @@ pub extern "C" fn receive_text() {
     });
 }
 
-/// Takes the bytes in the inbox, a part of a file from the page.
+/// Receives the bytes in the inbox, a part of a file from the page.
 #[unsafe(no_mangle)]
 pub extern "C" fn receive_bytes() {
     receive(|page, bytes| page.viewer.receive_bytes(bytes, page.channels));
@@ -134,7 +134,8 @@ fn receive<E: ToString>(act: impl FnOnce(&mut Page, &[u8]) -> Result<(), E>) {
     }
 }
 
-/// Runs the board until it is ahead of the page's clock, or for some ms. Returns how far it is ahead in ms.
+/// Runs the board until it is ahead of the page's clock, but at most a few milliseconds. Returns the milliseconds by which it is
+/// ahead.
 #[unsafe(no_mangle)]
 pub extern "C" fn run() -> f64 {
     let early = with_page(|page| {
@@ -152,7 +153,7 @@ pub extern "C" fn run() -> f64 {
     early.unwrap_or_default().as_secs_f64() * 1000.0
 }
 
-/// Delivers the messages that wait for the page.
+/// Delivers the queued messages to the page.
 #[unsafe(no_mangle)]
 pub extern "C" fn take() {
     let messages = with_page(|page| page.channels.hub.take(page.viewer.id()));

@@ -1,8 +1,8 @@
-//! Prints how many bytes of its stack a firmware uses for commands:
-//! `cargo run -p emulated-board --example stack FIRMWARE LOW HIGH COMMAND…`.
+//! Prints the number of bytes of stack that a firmware uses for commands: `cargo run -p emulated-board --example stack FIRMWARE
+//! LOW HIGH COMMAND…`.
 //!
-//! The stack begins at the address HIGH and grows down, to LOW at most. Memory is 0 at the start of the board, so the lowest byte that is
-//! not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor without a hand are plugged in.
+//! The stack begins at the address HIGH and grows down, at most to LOW. Memory is 0 at the start of the board, so the lowest byte
+//! that is not 0 shows how far the stack has grown. A motion sensor at rest and an image sensor without a hand are plugged in.
 
 use emulated_board::EmulatedBoard;
 use virtual_image_sensor::{ImageSensor, Model, Scene, Timing};

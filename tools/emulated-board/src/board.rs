@@ -1,4 +1,4 @@
-//! The board: CPU, bus and devices, and what a person connects to it.
+//! The board: The board: CPU, bus and devices, and the parts that a person connects or operates.
 
 use glint_board_api::Frame;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
@@ -12,11 +12,11 @@ use crate::cpu::{Cpu, Difference, Executed, Pause};
 use crate::devices::Devices;
 use crate::error::Error;
 
-/// Longest time in cycles between two looks at a condition.
+/// Longest time in cycles between two evaluations of a condition.
 const SLICE: u64 = 1000;
 
-/// Factor of the devices' time while the board follows another one: an engine with an overestimated time must have ended when the
-/// program starts it again.
+/// Factor by which the devices' time runs faster than the followed board's: an engine with an overestimated time must have ended
+/// before the program starts it again.
 const FOLLOWING: u64 = 16;
 
 /// An emulated board.
@@ -27,7 +27,7 @@ pub struct EmulatedBoard {
 }
 
 impl EmulatedBoard {
-    /// A board as the BIOS leaves it: `firmware` is at the start of main memory, where the CPU begins.
+    /// A board in its state after the BIOS: `firmware` is at the start of main memory, where the CPU starts.
     ///
     /// # Errors
     /// [`Error::Address`] for firmware that exceeds main memory.
@@ -37,7 +37,7 @@ impl EmulatedBoard {
         Ok(board)
     }
 
-    /// A board whose CPU begins in the ROM with the content `rom`, of which as much counts as fits.
+    /// A board whose CPU starts in the ROM with the content `rom`; bytes beyond the ROM's size are ignored.
     #[must_use]
     pub fn full(rom: &[u8]) -> Self {
         let mut bus = Bus::new(Devices::new());
@@ -49,7 +49,7 @@ impl EmulatedBoard {
         }
     }
 
-    /// Runs at least `cycles` cycles: the last instruction may end later.
+    /// Runs for at least `cycles` cycles; the last instruction may end later.
     pub fn run(&mut self, cycles: u64) {
         let end = self.cycles.saturating_add(cycles);
         self.bus.devices.look();
@@ -71,7 +71,7 @@ impl EmulatedBoard {
                 self.cpu.reset();
             }
         }
-        // The last instruction may have waited for the bus, past the time of events.
+        // The last instruction may have waited for the bus until after the time of an event.
         self.bus.devices.advance(self.cycles, &mut self.bus.ram);
     }
 
@@ -91,11 +91,11 @@ impl EmulatedBoard {
         }
     }
 
-    /// Executes the next instruction, which the CPU of another board has executed as `other` states, and compares address and result.
+    /// Executes the next instruction, compares its address and result with the instruction `other` of another board's CPU.
     ///
-    /// Interrupts are taken where the other CPU took them. Results that depend on time are the other CPU's: loads from registers of
-    /// devices, reads of counters and of pending interrupts. Engines do their work when the program starts them, as on every
-    /// emulated board.
+    /// Takes an interrupt where the other CPU took one. Results that depend on time are copied from the other CPU: loads from
+    /// registers of devices, reads of counters and of pending interrupts. As on every emulated board, an engine does its whole
+    /// work when the program starts it.
     ///
     /// # Errors
     /// The CPUs execute different instructions, or leave different values in a register.
@@ -128,7 +128,7 @@ impl EmulatedBoard {
         self.bus.devices.uart.push(bytes);
     }
 
-    /// Number of bytes that the CPU has not taken from the UART yet.
+    /// Number of sent bytes that the CPU has not read from the UART yet.
     #[must_use]
     pub fn uart_queued(&self) -> usize {
         self.bus.devices.uart.queued()
@@ -139,11 +139,11 @@ impl EmulatedBoard {
         output.append(self.bus.devices.uart.sent());
     }
 
-    /// Runs until the board has sent `expected`, and returns the unread output up to the end of `expected`. Later output stays
+    /// Runs until the board has sent `expected`, and returns the unread output up to and including `expected`. Later output stays
     /// unread.
     ///
     /// # Errors
-    /// [`Error::Timeout`], with the output so far, if `expected` has not come within `limit` cycles.
+    /// [`Error::Timeout`], with the output so far, if the board has not sent `expected` within `limit` cycles.
     pub fn read_until(&mut self, expected: &str, limit: u64) -> Result<String, Error> {
         let wanted = expected.as_bytes();
         let mut searched = 0;
@@ -191,12 +191,12 @@ impl EmulatedBoard {
         self.bus.devices.digits.segments
     }
 
-    /// Connects a sensor to the I2C bus instead of the present sensor, if any.
+    /// Connects a sensor to the I2C bus; replaces the connected sensor, if any.
     pub fn plug(&mut self, sensor: Wires) {
         self.bus.devices.i2c.sensor = Some(sensor);
     }
 
-    /// The sensor on the I2C bus, if there is one.
+    /// The sensor on the I2C bus, if any.
     pub fn sensor(&mut self) -> Option<&mut Wires> {
         self.bus.devices.i2c.sensor.as_mut()
     }
@@ -206,48 +206,48 @@ impl EmulatedBoard {
         self.bus.devices.i2c.sensor.take()
     }
 
-    /// Connects a flash instead of the present one; a board is made with an erased one.
+    /// Connects a flash in place of the connected one; a new board has an erased flash.
     pub fn plug_flash(&mut self, flash: Flash) {
         self.bus.flash = flash;
         self.cpu.forget_code();
     }
 
-    /// Sets the block enable bits that the gateware states, as one without some blocks does. The blocks stay.
+    /// Sets the block enable bits of the gateware's identity, to emulate a gateware without some blocks. The blocks stay.
     pub fn state_blocks(&mut self, blocks: u32) {
         self.bus.devices.identity.blocks = blocks;
     }
 
-    /// Connects an image sensor instead of the present one, if any.
+    /// Connects an image sensor; replaces the connected sensor, if any.
     pub fn plug_image_sensor(&mut self, image_sensor: ImageSensor) {
         self.bus.devices.gesture.plug(image_sensor);
     }
 
-    /// The image sensor, if there is one. Its faults take effect with the next frame that it begins.
+    /// The image sensor, if any. A fault that is set takes effect with the sensor's next frame.
     pub fn image_sensor(&mut self) -> Option<&mut ImageSensor> {
         self.bus.devices.gesture.sensor()
     }
 
-    /// Runs to the next vertical blanking, and returns the frame that is shown from then on; black at the last size while the
-    /// picture is switched off.
+    /// Runs to the next vertical blanking, and returns the frame that is shown from then on; while the picture is switched off, a
+    /// black frame of the last size.
     pub fn capture(&mut self) -> Frame {
         let blanking = self.bus.devices.scanout.next_blanking();
         self.run(blanking + 1 - self.cycles);
         self.shown()
     }
 
-    /// The frame that is shown now, as [`capture`](Self::capture) returns it, without running.
+    /// Returns the frame on the monitor in the form of [`capture`](Self::capture), without running the board.
     #[must_use]
     pub fn shown(&self) -> Frame {
         self.bus.devices.scanout.frame(&self.bus.ram)
     }
 
-    /// Number of vertical blankings since the start, at each of which the shown frame may change.
+    /// Number of vertical blankings since the start; the displayed frame changes only at a blanking.
     #[must_use]
     pub fn blankings(&self) -> u64 {
         self.bus.devices.scanout.blankings()
     }
 
-    /// Reads main memory from `address` on, an address of the CPU.
+    /// Reads main memory from the CPU address `address` on.
     ///
     /// # Errors
     /// [`Error::Address`] if the range is not within main memory.
@@ -260,7 +260,7 @@ impl EmulatedBoard {
         Ok(())
     }
 
-    /// Writes main memory from `address` on, an address of the CPU.
+    /// Writes main memory from the CPU address `address` on.
     ///
     /// # Errors
     /// [`Error::Address`] if the range is not within main memory.
@@ -275,7 +275,7 @@ impl EmulatedBoard {
     }
 }
 
-/// A program that jumps to `address`, a multiple of 4096: `lui t0, …; jalr zero, t0`.
+/// Returns a program that jumps to `address`, a multiple of 4096: `lui t0, …; jalr zero, t0`.
 fn jump(address: u32) -> Vec<u8> {
     let program = [address | 5 << 7 | 0x37, 5 << 15 | 0x67_u32];
     program.into_iter().flat_map(u32::to_le_bytes).collect()

@@ -1,4 +1,4 @@
-//! The CPU's bus: memories and windows of registers.
+//! The CPU's bus: memories and register windows.
 
 use litex_pac::Memory;
 use litex_pac::memories::{FLASH, ROM, SRAM};
@@ -10,10 +10,10 @@ use crate::devices::{Devices, REGISTERS};
 /// Clock cycles after which the bus answers an access to an unused address.
 const TIMEOUT: u64 = 1_000_000;
 
-/// Number of words of a line of the CPU's caches, which are filled by an access to the bus for each word.
+/// Number of words of a cache line of the CPU; a line fill makes one bus access for each word.
 const LINE: u32 = 8;
 
-/// Addresses from here on pass by the data cache.
+/// First address that bypasses the data cache.
 const IO: u32 = 0x8000_0000;
 
 /// Value that a load from an unused address returns.
@@ -23,9 +23,9 @@ const UNUSED: u32 = u32::MAX;
 pub struct Access {
     /// The word that contains the address, for a load.
     pub value: u32,
-    /// Number of cycles that the CPU waits in addition to those of the instruction.
+    /// Number of cycles that the CPU waits, in addition to the cycles of the instruction.
     pub cycles: u64,
-    /// Whether a device was accessed, which may change interrupts and the time of the next event.
+    /// Whether a device was accessed, which may change interrupts and the time of its next event.
     pub device: bool,
 }
 
@@ -52,7 +52,7 @@ pub struct Bus {
 }
 
 impl Bus {
-    /// Memories that are all 0, an erased flash, and `devices`.
+    /// A bus with zeroed memories, an erased flash, and `devices`.
     pub fn new(devices: Devices) -> Self {
         Self {
             ram: MainMemory::new(),
@@ -63,7 +63,7 @@ impl Bus {
         }
     }
 
-    /// Replaces the ROM by `image`, as much of it as fits.
+    /// Replaces the content of the ROM by `image`; bytes beyond the ROM's size are ignored.
     pub fn set_rom(&mut self, image: &[u8]) {
         self.rom.fill(0);
         for (place, byte) in self.rom.iter_mut().zip(image) {
@@ -82,7 +82,7 @@ impl Bus {
         bytes.copied().map(u32::from_le_bytes)
     }
 
-    /// Loads the word that contains `address`, outside main memory or in it.
+    /// Loads the word that contains `address`, an address in main memory or outside it.
     pub fn load(&mut self, address: u32, now: u64) -> Access {
         let address = address & !3;
         if let Some(word) = self.memory_word(address) {
@@ -99,7 +99,8 @@ impl Bus {
         }
     }
 
-    /// Loads the word at `address`, a multiple of 4, where no memory is, as an instruction. The instruction cache has all addresses.
+    /// Fetches the word at `address`, a multiple of 4 outside the memories, as an instruction. The instruction cache covers all
+    /// addresses.
     pub fn fetch(&mut self, address: u32, now: u64) -> Access {
         match place(address) {
             Target::Unused => self.time_out(LINE),
@@ -110,7 +111,7 @@ impl Bus {
     /// Stores the low `size` bytes of `value` at `address`, a multiple of `size`, outside main memory.
     pub fn store(&mut self, address: u32, value: u32, size: usize, now: u64) -> Access {
         match place(address) {
-            // A write to these has no effect.
+            // Writes to these memories have no effect.
             Target::Rom(_) | Target::Flash(_) => Access::memory(0),
             Target::Sram(offset) => {
                 if let Some(bytes) = self.sram.get_mut(offset..offset + size) {
@@ -119,7 +120,7 @@ impl Bus {
                 Access::memory(0)
             }
             Target::Register(offset) => {
-                // The CPU repeats a byte or a half word in all lanes, and a register takes all of them.
+                // The CPU repeats a byte or a half word in all byte lanes, and a register stores all lanes.
                 let value = match size {
                     1 => (value & 0xff) * 0x0101_0101,
                     2 => (value & 0xffff) * 0x0001_0001,
@@ -136,7 +137,7 @@ impl Bus {
         }
     }
 
-    /// The result of `accesses` to unused addresses.
+    /// Result of `accesses` bus accesses to unused addresses.
     fn time_out(&mut self, accesses: u32) -> Access {
         self.devices.count_bus_errors(accesses);
         Access {
@@ -147,7 +148,7 @@ impl Bus {
     }
 }
 
-/// Target of an address outside main memory, with the offset from the start of the target.
+/// Target of an address outside main memory, with the offset from the start of that memory or window.
 enum Target {
     Rom(usize),
     Sram(usize),
@@ -156,7 +157,7 @@ enum Target {
     Unused,
 }
 
-/// Whether `address` is that of a register of a device.
+/// Whether `address` is the address of a device register.
 pub fn is_register(address: u32) -> bool {
     matches!(place(address), Target::Register(_))
 }

@@ -1,4 +1,4 @@
-//! Decoded instructions of the memories that programs run from.
+//! Cache of decoded instructions of the memories that programs run from.
 
 use litex_pac::Memory;
 use litex_pac::memories::{FLASH, MAIN_RAM, ROM, SRAM};
@@ -11,14 +11,14 @@ pub const PAGE: u32 = 4096;
 /// Decoded instructions of a page.
 pub type Page = [Instruction; PAGE as usize / 4];
 
-/// The pages of decoded instructions. As in the CPU's instruction cache, an instruction that is here stays what it was, whatever is
-/// written to memory, until [`clear`](Self::clear).
+/// The pages of decoded instructions. As in the CPU's instruction cache, writes to memory do not change a cached instruction
+/// until [`clear`](Self::clear).
 pub struct Code {
     /// Pages of the memories, one memory after another.
     pages: Vec<Option<Box<Page>>>,
     /// Numbers of the pages that are present.
     present: Vec<usize>,
-    /// The page of all addresses without memory: nothing can be decoded there, so it stays as it is.
+    /// The page for all addresses without memory: it stays empty, because nothing can be decoded there.
     nowhere: Box<Page>,
 }
 
@@ -61,7 +61,7 @@ impl Code {
         &mut self.nowhere
     }
 
-    /// Forgets all instructions, as `fence.i` does.
+    /// Removes all decoded instructions, as `fence.i` does.
     pub fn clear(&mut self) {
         for number in self.present.drain(..) {
             self.pages[number] = None;

@@ -1,4 +1,4 @@
-//! The CPU: VexRiscv `full`, rv32im with machine mode, as an interpreter of decoded instructions.
+//! The CPU: An interpreter of decoded instructions for the CPU VexRiscv `full`: rv32im with machine mode.
 
 mod follow;
 
@@ -9,12 +9,13 @@ use crate::decode::{Instruction, Operation};
 
 pub use follow::{Difference, Executed};
 
-/// Clock cycles of an instruction: an estimate, the mean of the real CPU.
+/// Estimated clock cycles of an instruction: the mean of the real CPU.
 pub const CYCLES: u64 = 1;
 
 /// The CPU.
 pub struct Cpu {
-    /// The registers, and from 32 on places for results that nothing reads. As many as a masked number can select.
+    /// The registers; the elements from 32 on take results that are discarded. The length covers every value of a masked register
+    /// number.
     x: [u32; 64],
     pc: u32,
     csrs: Csrs,
@@ -59,13 +60,13 @@ impl Cpu {
         self.retired
     }
 
-    /// Forgets decoded instructions, after a write to memory that was not the CPU's.
+    /// Discards decoded instructions, after a write to memory by another master than the CPU.
     pub fn forget_code(&mut self) {
         self.code.clear();
     }
 
-    /// Runs from the cycle `now` to the cycle `limit` at least; returns the cycle after the last instruction. Ends before
-    /// with a pause, and after each access to a device, which may change the interrupt `lines`.
+    /// Runs from cycle `now` to cycle `limit` at least; returns the cycle after the last instruction. Returns earlier with a
+    /// pause, and after each access to a device, which may change the interrupt `lines`.
     pub fn run(&mut self, bus: &mut Bus, now: u64, limit: u64, lines: u32) -> (u64, Pause) {
         self.csrs.lines = lines;
         if self.asleep {
@@ -104,8 +105,8 @@ impl Cpu {
         (at, pause)
     }
 
-    /// Runs instructions of the page at the program counter, until the first that leaves it or has an effect beyond registers and
-    /// memory.
+    /// Runs instructions of the page at the program counter, up to the first one that leaves the page or has an effect beyond
+    /// registers and memory.
     #[inline(never)]
     fn run_page(&mut self, bus: &mut Bus, began: u64, mut now: u64, limit: u64) -> End {
         let Self {
@@ -130,7 +131,7 @@ impl Cpu {
         }
         macro_rules! exception {
             ($cause:expr, $value:expr) => {{
-                // An instruction that traps takes time, but does not retire.
+                // An instruction that traps takes time, but is not counted as retired.
                 waited += CYCLES;
                 pc = csrs.exception($cause, $value, pc);
                 continue;
@@ -217,7 +218,7 @@ impl Cpu {
                         *place = Instruction::decode(word);
                         continue;
                     }
-                    // The bus answers after a time-out, with a word that is not an instruction.
+                    // The bus answers after a time-out with an illegal instruction word.
                     let access = bus.fetch(pc, now);
                     waited += access.cycles;
                     now += access.cycles + CYCLES;
@@ -340,7 +341,7 @@ impl Cpu {
     }
 }
 
-/// Why [`Cpu::run_page`] returned, and the cycle after its last instruction.
+/// Reason why [`Cpu::run_page`] returned, and the cycle after the last instruction.
 struct End {
     now: u64,
     /// Number of these cycles in which no instruction retired: time-outs of the bus, and traps.
@@ -353,7 +354,7 @@ enum Reason {
     Page,
     /// A device was accessed.
     Device,
-    /// A control register was accessed, or a handler was left.
+    /// A control register was accessed, or the program returned from a trap handler.
     Control,
     /// The instruction `wfi`.
     Wait,

@@ -2,7 +2,7 @@
 
 /// Bit of the external interrupt in `mie` and `mip`, and its number in `mcause`.
 const EXTERNAL: u32 = 11;
-/// Bits of `mie` that VexRiscv has: external, timer and software interrupt.
+/// Bits of `mie` that VexRiscv implements: external, timer and software interrupt.
 const MIE_BITS: u32 = 1 << EXTERNAL | 1 << 7 | 1 << 3;
 /// Bit MIE of `mstatus`.
 const INTERRUPTS: u32 = 1 << 3;
@@ -11,18 +11,18 @@ const INTERRUPTS_BEFORE: u32 = 1 << 7;
 /// Bits MPP of `mstatus`.
 const PRIVILEGE_BEFORE: u32 = 3 << 11;
 const MSTATUS_BITS: u32 = PRIVILEGE_BEFORE | INTERRUPTS_BEFORE | INTERRUPTS;
-/// Bits of `mcause` that VexRiscv has.
+/// Bits of `mcause` that VexRiscv implements.
 const MCAUSE_BITS: u32 = 1 << 31 | 0xf;
-/// VexRiscv's description of its data cache: bytes of the cache, and bytes of a line from bit 20 on.
+/// Register that describes VexRiscv's data cache: size of the cache in bytes, and of a line in bytes from bit 20 on.
 const CACHE: u32 = 32 << 20 | 4096;
-/// Values of `mvendorid` and `marchid` of VexRiscv, and of `mimpid`, by which the firmware knows the emulated board.
+/// Values of `mvendorid` and `marchid` of VexRiscv, and of `mimpid`, by which the firmware identifies the emulated board.
 const IDENTIFIERS: [u32; 3] = [11, 22, litex_pac::EMULATED];
 
 /// Causes of exceptions, as in `mcause`.
 pub mod cause {
     /// Jump to an address that is not a multiple of 4.
     pub const FETCH_MISALIGNED: u32 = 0;
-    /// An instruction or a control register that the CPU does not have.
+    /// An instruction or a control register that the CPU does not implement.
     pub const ILLEGAL: u32 = 2;
     /// Load from an address that is not a multiple of its size.
     pub const LOAD_MISALIGNED: u32 = 4;
@@ -32,13 +32,13 @@ pub mod cause {
     pub const CALL: u32 = 11;
 }
 
-/// Whether the value of the register `number` depends on time, or on the kind of the board: counters, pending interrupts, the
-/// implementation.
+/// Whether the value of register `number` depends on time or on the kind of board: counters, pending interrupts, implementation
+/// number.
 pub fn depends_on_time(number: u32) -> bool {
     matches!(number, 0x344 | 0xfc0 | 0xb00..=0xb8f | 0xc00..=0xc8f | 0xf13)
 }
 
-/// Counters of the CPU at an instruction.
+/// The CPU's counters at an instruction.
 #[derive(Clone, Copy)]
 pub struct Counts {
     /// Clock cycles since the start.
@@ -61,7 +61,7 @@ pub struct Csrs {
     mask: u32,
     /// Levels of the interrupt lines.
     pub lines: u32,
-    /// Difference of `mcycle` and `minstret` to [`Counts`], from writes of these registers.
+    /// Offsets of `mcycle` and `minstret` from [`Counts`], set by writes to these registers.
     written: [u64; 2],
 }
 
@@ -83,8 +83,8 @@ impl Csrs {
         }
     }
 
-    /// Executes an instruction of a control register, with the operand `source`. Returns the value for the register of the result;
-    /// `None` for an illegal access.
+    /// Executes a control register instruction with the operand `source`. Returns the value for the destination register; `None`
+    /// for an illegal access.
     pub fn execute(&mut self, word: u32, source: u32, counts: Counts) -> Option<u32> {
         let number = word >> 20;
         let field = word >> 15 & 31;
@@ -161,7 +161,7 @@ impl Csrs {
         u32::from(self.mask & self.lines != 0) << EXTERNAL
     }
 
-    /// Whether an enabled interrupt is pending, which ends `wfi`.
+    /// Whether an enabled interrupt is pending; it ends `wfi`.
     pub fn wakes(&self) -> bool {
         self.pending() & self.mie != 0
     }
@@ -171,7 +171,7 @@ impl Csrs {
         (self.mstatus & INTERRUPTS != 0 && self.wakes()).then(|| self.enter(1 << 31 | EXTERNAL, pc))
     }
 
-    /// Takes an exception of the instruction at `pc`; returns the handler's address.
+    /// Takes the exception of the instruction at `pc`; returns the handler's address.
     pub fn exception(&mut self, cause: u32, value: u32, pc: u32) -> u32 {
         self.mtval = value;
         self.enter(cause, pc)

@@ -53,7 +53,7 @@ pub enum Operation {
     Divu,
     Rem,
     Remu,
-    /// `fence`, and the flush of the data cache, which is always coherent here.
+    /// `fence`, and the flush of the data cache; both have no effect, because the emulated cache is always coherent.
     Fence,
     FenceI,
     Ecall,
@@ -62,7 +62,7 @@ pub enum Operation {
     Csr,
 }
 
-/// Number of the place in the register file that takes the results for register 0.
+/// Index in the register file that takes the results for register 0.
 pub const NOWHERE: u8 = 32;
 
 /// A decoded instruction.
@@ -90,8 +90,8 @@ impl Instruction {
         immediate: 0,
     };
 
-    /// Decodes an instruction word. It is legal where VexRiscv `full` executes it: VexRiscv ignores some bits that the
-    /// specification wants to be 0.
+    /// Decodes an instruction word. The instructions that VexRiscv `full` executes are legal: VexRiscv ignores some bits that the
+    /// specification requires to be 0.
     pub fn decode(word: u32) -> Self {
         use Operation::*;
         let field = |low: u32, bits: u32| word >> low & ((1 << bits) - 1);

@@ -2,11 +2,11 @@
 
 use crate::MainMemory;
 
-/// A block of the SoC behind its window of registers.
+/// A block of the SoC with its register window.
 ///
-/// `now` is the number of clock cycles since the start; it never decreases. The module `offset` of a block in `litex_pac` has the
-/// offsets of its registers, and the types there have its fields. A read of an offset without a register gives 0, and a write
-/// there has no effect.
+/// `now` is the number of clock cycles since the start; it never decreases. The module `offset` of a block in `litex_pac`
+/// contains the offsets of its registers, and its types describe the registers' fields. A read of an offset without a register
+/// gives 0, and a write there has no effect.
 pub trait Device {
     /// Reads the register at `offset` bytes from the block's first register.
     fn read(&mut self, offset: u32, now: u64) -> u32;
@@ -16,7 +16,7 @@ pub trait Device {
 
     /// Processes all events up to the cycle `now`, and returns the cycle of the next event, `u64::MAX` for none.
     ///
-    /// The bus calls it after each access to the block, and in the cycle that the last call has returned.
+    /// The bus calls this method after each access to the block, and at the cycle that the last call returned.
     fn advance(&mut self, now: u64, ram: &mut MainMemory) -> u64;
 
     /// Whether an enabled event is pending: the level of the block's interrupt line.

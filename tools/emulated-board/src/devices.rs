@@ -1,4 +1,4 @@
-//! The blocks of the SoC, each behind its window of registers.
+//! The blocks of the SoC, each with its register window.
 
 mod i2c;
 mod pins;
@@ -28,7 +28,7 @@ pub const REGISTERS: Memory = Memory {
     size: 0x1_0000,
 };
 
-/// Number of bytes of the window of a block: blocks are as far apart as the first two.
+/// Size of a block's window in bytes: the distance of the first two windows.
 const WINDOW: u32 = (identity::Identity::BASE - ctrl::Ctrl::BASE) as u32;
 
 /// First address and interrupt of each block, in the order of [`Devices::device`]. A window without a block reads as 0.
@@ -48,9 +48,9 @@ const BLOCKS: [(usize, Option<Interrupt>); 13] = [
     (digits::Digits::BASE, None),
 ];
 
-/// Number of the triangle engine in it.
+/// Index of the triangle engine in `WINDOWS`.
 const TRIANGLE: usize = 9;
-/// Number of the raymarcher in it.
+/// Index of the raymarcher in `WINDOWS`.
 const RAYMARCH: usize = 10;
 
 /// The blocks of the SoC.
@@ -76,7 +76,7 @@ pub struct Devices {
     triangle: TriangleEngine,
     /// The gesture engine with its image sensor.
     pub gesture: GestureEngine,
-    /// The displays of digits.
+    /// The seven-segment displays.
     pub digits: Digits,
     /// Cycle of the next event of each block.
     next: [u64; BLOCKS.len()],
@@ -102,13 +102,13 @@ impl Devices {
             triangle: TriangleEngine::new(),
             gesture: GestureEngine::new(),
             digits: Digits::default(),
-            // Each block states its next event when it is requested the first time.
+            // Each block returns its next event at the first call of `advance`.
             next: [0; BLOCKS.len()],
             lines: 0,
         }
     }
 
-    /// Resets the blocks, as the CPU requested: pins keep their levels, the digits what they show, and the video timing continues.
+    /// Resets the blocks at the CPU's request; the pins, the digits and the video timing keep their state.
     pub fn reset(&mut self) {
         self.controller = Controller::new();
         self.uart.reset();
@@ -140,7 +140,7 @@ impl Devices {
         }
     }
 
-    /// The block at `offset` bytes from the first register of all, and the register's offset in it.
+    /// The block at byte `offset` of the register region, and the offset of the register in the block.
     fn find(offset: u32) -> Option<(usize, u32)> {
         let base = (REGISTERS.base + offset / WINDOW * WINDOW) as usize;
         let number = BLOCKS.iter().position(|&(first, _)| first == base)?;
@@ -155,7 +155,7 @@ impl Devices {
         }
     }
 
-    /// Reads the register at `offset` bytes from the first register of all.
+    /// Reads the register at byte `offset` of the register region.
     pub fn read(&mut self, offset: u32, now: u64, ram: &mut MainMemory) -> u32 {
         let Some((number, register)) = Self::find(offset) else {
             return 0;
@@ -166,7 +166,7 @@ impl Devices {
         value
     }
 
-    /// Writes the register at `offset` bytes from the first register of all.
+    /// Writes the register at byte `offset` of the register region.
     pub fn write(&mut self, offset: u32, value: u32, now: u64, ram: &mut MainMemory) {
         let Some((number, register)) = Self::find(offset) else {
             return;
@@ -186,7 +186,7 @@ impl Devices {
         self.next.into_iter().min().unwrap_or(u64::MAX)
     }
 
-    /// Processes events while the CPU sleeps: until an interrupt line changes, or up to the cycle `end`. Returns the cycle.
+    /// Processes events while the CPU sleeps, until an interrupt line changes or to the cycle `end`. Returns the cycle.
     pub fn sleep(&mut self, end: u64, ram: &mut MainMemory) -> u64 {
         let lines = self.lines;
         loop {
@@ -200,7 +200,7 @@ impl Devices {
             if now >= end {
                 return end;
             }
-            // No other block has an event before the cycle `others`: all events of this block up to it come first.
+            // No other block has an event before the cycle `others`: this block processes its events up to that cycle first.
             while now <= others {
                 self.update(number, now, ram);
                 if self.lines != lines {
@@ -216,7 +216,7 @@ impl Devices {
         self.lines
     }
 
-    /// Updates all interrupt lines. The host may have connected or removed a device.
+    /// Updates all interrupt lines. The host may have connected or disconnected a device.
     pub fn look(&mut self) {
         for number in 0..BLOCKS.len() {
             self.look_at(number);
@@ -230,7 +230,7 @@ impl Devices {
         }
     }
 
-    /// Counts `accesses` to unused addresses.
+    /// Counts `accesses` bus accesses to unused addresses.
     pub fn count_bus_errors(&mut self, accesses: u32) {
         self.controller.count_bus_errors(accesses);
     }

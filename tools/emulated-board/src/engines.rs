@@ -1,7 +1,7 @@
-//! The engines: blocks that compute, by the functions of `glint_model`.
+//! The engines: blocks that compute their results by the functions of `glint_model`.
 //!
-//! An engine takes its parameters from its registers and its input from main memory, as the gateware does. Its results, the counts that
-//! have an exact meaning, its errors and its interrupts are those of the gateware; its time is an estimate.
+//! An engine takes its parameters from its registers and its input from main memory, as the gateware does. Its results, exact
+//! counts, errors and interrupts equal those of the gateware; its time is an estimate.
 
 mod gesture;
 mod parameters;

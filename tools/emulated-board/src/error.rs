@@ -5,7 +5,7 @@ use litex_pac::memories::MAIN_RAM;
 /// An error of an emulated board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// An access of the host outside main memory.
+    /// An access of the host is not within main memory.
     #[error(
         "memory access of {length} bytes at {address:#010x}: expected a range within {:#010x}..{:#010x}",
         MAIN_RAM.base, MAIN_RAM.base + MAIN_RAM.size
@@ -24,7 +24,7 @@ pub enum Error {
         /// Number of pixels in a line.
         found: usize,
     },
-    /// The expected output did not come in time.
+    /// The expected output did not arrive in time.
     #[error("expected {expected} within {cycles} cycles, found {got:?}")]
     Timeout {
         /// Expected input.

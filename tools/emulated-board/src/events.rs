@@ -1,4 +1,4 @@
-//! The event manager of a block, as LiteX builds it.
+//! The event manager of a block, compatible with LiteX.
 
 /// The registers `ev_status`, `ev_pending` and `ev_enable` of a block, with a bit for each event.
 ///
@@ -17,7 +17,7 @@ impl Events {
         self.level
     }
 
-    /// The register `ev_pending`: the events that have occurred and were not cleared.
+    /// The register `ev_pending`: the events that have occurred and have not been cleared.
     #[must_use]
     pub fn pending(&self) -> u32 {
         self.pending
@@ -44,7 +44,7 @@ impl Events {
         self.pending |= bits;
     }
 
-    /// Sets the level of the events of `bits`; those that rise become pending.
+    /// Sets the levels of the events in `bits`; events whose level rises become pending.
     pub fn set_level(&mut self, bits: u32, level: bool) {
         let before = self.level;
         self.level = if level { before | bits } else { before & !bits };

@@ -1,4 +1,4 @@
-//! The emulated board: runs the firmware of the real board at about its speed.
+//! The emulated board: runs the real board's firmware at about the real board's speed.
 //!
 //! ```
 //! use emulated_board::EmulatedBoard;
@@ -10,7 +10,7 @@
 //! # Ok::<(), emulated_board::Error>(())
 //! ```
 //!
-//! docs/emulated-board.md states what is exact and what is an estimate.
+//! docs/emulated-board.md states which results are exact and which are estimates.
 
 #![forbid(unsafe_code)]
 
@@ -39,11 +39,11 @@ pub use memory::MainMemory;
 pub use virtual_image_sensor;
 pub use virtual_mpu6050;
 
-/// The time in ns at the cycle `now` of the system clock.
+/// The time in ns at cycle `now` of the system clock.
 fn nanoseconds(now: u64) -> u64 {
     const SECOND: u64 = 1_000_000_000;
     const CLOCK: u64 = litex_pac::constants::CONFIG_CLOCK_FREQUENCY as u64;
-    // In the lowest terms the product stays below 2^64 for years, and the division has 64 bits.
+    // With the fraction in lowest terms, the product stays below 2^64 for years, so a 64-bit division suffices.
     const COMMON: u64 = greatest_common_divisor(SECOND, CLOCK);
     now * (SECOND / COMMON) / (CLOCK / COMMON)
 }

@@ -2,7 +2,7 @@
 
 use litex_pac::memories::MAIN_RAM;
 
-/// Main memory, which CPU and engines share. Addresses are those of the CPU; numbers are little-endian.
+/// Main memory, which the CPU and the engines share. Addresses are CPU addresses; numbers are little-endian.
 pub struct MainMemory {
     bytes: Vec<u8>,
 }
@@ -46,7 +46,7 @@ impl MainMemory {
         self.bytes.get(offset..)?.first_chunk().copied()
     }
 
-    /// Writes bytes at `address`; `None` if they are not all within main memory, and then none is written.
+    /// Writes bytes from `address` on; writes none and returns `None` if they are not all within main memory.
     #[must_use]
     #[inline]
     pub fn set_array<const N: usize>(&mut self, address: u32, bytes: [u8; N]) -> Option<()> {
@@ -62,14 +62,14 @@ impl MainMemory {
         self.array(address).map(u8::from_le_bytes)
     }
 
-    /// The word of 32 bits at `address`; `None` outside main memory.
+    /// The 32-bit word at `address`; `None` outside main memory.
     #[must_use]
     #[inline]
     pub fn word(&self, address: u32) -> Option<u32> {
         self.array(address).map(u32::from_le_bytes)
     }
 
-    /// Writes the word of 32 bits at `address`; `None` outside main memory.
+    /// Writes the 32-bit word at `address`; `None` outside main memory.
     #[must_use]
     #[inline]
     pub fn set_word(&mut self, address: u32, value: u32) -> Option<()> {

@@ -1,4 +1,4 @@
-//! The emulated board as one of the simulated boards.
+//! Implements the interfaces of simulated boards for the emulated board.
 
 use glint_board_api::{BoardError, Frame, Simulation, Uart, own_pins, own_uart};
 use litex_pac::scanout::Scanout;

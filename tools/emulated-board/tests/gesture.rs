@@ -1,4 +1,4 @@
-//! The gesture engine of the emulated board, by its registers and an image sensor at its port.
+//! Tests of the emulated board's gesture engine by its registers, with an image sensor at its port.
 
 use emulated_board::virtual_image_sensor::{
     Fault as SensorFault, Hand, ImageSensor, Model, Scene, Source, Timing,
@@ -29,10 +29,10 @@ const REGION: Region = Region {
     first: [4, 3],
     last: [60, 40],
 };
-/// Clock cycles of a frame, at most.
+/// Maximum number of clock cycles of a frame.
 const FRAME: u64 = 40_000;
 
-/// A hand that moves from frame to frame.
+/// A moving hand.
 fn scene() -> Scene {
     Scene::new(SIZE, |time| {
         vec![Hand {
@@ -54,7 +54,7 @@ fn settings() -> Settings {
     }
 }
 
-/// The sums of a frame that the scene gives at a time.
+/// Expected sums of a frame of the scene at a time.
 fn sums(time: f64) -> Sums {
     let settings = settings();
     let mut sums = Sums::NONE;
@@ -73,7 +73,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// An engine with a sensor that is set up, with a master clock.
+    /// An engine with a sensor that has been set up and has a clock.
     fn new() -> Self {
         let mut bench = Self {
             engine: GestureEngine::new(),
@@ -153,7 +153,7 @@ impl Bench {
         Status::from_bits(self.read(offset::STATUS))
     }
 
-    /// Lets time pass from event to event, for a number of cycles or up to an interrupt. Returns whether there was one.
+    /// Advances time from event to event, for a number of cycles or up to an interrupt. Returns whether an interrupt occurred.
     fn run(&mut self, cycles: u64) -> bool {
         let end = self.now + cycles;
         while !self.engine.interrupt() {
@@ -179,7 +179,7 @@ fn each_frame_has_the_sums_of_the_model() {
     let mut bench = Bench::new();
     let mut all = vec![];
     for number in 0..6 {
-        // A frame before the first VSYNC does not count.
+        // An incomplete frame before the first VSYNC does not count.
         assert!(bench.run(2 * FRAME), "frame {number}");
         assert_eq!(bench.read(offset::SEQUENCE), number + 1);
         let found = [offset::COUNT, offset::SUM_X, offset::SUM_Y].map(|at| bench.read(at));
@@ -192,7 +192,7 @@ fn each_frame_has_the_sums_of_the_model() {
     assert_eq!([seen.pixels(), seen.lines()], SIZE.map(|size| size as u16));
     assert_eq!(bench.read(offset::FRAMES), 6);
     assert_eq!(bench.read(offset::FRAMES_DROPPED), 0);
-    // The hand moves, and the frames are those of its path, a constant time apart.
+    // The hand moves, and the frames show its path at constant time steps.
     let period = {
         let line = 2 * SIZE[0] + Timing::SHORT.gap;
         let lines = SIZE[1] + Timing::SHORT.blank.iter().sum::<usize>();
@@ -226,7 +226,7 @@ fn faults_are_those_of_the_frames() {
         bench.engine.sensor().unwrap().fault = Some(fault);
         while bench.run(2 * FRAME) {}
         assert!(bench.read(offset::FRAMES_DROPPED) > dropped, "{fault:?}");
-        // The clock stops in some part of these frames, and ticks in the other.
+        // The clock stops in some of these frames, and ticks in the others.
         while matches!(fault, SensorFault::Stopped(_)) && bench.status().running() {
             bench.run(500);
         }

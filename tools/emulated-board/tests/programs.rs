@@ -1,4 +1,4 @@
-//! Small programs on the whole board, for operations that the firmware never uses.
+//! Tests small programs on the whole board, with operations that the firmware does not use.
 
 use emulated_board::EmulatedBoard;
 use litex_pac::memories::{FLASH, MAIN_RAM};
@@ -6,12 +6,12 @@ use litex_pac::register::Value;
 use litex_pac::{ctrl, leds};
 use virtual_flash::Flash;
 
-/// Registers of the programs.
+/// Register numbers.
 const A0: u32 = 10;
 const A1: u32 = 11;
 const A2: u32 = 12;
 
-/// Where programs leave their results.
+/// Address where programs store their results.
 const RESULTS: u32 = MAIN_RAM.base + 0x1000;
 /// Size of a page of decoded instructions, in bytes.
 const PAGE: u32 = 4096;
@@ -20,7 +20,7 @@ const PAGE: u32 = 4096;
 const UNUSED: u32 = 0x2000_0000;
 /// Unmapped address in the uncached region.
 const UNUSED_IO: u32 = 0x9000_0000;
-/// Clock cycles until the bus answers an access to one of these.
+/// Number of clock cycles until the bus answers an access to an unmapped address.
 const TIMEOUT: u32 = 1_000_000;
 
 const MTVEC: u32 = 0x305;
@@ -57,7 +57,7 @@ fn csrr(rd: u32, csr: u32) -> u32 {
     csr << 20 | 2 << 12 | rd << 7 | 0x73
 }
 
-/// `jal` back by one instruction.
+/// `jal` to the previous instruction.
 const BACK: u32 = 0xffdf_f06f;
 /// `jal` to itself.
 const LOOP: u32 = 0x0000_006f;
@@ -71,7 +71,7 @@ fn started(words: &[u32]) -> EmulatedBoard {
     EmulatedBoard::fast(&bytes(words)).expect("a program that fits")
 }
 
-/// The result at a position of the results.
+/// The result number `place`.
 fn result(board: &EmulatedBoard, place: u32) -> u32 {
     let mut word = [0; 4];
     let address = RESULTS + 4 * place;
@@ -93,7 +93,7 @@ fn frames_are_captured_while_accesses_wait_for_the_bus() {
 fn each_page_of_the_flash_runs_its_own_code() {
     let mut board = started(&[lui(A2, RESULTS), lui(A0, FLASH.base), jump(A0)]);
     for value in [1, 2] {
-        // Back to main memory in each round, as the first page continues to the second.
+        // Jumps back in each round, because the first page continues in the second page.
         let mut words = [lui(A0, FLASH.base + PAGE), jump(A0)].to_vec();
         words.resize(PAGE as usize / 4, 0);
         words.extend([
@@ -108,7 +108,7 @@ fn each_page_of_the_flash_runs_its_own_code() {
     }
 }
 
-/// Stores the count of bus errors and the cycle at two places from `place` on.
+/// Stores the count of bus errors and the cycle as the results `place` and `place + 1`.
 fn store_errors(place: u32) -> [u32; 5] {
     [
         lui(A0, ctrl::Ctrl::BASE as u32),
@@ -126,7 +126,7 @@ fn an_access_that_fills_a_line_of_a_cache_is_eight_on_the_bus() {
         (lui(A0, UNUSED), sw(A1, 4, A0), 1),
         (lui(A0, UNUSED_IO), lw(A1, 4, A0), 1),
         (lui(A0, UNUSED_IO), sw(A1, 4, A0), 1),
-        // The word of all ones is not an instruction; here the handler follows it.
+        // The bus returns 0xffff_ffff, which is not an instruction; in this program the trap handler follows the jump.
         (lui(A0, UNUSED), jump(A0), 8),
         (lui(A0, UNUSED_IO), jump(A0), 8),
     ];

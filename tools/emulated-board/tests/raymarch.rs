@@ -1,4 +1,4 @@
-//! The raymarcher of the emulated board: the registers that the firmware's driver writes give the model's pictures.
+//! Compares the pictures of the emulated board's raymarcher, set up by the firmware's driver, with the model's.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -26,7 +26,7 @@ use litex_pac::triangle::Triangle;
 const FRAME: u32 = 0x4100_0000;
 const DEPTH: u32 = 0x4140_0000;
 
-/// Both engines at their addresses.
+/// Both engines at their bus addresses.
 struct Machine {
     engine: TriangleEngine,
     ram: MainMemory,
@@ -37,7 +37,7 @@ struct Machine {
 struct Shared(Rc<RefCell<Machine>>);
 
 impl Machine {
-    /// The block with the register at an address, and the register's offset.
+    /// The block with the register at a bus address, and the register's offset.
     fn block(&mut self, address: usize) -> (&mut dyn Device, u32) {
         if address >= Raymarch::BASE {
             let offset = address - Raymarch::BASE;
@@ -80,7 +80,7 @@ impl Bench {
             now: 0,
         })));
         connect(machine.clone());
-        // SAFETY: a model on the bus answers all accesses, so no device is affected.
+        // SAFETY: the bus is a model, so no real device is accessed.
         let (triangle, raymarch) = unsafe { (Triangle::steal(), Raymarch::steal()) };
         Self {
             machine,
@@ -100,7 +100,7 @@ impl Bench {
         }
     }
 
-    /// Draws the field. Returns colours and depths.
+    /// Draws the field. Returns the colours and depths.
     fn raster(&mut self, size: Size) -> (Vec<u16>, Vec<u32>) {
         let pass = Raster {
             size: size_code(size),
@@ -112,7 +112,7 @@ impl Bench {
             list_shift: 8,
             sets: [None; 2],
         };
-        // SAFETY: the memory is that of the bench, which waits for the end of the pass.
+        // SAFETY: the bench owns the memory, and waits for the end of the pass.
         unsafe { self.engine.start_raster(&pass) };
         assert_eq!(self.engine.raster(), None);
         self.wait();
@@ -132,7 +132,7 @@ fn view() -> View {
     Camera::looking([1.0, -2.6, 1.2], [0.0; 3], 0.7, 0.1).rounded()
 }
 
-/// Draws a field by the engine and by the model, and compares pictures and counts.
+/// Draws a field by the engine and by the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, subject: FieldSubject, stereo: Option<Stereo>, size: Size) {
     let name = format!("{} {size} {stereo:?} {}", subject.field, subject.prepass);
     let frame = Frame {
@@ -226,7 +226,7 @@ fn random_fields() {
     }
 }
 
-/// Any contents of the registers draw a picture.
+/// Any register contents draw a picture.
 #[test]
 fn random_registers_do_no_harm() {
     let mut state = 9_u32;
@@ -242,7 +242,7 @@ fn random_registers_do_no_harm() {
             for register in (raymarch::offset::SOLID..=raymarch::offset::FOG_SHIFT).step_by(4) {
                 block.write(register, random(), *now, ram);
             }
-            // Few evaluations of each ray.
+            // With few evaluations of each ray.
             let tuning = raymarch::Tuning::from_bits(random()).with_cap(20);
             block.write(raymarch::offset::TUNING, tuning.bits(), *now, ram);
             for _ in 0..500 {

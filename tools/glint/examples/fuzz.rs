@@ -1,4 +1,4 @@
-//! Fuzzes every parser of external bytes, and prints how many inputs a second it has run.
+//! Fuzzes every parser of external bytes, and prints the number of inputs per second.
 #![forbid(unsafe_code)]
 
 use anyhow::Context;
@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 /// Run fuzz targets on generated inputs; a panic is a finding.
 ///
-/// The seed and the number of an input determine its bytes. The input of a finding is written to a file, and --only with its
+/// The seed and the number of an input determine its bytes. The input of a finding is written to a file; --only with the input's
 /// number runs it again.
 #[derive(Parser)]
 struct Arguments {
@@ -33,7 +33,7 @@ struct Arguments {
     only: Option<u64>,
 }
 
-/// Number of consecutive inputs that a thread takes at a time. `Tally` has the first one not taken yet.
+/// Number of consecutive inputs that a thread takes at a time. `Tally` holds the first input that no thread has taken.
 const STRIDE: u64 = 256;
 
 fn main() -> anyhow::Result<()> {

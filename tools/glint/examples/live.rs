@@ -1,4 +1,4 @@
-//! Prints how many pictures a second the emulated board shows of scenes that move: `cargo run --release -p glint --example live
+//! Prints the number of pictures per second of moving scenes on the emulated board: `cargo run --release -p glint --example live
 //! [SCENE…]`.
 
 use std::time::Instant;

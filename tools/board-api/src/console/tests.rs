@@ -3,7 +3,7 @@
 use super::*;
 use std::collections::VecDeque;
 
-/// A simulated board that answers each line it receives with the next of its prepared replies.
+/// A simulated board that answers each received line with the next of its prepared replies.
 struct Script {
     replies: VecDeque<&'static str>,
     output: Vec<u8>,
@@ -77,7 +77,7 @@ fn replies() {
     );
 }
 
-/// A board that says the same without an end.
+/// A board that repeats a text without end.
 struct Endless {
     text: &'static [u8],
     sent: usize,
@@ -99,7 +99,7 @@ impl Board for Endless {
     }
 }
 
-/// A conversation with an endless board.
+/// Runs a command on a board whose output does not end.
 type Conversation = Box<dyn FnMut(&mut Console<'_, Endless>) -> Result<(), ConsoleError>>;
 
 #[test]
@@ -128,7 +128,7 @@ fn a_board_that_never_stops_is_given_up() {
     }
 }
 
-/// Each error may be that of a line that an earlier program has left, but they do not continue forever.
+/// Each error may be the reply to a line of an earlier program, but such errors do not continue forever.
 #[test]
 fn a_board_that_never_stops_refusing_is_given_up() {
     let text = b"error: expected a command\r\n";

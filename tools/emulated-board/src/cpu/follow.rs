@@ -1,20 +1,20 @@
-//! Execution instruction by instruction after another CPU, for comparison.
+//! Instruction by instruction execution that follows another CPU and compares the results.
 
 use super::Cpu;
 use crate::bus::{self, Bus};
 use crate::csr;
 use crate::decode::{Instruction, Operation};
 
-/// An instruction as another CPU executed it.
+/// An instruction that another CPU executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Executed {
-    /// Clock cycle in which it ended.
+    /// Clock cycle in which the instruction ended.
     pub cycle: u64,
     /// Its address.
     pub pc: u32,
-    /// Number of the register that it wrote, 0 for none.
+    /// Number of the register that the instruction wrote, 0 for none.
     pub register: u32,
-    /// Value that it wrote there.
+    /// Value that the instruction wrote to the register.
     pub value: u32,
 }
 
@@ -22,14 +22,14 @@ pub struct Executed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Difference {
     /// The instructions are at different addresses.
-    #[error("expected the instruction at {expected:#010x}, found that at {found:#010x}")]
+    #[error("expected the instruction at {expected:#010x}, found the instruction at {found:#010x}")]
     Address {
         /// Address on the other CPU.
         expected: u32,
-        /// Address on this one.
+        /// Address on this CPU.
         found: u32,
     },
-    /// The instructions leave different values.
+    /// The instructions write different values.
     #[error(
         "{pc:#010x} {word:#010x}: expected {expected:#010x} in x{register}, found {found:#010x}"
     )]
@@ -42,17 +42,17 @@ pub enum Difference {
         register: u32,
         /// Value on the other CPU.
         expected: u32,
-        /// Value on this one.
+        /// Value on this CPU.
         found: u32,
     },
 }
 
 impl Cpu {
-    /// Executes the next instruction, which another CPU executed as `other` states, and compares address and result. `now` is the
-    /// time for the devices.
+    /// Executes the next instruction, and compares its address and result with the instruction `other` of another CPU. `now` is
+    /// the devices' time.
     ///
-    /// Takes an interrupt where the other CPU took one. Results that depend on time are the other CPU's: loads from registers of
-    /// devices, and reads of counters and of pending interrupts.
+    /// Takes an interrupt where the other CPU took one. Results that depend on time are copied from the other CPU: loads from
+    /// registers of devices, and reads of counters and of pending interrupts.
     pub fn follow(&mut self, bus: &mut Bus, now: u64, other: Executed) -> Result<(), Difference> {
         if self.pc != other.pc {
             self.csrs.lines = u32::MAX;

@@ -1,5 +1,5 @@
-//! The I2C master, which drives the wires of a virtual sensor edge by edge. It follows the states of
-//! gateware/rtl/i2c/i2c_engine.sv, whose phases are the steps here.
+//! The I2C master, which drives the bus of a virtual sensor edge by edge. Its states are the phases of
+//! gateware/rtl/i2c/i2c_engine.sv.
 
 use std::collections::VecDeque;
 
@@ -12,18 +12,18 @@ use virtual_mpu6050::Wires;
 
 use crate::{Device, Events, MainMemory, nanoseconds};
 
-/// The event, by its bit in the event registers.
+/// Bit of the event in the event registers.
 const ENDED: u32 = 1;
 
 /// Number of cycles of a phase, a third of a bit at 400 kHz.
 const PHASE: u64 = (CONFIG_CLOCK_FREQUENCY as u64).div_ceil(3 * 400_000);
 /// Number of cycles until a rise of SCL passes the spike filter.
 const FILTER: u64 = 7;
-/// Number of cycles between two looks at SCL while a device holds it low.
+/// Number of cycles between two samples of SCL while a device holds it low.
 const POLL_CYCLES: u64 = 16;
-/// Most cycles that a device may hold SCL low.
+/// Maximum number of cycles that a device may hold SCL low.
 const STRETCH: u64 = 1 << 21;
-/// Number of the clock of the acknowledge, from 0.
+/// Index of the acknowledge's clock in a byte.
 const LAST_CLOCK: u32 = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,7 +43,7 @@ enum State {
 pub struct I2c {
     /// The sensor on the bus, if there is one.
     pub sensor: Option<Wires>,
-    /// The registers `command` and `control`, as they were written last.
+    /// Last written values of the registers `command` and `control`.
     command: u32,
     control: u32,
     commands: VecDeque<Command>,
@@ -52,9 +52,9 @@ pub struct I2c {
     state: State,
     /// End of the phase; `u64::MAX` in a state that waits.
     until: u64,
-    /// Cycle since which SCL should be high, in a phase with a high SCL.
+    /// Cycle in which the master released SCL, in a phase with SCL high.
     released: u64,
-    /// Whether a device held SCL low when it was seen last.
+    /// Whether a device held SCL low at the last sample.
     stretched: bool,
     /// Cycle in which the next round begins.
     round: u64,
@@ -137,7 +137,7 @@ impl I2c {
         self.until = now + PHASE;
     }
 
-    /// The operation of the present command; a stop after an error.
+    /// The operation of the current command; a stop after an error.
     fn operation(&self) -> Option<Operation> {
         match self.error {
             Error::None => self.commands.front().map(|command| command.operation()),
@@ -149,7 +149,7 @@ impl I2c {
         command.operation() != Operation::Read || self.bytes == command.argument()
     }
 
-    /// Removes the present command, which goes to the end of the queue in a round.
+    /// Removes the current command; in a round, appends it to the end of the queue.
     fn take(&mut self) {
         if let Some(command) = self.commands.pop_front()
             && self.rounds.repeats()
@@ -158,7 +158,7 @@ impl I2c {
         }
     }
 
-    /// Leaves a state that waits, if there is work.
+    /// Leaves a waiting state if a command is queued.
     fn begin(&mut self, now: u64, due: bool) {
         let room = self.answers.len() < Block::ANSWER_PLACES as usize;
         let Some(operation) = self.operation() else {
@@ -188,11 +188,11 @@ impl I2c {
         }
     }
 
-    /// The end of a phase.
+    /// Ends the current phase.
     fn step(&mut self, now: u64) {
         let (scl, sda) = self.wires(now);
         if self.scl && !scl {
-            // A device stretches the clock; the phase begins when SCL is high.
+            // A device stretches the clock; the phase starts when SCL is high.
             if now - self.released > STRETCH {
                 self.fail(Error::Clock);
             } else {
@@ -206,7 +206,7 @@ impl I2c {
             return;
         }
         let Some(operation) = self.operation() else {
-            // The queue was cleared.
+            // The queue was cleared meanwhile.
             self.state = State::Idle;
             self.until = u64::MAX;
             return;
@@ -230,7 +230,7 @@ impl I2c {
         }
     }
 
-    /// The end of a high SCL.
+    /// Ends a phase with SCL high.
     fn sample(&mut self, now: u64, operation: Operation, command: Command, sda: bool) {
         let ninth = self.clocks == LAST_CLOCK;
         match operation {
@@ -263,7 +263,7 @@ impl I2c {
         }
     }
 
-    /// The end of a low SCL: the next bit, or the end of a byte or of a start.
+    /// Ends a phase with SCL low: starts the next bit, or ends a byte or a start.
     fn shift_out(&mut self, now: u64, operation: Operation, command: Command) {
         let ninth = self.clocks == LAST_CLOCK;
         let started = !self.sda;
@@ -307,7 +307,7 @@ impl I2c {
         self.begin(now, false);
     }
 
-    /// The end of the free time after a stop.
+    /// Ends the bus free time after a stop.
     fn stop(&mut self, sda: bool) {
         self.until = u64::MAX;
         let last = self.rounds_done == self.rounds.batch();
@@ -325,7 +325,7 @@ impl I2c {
         if self.state == State::Failed || !self.rounds.repeats() || last {
             self.events.raise(ENDED);
         }
-        // The count wraps at the width of `batch`, which may have become smaller than the count.
+        // The count wraps at the width of the field `batch`, which may have become smaller than the count.
         let next = Rounds::default().with_batch(self.rounds_done + 1).batch();
         self.rounds_done = if last { 0 } else { next };
         if !self.rounds.repeats() {
@@ -392,7 +392,8 @@ impl Device for I2c {
                     self.round = u64::MAX;
                     self.rounds_done = 0;
                 } else if before.repeats() {
-                    // The counter, as wide as `period`, continues. A period that it has passed already ends after it has wrapped.
+                    // The counter has the width of the field `period`, and continues to count. If it has already passed the new
+                    // period, the period ends after the counter has wrapped.
                     let counts_from = self.round - u64::from(before.period());
                     let left = counts_from.wrapping_add(period).wrapping_sub(now + 1);
                     let wrap = Rounds::default().with_period(u32::MAX).period();
@@ -442,7 +443,7 @@ mod tests {
     /// Number of cycles of a round.
     const ROUND: u64 = 2000;
 
-    /// A master in which rounds of a start and a stop begin at the cycle 0.
+    /// A master whose rounds, of a start and a stop, begin at cycle 0.
     fn started(rounds: Rounds) -> (I2c, MainMemory) {
         let (mut i2c, mut ram) = (I2c::new(), MainMemory::new());
         for operation in [Operation::Start, Operation::Stop] {

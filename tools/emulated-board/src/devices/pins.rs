@@ -1,10 +1,10 @@
-//! Buttons, switches, LEDs, and the displays of digits.
+//! Buttons, switches, LEDs, and the seven-segment displays.
 
 use litex_pac::buttons::offset;
 
 use crate::{Device, Events, MainMemory};
 
-/// Pins that the CPU reads, with an event for each; the switches have no events, and their registers end after `in`.
+/// Pins that the CPU reads, with an event for each pin; the switches have no events, and `in` is their last register.
 pub struct Inputs {
     /// Levels of the pins.
     levels: u32,
@@ -16,7 +16,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// `bits` pins that are low.
+    /// Pins that are low, `bits` in number.
     pub fn new(bits: u32, has_events: bool) -> Self {
         Self {
             levels: 0,
@@ -42,7 +42,7 @@ impl Inputs {
     pub fn set(&mut self, levels: u32) {
         let changed = (self.levels ^ levels) & self.mask;
         self.levels = levels & self.mask;
-        // In the mode `change` the level of the event is high for one cycle.
+        // In the mode `change`, an edge sets the event's level high for one cycle.
         self.events.raise(changed & self.mode);
         self.update();
     }
@@ -121,10 +121,10 @@ impl Device for Outputs {
     }
 }
 
-/// Two displays of four digits. A reset leaves what they show.
+/// Two displays of four digits. A reset does not change the displayed segments.
 #[derive(Default)]
 pub struct Digits {
-    /// Segments of each digit from left to right, as in the registers.
+    /// Segments of each digit, in the order of the registers: from left to right.
     pub segments: [u8; 8],
 }
 

@@ -7,10 +7,10 @@ use litex_pac::scanout::{Caps, Control, Error, Scanout as Block, Status, offset}
 
 use crate::{Device, Events, MainMemory};
 
-/// The event, by its bit in the event registers.
+/// Bit of the event in the event registers.
 const VBLANK: u32 = 1;
 
-/// Cycle of the first vertical blanking. The video timing begins at the end of the last visible line.
+/// Cycle of the first vertical blanking. The video timing starts at the end of the last visible line.
 const FIRST: u64 = 130;
 
 /// Scales that the block supports.
@@ -21,7 +21,7 @@ const DEFAULT_SCALE: u32 = 4;
 /// Size of a memory word in bytes.
 const WORD: u32 = 16;
 
-/// Number of cycles of the fetch of a line in addition to one for each word: an estimate.
+/// Estimated number of cycles of a line fetch, in addition to one cycle for each word.
 const FETCH_OVERHEAD: u32 = 30;
 
 /// The scan-out block.
@@ -29,7 +29,7 @@ pub struct Scanout {
     control: u32,
     next: u32,
     scale: u32,
-    /// Settings that the last vertical blanking has latched.
+    /// Settings that the last vertical blanking latched.
     enabled: bool,
     current: u32,
     scale_current: u32,
@@ -38,13 +38,13 @@ pub struct Scanout {
     busy: u32,
     items_in: u32,
     items_out: u32,
-    /// Number of the next vertical blanking since the start of the board. A reset does not change the video timing.
+    /// Number of the next vertical blanking, counted from the start of the board. A reset does not change the video timing.
     blanking: u64,
     events: Events,
 }
 
 impl Scanout {
-    /// Scan-out after the start of the board.
+    /// Scan-out at the start of the board.
     pub fn new() -> Self {
         Self {
             control: 0,
@@ -103,7 +103,7 @@ impl Scanout {
         self.blanking
     }
 
-    /// The frame that is shown; black while the picture is switched off, like pixels outside main memory.
+    /// The displayed frame; black while the picture is switched off. Pixels outside main memory are black too.
     pub fn frame(&self, ram: &MainMemory) -> Frame {
         let [width, height] =
             [Block::SCREEN_WIDTH, Block::SCREEN_HEIGHT].map(|length| length / self.scale_current);

@@ -1,4 +1,4 @@
-//! The SoC's controller, its identity, and the controller of main memory.
+//! The SoC's controller, its identity block, and the controller of main memory.
 
 use litex_pac::register::Value;
 use litex_pac::{BUILD_ID, constants, ctrl, identity, memories};
@@ -8,11 +8,11 @@ use crate::{Device, MainMemory};
 /// Content of `scratch` after a reset.
 const SCRATCH: u32 = 0x1234_5678;
 
-/// The SoC's controller: reset, scratch register, count of bus errors.
+/// The SoC's controller: reset, scratch register, counter of bus errors.
 pub struct Controller {
     scratch: u32,
     bus_errors: u32,
-    /// Whether the CPU requested a reset of the SoC.
+    /// Whether the CPU has requested a reset of the SoC.
     pub reset: bool,
     /// Whether the CPU is held in reset.
     pub holds_cpu: bool,
@@ -49,7 +49,7 @@ impl Device for Controller {
             ctrl::offset::RESET => {
                 let reset = ctrl::Reset::from_bits(value);
                 self.reset |= reset.soc_rst();
-                // Only a pulse resets the SoC; this bit stays, and no CPU is left to clear it.
+                // Only a pulse resets the SoC; this bit holds the CPU in reset, which then cannot clear it.
                 self.holds_cpu = reset.cpu_rst();
             }
             ctrl::offset::SCRATCH => self.scratch = value,
@@ -66,9 +66,9 @@ impl Device for Controller {
     }
 }
 
-/// The identity of the gateware that is emulated.
+/// Identity of the emulated gateware.
 pub struct Identity {
-    /// The optional blocks, as in the register `blocks`.
+    /// The optional blocks, as bits of the register `blocks`.
     pub blocks: u32,
 }
 

@@ -1,10 +1,10 @@
-//! LiteX's timer: counts down, and starts again from `reload`.
+//! LiteX's timer: counts down, and reloads from `reload`.
 
 use litex_pac::timer0::offset;
 
 use crate::{Device, Events, MainMemory};
 
-/// The event, by its bit in the event registers.
+/// Bit of the event in the event registers.
 const ZERO: u32 = 1;
 
 /// The timer.
@@ -12,19 +12,19 @@ pub struct Timer {
     load: u32,
     reload: u32,
     enabled: bool,
-    /// The count at the cycle of the last change of a register, if the timer is enabled.
+    /// The cycle of the last register change, and the count at that cycle, if the timer is enabled.
     start: (u64, u32),
     value: u32,
     uptime: u64,
-    /// The registers `update_value` and `uptime_latch`, as they were written last.
+    /// Last written values of the registers `update_value` and `uptime_latch`.
     latches: [u32; 2],
-    /// Cycle in which the count becomes 0 next.
+    /// Next cycle in which the count becomes 0.
     zero: u64,
     events: Events,
 }
 
 impl Timer {
-    /// The timer after a reset. Its count is 0, which is an event.
+    /// The timer after a reset. Its count is 0, which raises the event.
     pub fn new() -> Self {
         let mut events = Events::default();
         events.set_level(ZERO, true);
@@ -53,7 +53,7 @@ impl Timer {
         }
     }
 
-    /// Starts from `value` at `now`, after a change of a register.
+    /// Restarts from `value` at `now`, after a register change.
     fn restart(&mut self, now: u64, value: u32) {
         self.start = (now, value);
         self.events.set_level(ZERO, value == 0);
@@ -98,7 +98,7 @@ impl Device for Timer {
                 self.restart(now, count);
             }
             offset::EN => {
-                // A timer that is not enabled holds `load`, from which it then counts.
+                // A disabled timer holds `load`, and counts from it when it is enabled.
                 let count = if self.enabled && value & 1 != 0 {
                     self.count(now)
                 } else {
@@ -131,7 +131,7 @@ impl Device for Timer {
                 _ => now + period - (now - self.zero) % period,
             };
         }
-        // The level falls in the cycle after, or stays high without a reload.
+        // The level falls in the next cycle, or stays high without a reload.
         self.events.set_level(ZERO, self.count(now) == 0);
         self.zero
     }

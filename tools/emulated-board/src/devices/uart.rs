@@ -1,4 +1,4 @@
-//! The UART as a stream of bytes: it takes all available bytes, without the time that a serial line needs.
+//! The UART as a stream of bytes: it transfers bytes without the delay of a serial line.
 
 use std::collections::VecDeque;
 
@@ -14,15 +14,15 @@ const RX: u32 = 2;
 
 /// The UART.
 pub struct Uart {
-    /// Bytes for the CPU.
+    /// Bytes that the CPU has not read.
     received: VecDeque<u8>,
-    /// Bytes from the CPU that nobody has read yet.
+    /// Bytes from the CPU that the host has not read.
     sent: Vec<u8>,
     events: Events,
 }
 
 impl Uart {
-    /// The UART after a reset. It has room for bytes to send from the start on, which is an event.
+    /// The UART after a reset. Its transmit buffer has space from the start on, which is an event.
     pub fn new() -> Self {
         let mut events = Events::default();
         events.set_level(TX, true);
@@ -33,7 +33,7 @@ impl Uart {
         }
     }
 
-    /// Resets the UART. Bytes from the CPU are kept for their reader.
+    /// Resets the UART. Bytes from the CPU are stored until the host reads them.
     pub fn reset(&mut self) {
         self.events = Self::new().events;
         self.received.clear();
@@ -45,12 +45,12 @@ impl Uart {
         self.events.set_level(RX, !self.received.is_empty());
     }
 
-    /// Number of bytes that the CPU has not taken yet.
+    /// Number of bytes that the CPU has not read yet.
     pub fn queued(&self) -> usize {
         self.received.len()
     }
 
-    /// Bytes from the CPU; the reader removes those that it takes.
+    /// Bytes from the CPU; the caller removes the bytes that it has read.
     pub fn sent(&mut self) -> &mut Vec<u8> {
         &mut self.sent
     }
@@ -76,7 +76,7 @@ impl Device for Uart {
             offset::EV_PENDING => {
                 self.events.clear(value);
                 if EvPending::from_bits(value).rx() {
-                    // Clearing the event removes the byte that `rxtx` shows.
+                    // Clearing the event removes the byte in `rxtx`.
                     self.received.pop_front();
                     self.events.set_level(RX, !self.received.is_empty());
                 }

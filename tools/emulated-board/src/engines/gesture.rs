@@ -1,5 +1,5 @@
-//! The gesture engine with the image sensor at its port (docs/gesture.md): each period of the sensor's clock passes through
-//! `glint_model::gesture`.
+//! The gesture engine with the image sensor at its port (docs/gesture.md): `glint_model::gesture` processes each period of the
+//! sensor's clock.
 
 mod port;
 
@@ -20,7 +20,7 @@ use port::Port;
 /// Divider of the system clock for the sensor's input clock.
 const CLOCK_DIVIDER: u8 = 4;
 
-/// Clock cycles without a tick of the sensor's clock, after which it has stopped.
+/// Number of clock cycles without a tick of the sensor's clock after which it counts as stopped.
 const QUIET: u64 = 4096;
 
 /// The gesture engine.
@@ -30,12 +30,12 @@ pub struct GestureEngine {
     camera: Camera,
     events: Events,
     engine: Box<Engine>,
-    /// The register `snapshot`, as it was written last.
+    /// Last written value of the register `snapshot`.
     snapshot: u32,
-    /// The word of the small picture to read next.
+    /// Index of the next word of the small picture to read.
     place: u16,
     port: Port,
-    /// Whether the sensor's clock has ticked lately.
+    /// Whether the sensor's clock is running.
     is_running: bool,
     sensor: Option<ImageSensor>,
     /// Levels of SCL and SDA.
@@ -76,7 +76,7 @@ impl GestureEngine {
         gesture
     }
 
-    /// Resets the engine. The sensor stays, with its inputs as after a reset.
+    /// Resets the engine. The sensor stays connected; its inputs have their values after a reset.
     pub(crate) fn reset(&mut self) {
         let sensor = self.sensor.take();
         *self = Self {
@@ -85,7 +85,7 @@ impl GestureEngine {
         };
     }
 
-    /// Connects an image sensor instead of the present one, if any.
+    /// Connects an image sensor; replaces the connected sensor, if any.
     pub fn plug(&mut self, sensor: ImageSensor) {
         self.port.clear();
         self.sensor = Some(sensor);
@@ -96,7 +96,7 @@ impl GestureEngine {
         self.sensor.as_mut()
     }
 
-    /// Passes the engine's outputs to the sensor, and the levels of its bus back.
+    /// Passes the engine's outputs to the sensor, and reads the levels of the sensor's bus.
     fn update_wires(&mut self, now: u64) {
         let camera = self.camera;
         let (scl, sda) = (camera.scl(), camera.sda());
@@ -112,8 +112,8 @@ impl GestureEngine {
         }
     }
 
-    /// Lets the sensor's clock run up to the cycle `now`. Returns the cycle in which the next frame ends, or a clock that does not tick
-    /// counts as stopped.
+    /// Advances the sensor's clock to the cycle `now`. Returns the cycle in which the next frame ends, or in which a clock
+    /// without ticks counts as stopped.
     fn settle(&mut self, now: u64) -> u64 {
         self.update_wires(now);
         let Some(sensor) = &mut self.sensor else {
@@ -142,7 +142,7 @@ impl GestureEngine {
         self.watch(now).min(self.port.next_event())
     }
 
-    /// Notices a clock that has stopped. Returns the cycle in which it counts as stopped.
+    /// Detects that the sensor's clock has stopped. Returns the cycle in which the clock counts as stopped.
     fn watch(&mut self, now: u64) -> u64 {
         let quiet = self.port.last_tick + QUIET;
         if self.is_running && quiet <= now {
@@ -183,7 +183,7 @@ impl GestureEngine {
             })
     }
 
-    /// The word of the small picture at the place to read, which moves on.
+    /// The word of the small picture at the read index; increments the index.
     fn snapshot_word(&mut self) -> u16 {
         let words = self.engine.snapshot().map(|snapshot| snapshot.words());
         let word = words.and_then(|words| words.get(usize::from(self.place)));
@@ -193,7 +193,7 @@ impl GestureEngine {
     }
 }
 
-/// The bit of the event of a whole frame.
+/// Bit of the event at the end of a complete frame.
 fn frame_event() -> u32 {
     EvPending::default().with_frame(true).bits()
 }
@@ -247,7 +247,7 @@ impl Device for GestureEngine {
             offset::EV_STATUS => self.events.status(),
             offset::EV_PENDING => self.events.pending(),
             offset::EV_ENABLE => self.events.enabled(),
-            // Whole frames, modulo 2^16.
+            // Number of complete frames, modulo 2^16.
             offset::SEQUENCE => engine.counts.frames & 0xFFFF,
             offset::COUNT => results.count,
             offset::SUM_X => results.sums[0],
@@ -288,7 +288,7 @@ impl Device for GestureEngine {
                 let stored = stored.with_colour(request.colour());
                 self.snapshot = stored.with_start(request.start()).bits();
                 if request.start() {
-                    // A column has five bits that count.
+                    // The engine masks at most five bits of a column number.
                     let step = request.step().min(5);
                     self.engine.request_snapshot(step, request.colour());
                 }

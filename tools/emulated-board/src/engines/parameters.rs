@@ -1,9 +1,9 @@
-//! The registers of a block that only the block reads: parameters of its work.
+//! The parameters of a block: registers that only the block reads.
 
-/// Number of words in the window of a block.
+/// Number of words in a block's register window.
 const WORDS: usize = 512;
 
-/// The parameters of a block, which software may write at any time. They read as 0.
+/// The parameters of a block; software may write them at any time. Reads return 0.
 #[derive(Clone, Debug)]
 pub struct Parameters {
     words: [u32; WORDS],
@@ -15,7 +15,7 @@ impl Parameters {
         Self { words: [0; WORDS] }
     }
 
-    /// Writes the register at `offset` in bytes. Beyond the window there is none.
+    /// Writes the register at `offset` in bytes. A write beyond the window has no effect.
     pub fn set(&mut self, offset: u32, value: u32) {
         if let Some(word) = self.words.get_mut(offset as usize / 4) {
             *word = value;
@@ -38,12 +38,12 @@ impl Parameters {
         (self.word(offset) << unused) as i32 >> unused
     }
 
-    /// Three registers that follow each other from `offset` on, in two's complement of `bits` bits each.
+    /// Three consecutive registers from `offset` on, each in two's complement with `bits` bits.
     pub fn row(&self, offset: u32, bits: u32) -> [i32; 3] {
         [0, 4, 8].map(|place| self.signed(offset + place, bits))
     }
 
-    /// The number in two registers, of which the one at `high` has the `bits` bits above 31, in two's complement.
+    /// A number in two registers, in two's complement; the register at `high` contains the `bits` bits from bit 32 on.
     pub fn wide(&self, low: u32, high: u32, bits: u32) -> i64 {
         i64::from(self.signed(high, bits)) << 32 | i64::from(self.word(low))
     }

@@ -1,4 +1,4 @@
-//! A pass of an engine: its work is done when it starts, and it ends after the time that the work takes.
+//! A pass of an engine: its results are computed at its start, and it ends after the estimated time.
 
 /// The increment of each counter of a block, in the order of its registers.
 pub type Growth<const N: usize> = [u32; N];
@@ -6,16 +6,16 @@ pub type Growth<const N: usize> = [u32; N];
 /// A running pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Pass<const N: usize> {
-    /// The cycle in which it started.
+    /// The cycle in which the pass started.
     pub start: u64,
-    /// The cycle in which it ends.
+    /// The cycle in which the pass ends.
     pub end: u64,
     /// Increments of the block's counters.
     pub growth: Growth<N>,
 }
 
 impl<const N: usize> Pass<N> {
-    /// The increments of the counters until the cycle `now`, as if the work were spread evenly.
+    /// The increments of the counters up to the cycle `now`, with the work spread evenly over the pass.
     pub fn grown(&self, now: u64) -> Growth<N> {
         let (done, whole) = (now.saturating_sub(self.start), self.end - self.start);
         if done >= whole {

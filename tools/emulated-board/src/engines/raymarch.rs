@@ -1,4 +1,4 @@
-//! The raymarcher: distance fields in the frames of the triangle engine (docs/raymarch.md), with all features.
+//! The raymarcher: draws distance fields into the frames of the triangle engine (docs/raymarch.md), with all features.
 
 mod rows;
 mod setup;
@@ -18,7 +18,7 @@ use crate::{Device, Events, MainMemory};
 use setup::{Tables, field_setup, palette};
 use spheres::Spheres;
 
-/// Evaluations of the field in a clock.
+/// Number of evaluations of the field in a clock cycle.
 const LANES: u64 = 2;
 
 /// Number of counters.
@@ -27,19 +27,19 @@ const COUNTERS: usize = ((offset::UNDECIDED - offset::CYCLES_BUSY) / 4 + 1) as u
 /// Largest depth of a sponge.
 const LEVELS: u8 = 6;
 
-/// Number of cycles in which a field is drawn, besides those of its rays.
+/// Number of cycles to draw a field, in addition to the cycles of its rays.
 const LATENCY: u64 = 300;
 
 /// Statistics of a drawn field.
 pub struct Field {
-    /// Number of cycles that it takes.
+    /// Number of cycles of the drawing.
     pub cycles: u64,
-    /// Pixels, counted for each eye, and those of them that passed the depth test.
+    /// Counts of pixels for each eye, and of pixels that passed the depth test.
     pub pixels: u32,
     pub drawn: u32,
 }
 
-/// The raymarcher. The triangle engine starts it.
+/// The raymarcher. Set by the triangle engine, which starts the raymarcher.
 pub struct Raymarcher {
     parameters: Parameters,
     control: Control,
@@ -64,12 +64,12 @@ impl Raymarcher {
         }
     }
 
-    /// Whether the next frame has the field.
+    /// Whether the next frame contains the field.
     pub(crate) fn draws(&self) -> bool {
         self.control.enable() && self.error() == Error::None
     }
 
-    /// Draws the field into a picture that has its triangles, from the cycle `now` on.
+    /// Draws the field into a picture that already contains its triangles, starting at the cycle `now`.
     pub(crate) fn draw(&mut self, size: Size, target: &mut FrameBuffer, now: u64) -> Field {
         let setup = field_setup(&self.parameters, self.control, &self.spheres, size);
         let palette = palette(&self.parameters, &self.spheres, &self.tables);
@@ -101,7 +101,7 @@ impl Raymarcher {
         }
     }
 
-    /// Ends the field of a frame that is cancelled.
+    /// Cancels the field of a cancelled frame.
     pub(crate) fn cancel(&mut self, now: u64) {
         if let Some(pass) = self.running.take() {
             add(&mut self.counters, &pass.grown(now));
@@ -109,7 +109,7 @@ impl Raymarcher {
         }
     }
 
-    /// Ends the field whose time is over, and returns the cycle in which it ends otherwise.
+    /// Ends the field if its time has passed; otherwise returns the cycle in which it ends.
     pub(crate) fn settle(&mut self, now: u64) -> u64 {
         match self.running {
             Some(pass) if pass.end <= now => {
@@ -123,7 +123,7 @@ impl Raymarcher {
         }
     }
 
-    /// The feature that the registers request and that is not built. All are, but there is no fourth kind of a flat field.
+    /// The error of the parameters: an undefined kind of solid.
     fn error(&self) -> Error {
         let solid = Solid::from_bits(self.parameters.word(offset::SOLID));
         match solid.kind() {
@@ -141,7 +141,7 @@ impl Raymarcher {
     }
 }
 
-/// The bit of the event at the end of a field.
+/// Bit of the event at the end of a field.
 fn field_event() -> u32 {
     EvPending::default().with_field(true).bits()
 }

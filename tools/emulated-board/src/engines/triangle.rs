@@ -1,8 +1,8 @@
 //! The triangle engine: geometry and raster passes of frames (docs/triangle.md), with flat shading and lines.
 //!
-//! A pass does its work when it starts, by the functions of `glint_model`, and ends after the estimated time of the gateware. The
-//! results in memory, the counts of triangles, groups, pixels and words, and the errors are those of the gateware; counters of cycles are
-//! estimates, and those of waiting stay 0. Counters grow evenly during a pass.
+//! A pass computes its results at its start, by the functions of `glint_model`, and ends after the estimated time of the
+//! gateware. The results in memory, the counts of triangles, groups, pixels and words, and the errors equal those of the
+//! gateware; cycle counters are estimates, and counters of waiting cycles stay 0. Counters grow evenly during a pass.
 
 mod geometry;
 mod output;
@@ -30,14 +30,14 @@ use time::Work;
 /// Number of counters.
 const COUNTERS: usize = ((offset::CYCLES_FLUSH - offset::CYCLES_BUSY) / 4 + 1) as usize;
 
-/// One of the two kinds of passes.
+/// Kind of a pass.
 struct Side {
     running: Option<Pass<COUNTERS>>,
     /// The error with which the running pass ends.
     ends_with: Error,
     /// The error in the register `status`.
     error: Error,
-    /// The bit of its event.
+    /// Bit of its event.
     event: u32,
 }
 
@@ -51,7 +51,7 @@ impl Side {
         }
     }
 
-    /// Begins a pass at `now`; a refused one ends soon.
+    /// Begins a pass at `now`; a refused pass ends after a few cycles.
     fn begin(
         &mut self,
         now: u64,
@@ -91,7 +91,7 @@ pub struct TriangleEngine {
     slot: bool,
     geometry_unit: GeometryUnit,
     raster_unit: RasterUnit,
-    /// The raymarcher, which draws into its frames. Its registers have a window of their own, and its interrupt a line.
+    /// The raymarcher, which draws into the frames of the triangle engine. It has its own register window and interrupt line.
     pub raymarcher: Raymarcher,
     counters: Growth<COUNTERS>,
     /// The cycle up to which `cycles_busy` has been counted.
@@ -177,7 +177,7 @@ impl TriangleEngine {
         self.ready = now + time::RECOVERY;
     }
 
-    /// Counts the cycles up to `now` in which a pass runs.
+    /// Counts the busy cycles up to `now`.
     fn count_busy(&mut self, now: u64) {
         let passes = [self.geometry.running, self.raster.running];
         let passes = passes.iter().flatten();
@@ -204,7 +204,7 @@ impl TriangleEngine {
             }
             side.running = None;
             add(&mut self.counters, &pass.growth);
-            // A request during the pass has left its error, unless the pass has one.
+            // A refused request during the pass has set the error, unless the pass has its own error.
             if side.ends_with != Error::None {
                 side.error = side.ends_with;
             }
@@ -213,7 +213,7 @@ impl TriangleEngine {
         next
     }
 
-    /// The counter with a number, at `now`.
+    /// The counter number `number` at `now`.
     fn counter(&self, number: usize, now: u64) -> u32 {
         let mut counters = self.counters;
         for pass in [&self.geometry.running, &self.raster.running]
@@ -286,5 +286,5 @@ impl Device for TriangleEngine {
     }
 }
 
-/// The bits of all events.
+/// Bits of all events.
 const EVENTS: u32 = 0b11;

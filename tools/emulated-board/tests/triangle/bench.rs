@@ -18,16 +18,16 @@ use litex_pac::triangle::{
 pub const MESH: u32 = 0x4200_0000;
 pub const FRAMES: [u32; 2] = [0x4100_0000, 0x4120_0000];
 pub const DEPTH: u32 = 0x4140_0000;
-/// Descriptors of the engine, and of the clipper.
+/// Addresses of the descriptors of the engine and of the clipper.
 pub const DESCRIPTORS: [u32; 2] = [0x4600_0000, 0x4680_0000];
-/// Lists of the engine, and of the clipper.
+/// Addresses of the lists of the engine and of the clipper.
 pub const LISTS: [u32; 2] = [0x4700_0000, 0x4740_0000];
 pub const EXCEPTIONS: u32 = 0x4780_0000;
 pub const LIMIT: u32 = 100_000;
 pub const LIST_SHIFT: u32 = 11;
-/// Bytes before the chunks of a mesh.
+/// Size in bytes of a mesh's header, before the chunks.
 const HEADER: u32 = 32;
-/// A colour that is neither drawn nor clear.
+/// A colour that is neither a drawn colour nor the background.
 pub const UNTOUCHED: u16 = 0x7777;
 
 /// Both passes.
@@ -84,7 +84,7 @@ impl Bench {
         words.map(|word| u32::from_le_bytes(*word)).collect()
     }
 
-    /// Starts a pass, and lets it end. Returns its error.
+    /// Starts a pass, and runs it to its end. Returns its error.
     pub fn pass(&mut self, kind: Kind, flags: u32) -> Error {
         self.set(
             match kind {
@@ -96,7 +96,7 @@ impl Bench {
         self.finish(kind)
     }
 
-    /// Runs until all passes have ended. Returns the error of a pass, if any; its event must then be pending.
+    /// Runs until all passes have ended. Returns the error of a pass, if any; the pass's event must then be pending.
     pub fn finish(&mut self, kind: Kind) -> Error {
         while self.status().geometry_busy() || self.status().raster_busy() {
             assert!(!self.engine.interrupt());
@@ -119,7 +119,7 @@ impl Bench {
         self.set(offset::CONTROL, Control::default().with_cancel(true).bits());
     }
 
-    /// Sets where geometry passes write, and how much.
+    /// Sets the addresses and sizes of a geometry pass's output.
     pub fn set_output(&mut self) {
         self.set_all([
             (offset::GEOMETRY_DESCRIPTORS, DESCRIPTORS[0]),
@@ -131,7 +131,7 @@ impl Bench {
         ]);
     }
 
-    /// Writes a mesh to memory, and the parameters of its geometry pass. Returns the flags of the start.
+    /// Writes a mesh to memory, and sets the parameters of its geometry pass. Returns the start flags.
     pub fn prepare(&mut self, part: &PreparedMesh) -> Geometry {
         let PreparedMesh {
             mesh,
@@ -146,7 +146,7 @@ impl Bench {
         geometry_flags(frame, options)
     }
 
-    /// Sets address and length of the mesh.
+    /// Sets the address and length of the mesh.
     pub fn set_mesh(&mut self, bytes: u32) {
         self.set(offset::MESH, MESH + HEADER);
         self.set(offset::MESH_BYTES, bytes.saturating_sub(HEADER));
@@ -187,14 +187,14 @@ impl Bench {
         ]);
     }
 
-    /// The exceptions from number `first` on.
+    /// The exceptions from index `first` on.
     pub fn exceptions(&mut self, first: u32) -> Vec<u32> {
         let count = self.read(offset::EXCEPTION_COUNT);
         self.words(EXCEPTIONS + 4 * first, (count - first) as usize)
     }
 
-    /// Sets the parameters of the raster pass of a frame with `clipped` triangles in the second set, and returns the flags of its start,
-    /// with depths.
+    /// Sets the parameters of the raster pass of a frame that has `clipped` triangles in the second set, and returns the start
+    /// flags, with depths.
     pub fn prepare_raster(
         &mut self,
         size: Size,
@@ -250,7 +250,7 @@ impl Bench {
         count
     }
 
-    /// Draws parts, each by a geometry pass, and returns the numbers of triangles off screen and of culled triangles.
+    /// Draws parts, each by a geometry pass, and returns the numbers of off-screen and culled triangles.
     pub fn draw(&mut self, size: Size, slot: bool, parts: &[PreparedMesh]) -> [u32; 2] {
         let (mut clipped, mut listed, mut left_out) = (vec![], 0, [0; 2]);
         for (number, part) in parts.iter().enumerate() {
@@ -286,7 +286,7 @@ impl Bench {
         (colour.collect(), self.words(DEPTH, pixels))
     }
 
-    /// Compares the picture in memory.
+    /// Compares the picture in memory with the model's.
     pub fn compare(&self, name: &str, size: Size, slot: bool, expected: &Picture) {
         let (colour, depth) = self.picture(size, slot);
         assert!(colour == expected.colour, "{name}: colours");

@@ -1,4 +1,4 @@
-//! Requests that are refused, and damaged memory: errors as those of the gateware, and never a panic.
+//! Tests refused requests and damaged memory: the errors equal the gateware's, and nothing panics.
 
 use emulated_board::Device;
 use glint_core::mesh::Mesh;
@@ -23,7 +23,7 @@ fn setup(mesh: &[u8]) -> MeshSetup {
     MeshSetup::new(&inside(), 320, 180, radius).unwrap()
 }
 
-/// A bench with a prepared geometry pass, whose flags it returns.
+/// A bench with a prepared geometry pass, and the start flags.
 fn prepared(mesh: &[u8]) -> (Bench, Geometry) {
     let mut bench = Bench::new();
     let flags = bench.prepare(&alone(mesh, setup(mesh), false));
@@ -87,7 +87,7 @@ fn a_raster_pass_with_a_wrong_region_is_refused() {
         let flags = flags.with_second(true);
         let error = bench.pass(Kind::Raster, flags.bits());
         assert_eq!(error, Error::Address, "{register:#x} {value:#x}");
-        // A region that is not used may be anywhere.
+        // An unused region may have any address.
         if matches!(register, offset::LISTS_1 | offset::DESCRIPTORS_1) {
             let flags = flags.with_second(false);
             assert_eq!(bench.pass(Kind::Raster, flags.bits()), Error::None);
@@ -136,7 +136,7 @@ fn bad_meshes_and_full_lists_are_reported() {
     let length = mesh.len() as u32;
     let triangles = Mesh::new_checked(&mesh).unwrap().triangle_count();
     let (mut bench, flags) = prepared(&mesh);
-    // The header of the mesh has 32 bytes, and that of the chunk follows.
+    // The mesh's header has 32 bytes, and the chunk's header follows it.
     for (name, place, value, bytes) in [
         ("no vertices", 32, 0, length),
         ("very many vertices", 32, u32::MAX, length),
@@ -172,7 +172,7 @@ fn bad_meshes_and_full_lists_are_reported() {
     }
 }
 
-/// Frames from random descriptors and lists end, with an error if one is invalid, and write only their own memory.
+/// Frames from random descriptors and lists end, report an error if one is invalid, and write only to their own memory.
 #[test]
 fn frames_end_with_random_memory() {
     let mut bench = Bench::new();
@@ -181,7 +181,7 @@ fn frames_end_with_random_memory() {
         let size = Size::ALL[seed as usize % 3];
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
         if seed % 4 > 0 {
-            // Columns of groups within the picture; others are an error.
+            // Columns of groups within the picture; other columns are an error.
             let last = (size.width() / 8 - 1) as u8;
             for descriptor in descriptors.as_chunks_mut::<48>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
@@ -214,14 +214,14 @@ fn frames_end_with_random_memory() {
         assert_eq!(error, expected, "seed {seed}");
         let words = bench.words(behind, 2048);
         assert!(words.iter().all(|word| *word == 0x7777_7777), "seed {seed}");
-        // An entry that names no descriptor.
+        // A list entry beyond the last descriptor.
         bench.set(offset::COUNT_0, 10);
         let error = bench.pass(Kind::Raster, flags.bits());
         assert_eq!(error, Error::List, "seed {seed}");
     }
 }
 
-/// Any parameters, and any memory.
+/// Random parameters and memory.
 #[test]
 fn random_parameters_do_no_harm() {
     let mut random = Pcg64Mcg::new(77);
@@ -259,7 +259,7 @@ fn random_parameters_do_no_harm() {
             (offset::COUNT_1, limit),
             (offset::LIST_SHIFT, shift),
         ]);
-        // Small counts in the header, so that some chunks are valid.
+        // Small counts in memory, so that some words are valid headers of chunks.
         for at in (0..2000).step_by(7) {
             bench.ram.set_word(MESH + 16 * at, at % 5).unwrap();
             bench.ram.set_word(MESH + 16 * at + 4, at % 900).unwrap();

@@ -20,7 +20,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::bench::{Bench, Kind, UNTOUCHED, alone};
 
-/// Instead of the models that `glint` generates.
+/// Replaces the models that `glint` generates.
 fn shape(name: &str) -> Vec<u8> {
     let model = match name {
         "sponge:1" => Model::cube(8192),
@@ -45,7 +45,7 @@ fn by_model(size: Size, parts: &[PreparedMesh]) -> Picture {
     picture
 }
 
-/// Draws parts by the engine and by the model, and compares pictures and counts.
+/// Draws parts by the engine and by the model, and compares the pictures and counts.
 fn check(bench: &mut Bench, name: &str, size: Size, parts: &[PreparedMesh]) -> Stats {
     let expected = by_model(size, parts);
     let counters = [
@@ -98,7 +98,7 @@ fn scenes_of_all_sizes() {
     assert!(pixels > 1_000_000 && clipped > 100);
 }
 
-/// Objects: turned, scaled, mirrored, of other colours, in a light.
+/// Objects that are rotated, scaled, mirrored, recoloured or lit.
 #[test]
 fn frames_of_several_objects() {
     let mut random = Pcg64Mcg::new(21);
@@ -164,12 +164,12 @@ fn some_light(random: &mut Pcg64Mcg, view: &View) -> MeshLight {
     }
 }
 
-/// After a frame, the frame buffer holds it, and only words that can differ have been written.
+/// After a frame, the frame buffer contains the frame, and only words that can differ have been written.
 #[test]
 fn nothing_new_is_not_written() {
     let mut bench = Bench::new();
     let nothing = meshes::mesh(&[], 100);
-    // At 1280x720, a square covers 160 pixels (20 or 21 words) of each of about 90 lines.
+    // At 1280x720, a square covers 160 pixels (20 or 21 words) in each of about 90 lines.
     let square = |x: f64| {
         let [left, right, top, bottom] = [x, x + 0.5, -0.14, 0.14];
         let corner = |x, z| at(x, 0.0, z);
@@ -210,7 +210,7 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// A frame that was cancelled, or one in a buffer whose contents are unknown, is written as a whole.
+/// A frame after a cancelled frame, or in a buffer with unknown contents, is written completely.
 #[test]
 fn a_frame_is_whole_after_a_cancelled_one() {
     let mut bench = Bench::new();
@@ -240,8 +240,8 @@ fn a_frame_is_whole_after_a_cancelled_one() {
     }
 }
 
-/// A pass takes about the clocks of the gateware, alone with a memory (docs/triangle.md): 4,200 and 7,517 for icosphere:6, which this
-/// sphere resembles. Counters grow meanwhile.
+/// A pass takes about as many cycles as the gateware alone with a memory (docs/triangle.md): 4,200 and 7,517 for icosphere:6,
+/// which is similar to this sphere. Counters grow meanwhile.
 #[test]
 fn passes_take_about_the_time_of_the_gateware() {
     let mut bench = Bench::new();

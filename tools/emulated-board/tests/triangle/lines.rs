@@ -1,4 +1,4 @@
-//! Frames of lines, alone and after triangles.
+//! Tests frames of lines, alone and after triangles.
 
 use glint_core::mesh::Mesh;
 use glint_core::picture::Size;
@@ -14,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::bench::{Bench, DESCRIPTORS, Kind, LISTS, MESH, alone, code};
 
-/// The segments in memory, in two chunks. Returns their length in bytes.
+/// Writes the segments to memory, in two chunks. Returns their length in bytes.
 fn write_segments(bench: &mut Bench, segments: &[Segment]) -> u32 {
     let (first, second) = segments.split_at(segments.len() / 3);
     let chunks = [first, second].map(|chunk| {
@@ -32,7 +32,7 @@ fn write_segments(bench: &mut Bench, segments: &[Segment]) -> u32 {
     bytes.len() as u32
 }
 
-/// The geometry pass of lines, with the output of the set with this number.
+/// Runs the geometry pass of lines; its output goes to the set number `set`.
 fn geometry_of_lines(bench: &mut Bench, size: Size, segments: &[Segment], set: usize) -> Error {
     let bytes = write_segments(bench, segments);
     bench.set_output();
@@ -70,12 +70,12 @@ fn lines_are_the_models() {
         assert_eq!(bench.pass(Kind::Raster, flags.bits()), Error::None);
         bench.compare("lines", size, false, &expected);
         let grown = [0, 1, 2].map(|i| bench.read(counters[i]) - before[i]);
-        // A group has one pixel.
+        // A group of a line has one pixel.
         assert_eq!(grown, [covered, drawn, covered]);
     }
 }
 
-/// Triangles in the first set, lines in the second one, as the edges of a mesh.
+/// Triangles in the first set, lines in the second set, as for the edges of a mesh.
 #[test]
 fn lines_are_drawn_over_triangles() {
     let size = Size::W640;

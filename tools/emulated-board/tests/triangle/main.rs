@@ -1,4 +1,4 @@
-//! The triangle engine of the emulated board, by its registers: its frames are those of the model.
+//! Tests that the frames of the emulated board's triangle engine equal the model's.
 
 mod bench;
 mod damage;

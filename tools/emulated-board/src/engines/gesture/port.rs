@@ -1,4 +1,4 @@
-//! The port of the image sensor: the levels of its pins, one period of its clock after the other.
+//! The port of the image sensor: the pin levels in each period of the sensor's clock.
 
 use glint_model::gesture::Pins;
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
@@ -15,7 +15,7 @@ struct Time {
 }
 
 impl Time {
-    /// The time after this one by `length`; a cycle has `parts` parts.
+    /// Adds `length` to this time; a cycle has `parts` parts.
     fn after(self, length: Self, parts: u64) -> Self {
         let part = self.part + length.part;
         let carry = u64::from(part >= parts);
@@ -25,7 +25,7 @@ impl Time {
         }
     }
 
-    /// The first cycle that does not begin before the time.
+    /// The first cycle that begins at this time or later.
     fn ceil(self) -> u64 {
         self.cycle + u64::from(self.part > 0)
     }
@@ -35,35 +35,35 @@ impl Time {
 #[derive(Default)]
 pub struct Port {
     frame: Vec<Levels>,
-    /// The next period in `frame`.
+    /// Index of the next period in `frame`.
     at: usize,
-    /// The period in which VSYNC changes next; the one after the frame if there is none.
+    /// Index of the period in which VSYNC changes next, or the length of `frame` if it does not change.
     change: usize,
     /// Half period of the sensor's clock in which `frame` began, counted from the start of the board.
     begin: u64,
-    /// The time in which it began.
+    /// The time at which `frame` began.
     first: Time,
-    /// The time in which the period `at` begins.
+    /// The time at which the period `at` begins.
     now: Time,
     /// Length of half a period.
     half: Time,
     /// Frequency of the sensor's clock in Hz.
     clock: u64,
-    /// Levels of the period before the next one.
+    /// Levels in the period before the next one.
     before: Levels,
     /// Cycle of the last tick.
     pub last_tick: u64,
 }
 
 impl Port {
-    /// Forgets the frame: the sensor starts or stops.
+    /// Drops the frame, because the sensor starts or stops.
     pub fn clear(&mut self) {
         self.frame.clear();
         self.at = 0;
         self.change = 0;
     }
 
-    /// Takes the sensor's next frame if the one before has been sent. The first one begins at the cycle `now`.
+    /// Fetches the sensor's next frame if the previous frame has been sent. The first frame begins at the cycle `now`.
     pub fn fill(&mut self, sensor: &mut ImageSensor, now: u64) {
         if self.at < self.frame.len() {
             return;
@@ -92,7 +92,7 @@ impl Port {
         self.find_change();
     }
 
-    /// The next tick of the sensor's clock up to the cycle `now`: its cycle, and the pins. `falling` selects the edge.
+    /// The next tick of the sensor's clock up to the cycle `now`: its cycle and the pins. `falling` selects the edge.
     pub fn next(&mut self, now: u64, falling: bool) -> Option<(u64, Pins)> {
         while let Some(&levels) = self.frame.get(self.at) {
             // Levels change at the beginning of a period, and PCLK rises in its middle.
@@ -122,7 +122,7 @@ impl Port {
         None
     }
 
-    /// Whether the time of the frame is over at the cycle `now`, so that the next one begins.
+    /// Whether the frame has ended at the cycle `now`, so that the next frame begins.
     pub fn has_sent(&self, now: u64) -> bool {
         let periods = self.frame.len();
         periods > 0 && self.at >= periods && self.cycle(2 * periods as u64) <= now
@@ -142,7 +142,7 @@ impl Port {
         self.before
     }
 
-    /// The first cycle after a number of half periods of the frame.
+    /// The first cycle after `halves` half periods of the frame.
     fn cycle(&self, halves: u64) -> u64 {
         let Time { cycle, part } = self.first;
         cycle + (part + halves * CLOCK).div_ceil(2 * self.clock.max(1))

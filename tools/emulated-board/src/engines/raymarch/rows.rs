@@ -1,4 +1,4 @@
-//! Drawing of a field by all cores of the machine, in strips of rows.
+//! Drawing of a field in strips of rows, on all CPU cores of the host.
 
 use std::sync::{Mutex, PoisonError};
 use std::thread;
@@ -6,11 +6,11 @@ use std::thread;
 use glint_model::FrameBuffer;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, RayResult, State, render_rows};
 
-/// Number of rows of a strip: that of the largest block of the prepass.
+/// Number of rows of a strip: the rows of the largest block of the prepass.
 const ROWS: usize = 16;
 
-/// Draws a field into a picture that has its triangles. Returns the counts of its rays, and the number of pixels that are behind a
-/// triangle.
+/// Draws a field into a picture that already contains its triangles. Returns the counts of its rays, and the number of pixels
+/// that triangles hide.
 pub fn render(
     setup: &FieldSetup,
     palette: &Palette,
@@ -43,7 +43,7 @@ pub fn render(
     sums.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Draws the rows from `first` on.
+/// Draws the rows from row `first` on.
 fn strip(
     setup: &FieldSetup,
     palette: &Palette,
@@ -51,7 +51,7 @@ fn strip(
     colour: &mut [u16],
     depth: &mut [u32],
 ) -> (FieldStats, u32) {
-    // Where there are triangles, the test of a ray's depth is repeated, because the counts of the model lack its result.
+    // At pixels with triangles, the depth test of the ray is repeated, because the model's counts do not include its result.
     let before = depth.to_vec();
     let mut hidden = 0;
     let mut show = |x, y, ray: &_, outcome: &RayResult| {

@@ -1,4 +1,4 @@
-//! The constants of a field's frame, from the registers.
+//! Converts the registers to the constants of a field's frame.
 
 use glint_core::field::{FixedSpheres, Flat, FlatConstants, Solid};
 use glint_core::fixed::Q32_32;
@@ -15,10 +15,10 @@ use litex_pac::register::Value;
 use super::spheres::{Spheres, colour};
 use crate::engines::parameters::Parameters;
 
-/// Shares by depth (fog) and by evaluations (occlusion).
+/// Fog by depth, and occlusion by the number of evaluations.
 pub type Tables = [[u8; 256]; 2];
 
-/// The smallest exponent of the depth scale for which a shift by it fits 64 bits. That of a frame is larger.
+/// The smallest exponent of the depth scale for which the shifted scale fits 64 bits. The exponent of a valid frame is larger.
 const LEAST_EXPONENT: i32 = -20;
 
 /// The constants of the rays and of the solid.
@@ -44,7 +44,7 @@ pub fn field_setup(
     });
     let tuning = TuningRegister::from_bits(parameters.word(offset::TUNING));
     let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));
-    // Six bits in two's complement.
+    // A 6-bit number in two's complement.
     let exponent = i32::from((scale.exponent() << 2) as i8 >> 2);
     let depth = DepthScale {
         mantissa: scale.mantissa(),
@@ -56,7 +56,7 @@ pub fn field_setup(
         height,
         solid,
         beside,
-        // The rays need neither the scale of the world nor the exponent of their directions.
+        // The rays use neither the scale of the world nor the exponent of their directions.
         scale: Q32_32::ONE,
         exponent: 0,
         world_depth: depth,
@@ -77,7 +77,7 @@ pub fn field_setup(
     }
 }
 
-/// The eye whose registers begin at `first`: for each axis origin, distance outside of the box, and first ray.
+/// Constants of the eye whose registers begin at `first`: for each axis the origin, the distance to the box, and the first ray.
 fn eye(parameters: &Parameters, first: u32) -> Eye {
     const AXIS: u32 = offset::ORIGIN_LEFT_Y - offset::ORIGIN_LEFT_X;
     const OUTSIDE: u32 = offset::OUTSIDE_LEFT_X - offset::ORIGIN_LEFT_X;
@@ -90,7 +90,7 @@ fn eye(parameters: &Parameters, first: u32) -> Eye {
     }
 }
 
-/// The solid, or the flat one of a union, and the spheres beside it.
+/// The solid, or the flat solid of a union, and the spheres next to it.
 fn solid(parameters: &Parameters, spheres: &Spheres) -> (Solid, Option<Beside>) {
     let register = SolidRegister::from_bits(parameters.word(offset::SOLID));
     let round = FixedSpheres {

@@ -1,4 +1,4 @@
-//! The register `sphere`: constants of spheres, of the light on them, and of the faces 6 and 7.
+//! The register `sphere`: constants of spheres, of their lighting, and of the faces 6 and 7.
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::MAX_LIGHTS;
@@ -6,14 +6,14 @@ use glint_model::raymarch::{Blend, Light, Lights};
 use litex_pac::raymarch::Sphere;
 use litex_pac::register::Value;
 
-/// The constants that the register has set.
+/// The constants that writes to the register have set.
 pub struct Spheres {
     pub list: [FixedSphere; MAX_SPHERES],
     pub lights: Lights,
     pub blend: Blend,
     /// Colours of the faces 6 and 7.
     pub faces: [[u8; 3]; 2],
-    /// The sphere that the next write to one of them stores.
+    /// The constants that the next write to an entry of `list` stores.
     next: FixedSphere,
 }
 
@@ -33,7 +33,7 @@ impl Spheres {
         }
     }
 
-    /// Takes a write to the register. Entries without a constant have no effect.
+    /// Processes a write to the register. Undefined entries have no effect.
     pub fn set(&mut self, value: u32) {
         let register = Sphere::from_bits(value);
         let (entry, value) = (usize::from(register.entry()), register.value());

@@ -17,7 +17,7 @@ use super::walk::Walk;
 use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 
-/// Results of the last pass, by the names of their registers.
+/// Results of the last pass; the fields have the names of the registers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Results {
     pub triangles: u32,
@@ -30,7 +30,7 @@ pub struct Results {
 /// The geometry unit.
 pub struct GeometryUnit {
     output: Output,
-    /// Whether the output belongs to a frame that was not cancelled.
+    /// Whether the output belongs to a frame that has not been cancelled.
     has_output: bool,
     pub results: Results,
 }
@@ -44,12 +44,12 @@ impl GeometryUnit {
         }
     }
 
-    /// Forgets the output: the next pass has nothing to continue.
+    /// Discards the output, so that the next pass cannot continue it.
     pub const fn cancel(&mut self) {
         self.has_output = false;
     }
 
-    /// Does the work of a pass.
+    /// Computes the results of a pass.
     ///
     /// # Errors
     /// The reason why the pass is refused; memory is then unchanged.
@@ -124,7 +124,7 @@ impl GeometryUnit {
             let mut cache = VertexCache::empty();
             for number in chunk.triangles {
                 let triangle = Triangle::from_bytes(&record(ram, number));
-                // Each corner is taken from the cache before the next one may replace it there.
+                // Each corner is read before the next one may replace its vertex in the cache.
                 let corners = triangle.indices.map(|index| {
                     let slot = &mut vertices[usize::from(index) % SLOTS];
                     if cache.misses(index) {

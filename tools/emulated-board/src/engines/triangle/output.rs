@@ -14,14 +14,14 @@ use crate::engines::parameters::Parameters;
 /// Number of words of 32 bits of a descriptor: the engine has flat shading.
 const DESCRIPTOR: usize = words(Shading::Flat);
 
-/// The room for the output in memory.
+/// The memory regions for the output.
 #[derive(Clone, Copy, Default)]
 pub struct OutputLimits {
     /// Addresses of descriptors, lists and exceptions.
     places: [u32; 3],
     descriptor_limit: u32,
     list_shift: u32,
-    /// Number of words of 16 bytes of the table of lengths and all lists.
+    /// Number of 16-byte words of the table of lengths and all lists.
     list_words: u64,
     exception_limit: u32,
 }
@@ -54,7 +54,7 @@ impl OutputLimits {
     }
 }
 
-/// The exceptions: numbers of triangles in their meshes.
+/// The list of exceptions: indices of triangles in their meshes.
 #[derive(Default)]
 pub struct Exceptions {
     numbers: Vec<u32>,
@@ -63,7 +63,7 @@ pub struct Exceptions {
 }
 
 impl Exceptions {
-    /// Appends a number, if there is room.
+    /// Appends an index, if the list has space.
     pub fn put(&mut self, number: u32) {
         if self.numbers.len() < self.limit {
             self.numbers.push(number);
@@ -73,14 +73,14 @@ impl Exceptions {
     }
 }
 
-/// The output of the passes of a frame so far.
+/// The output of a frame's passes so far.
 pub struct Output {
     room: OutputLimits,
     descriptors: Vec<u32>,
     lists: Vec<u32>,
     counts: ListCounts,
     exceptions: Exceptions,
-    /// Numbers of descriptors, list entries and exceptions in memory.
+    /// Counts of descriptors, list entries and exceptions in memory.
     written: (ListCounts, usize),
 }
 
@@ -106,7 +106,7 @@ impl Output {
         }
     }
 
-    /// Prepares for a pass, which continues the output of the previous pass, or begins with empty lists.
+    /// Prepares a pass, which continues the output of the previous pass or starts with empty lists.
     pub fn open(&mut self, room: OutputLimits, continues: bool) {
         if !continues {
             let Self {
@@ -121,7 +121,7 @@ impl Output {
         self.exceptions.limit = room.exception_limit as usize;
     }
 
-    /// The lists, to which a pass for a picture of this size appends.
+    /// The band lists of a picture of this size, to which a pass appends.
     pub fn parts(&mut self, size: Size) -> (ListWriter<'_>, &mut Exceptions) {
         let lists = ListWriter::new(
             &mut self.descriptors,
@@ -144,12 +144,12 @@ impl Output {
         self.exceptions.numbers.len() as u32
     }
 
-    /// Whether a descriptor, a list entry or an exception had no room.
+    /// Whether a descriptor, a list entry or an exception exceeded its region.
     pub const fn is_full(&self) -> bool {
         self.counts.is_full() || self.exceptions.is_full
     }
 
-    /// Writes new output to memory. Returns the number of words of 16 bytes.
+    /// Writes the new output to memory. Returns the number of 16-byte words.
     pub fn write(&mut self, ram: &mut MainMemory) -> u32 {
         let [descriptors, lists, exceptions] = self.room.places;
         let (before, listed) = mem::replace(
@@ -174,11 +174,11 @@ impl Output {
             let list = 4 * list_word(band, self.room.list_shift) as usize;
             let (first, end) = (list + from as usize, list + to as usize);
             put(lists, first, self.lists.get(first..end));
-            // The end of a pass writes the incomplete last word of each list, even if the list has not grown.
+            // At the end of a pass, the incomplete last word of each list is written, even if the list has not grown.
             written += (to / 4 - from / 4 + u32::from(to % 4 > 0)) as usize;
         }
         put(lists, 0, Some(self.counts.lengths()));
-        // Lengths are written four at a time, and each exception alone.
+        // A word contains four lengths; each exception is written in a word of its own.
         written += self.counts.lengths().len() / 4 + self.exceptions.numbers.len() - listed;
         for (place, number) in self.exceptions.numbers.iter().enumerate().skip(listed) {
             put(exceptions, place, Some(&[*number]));

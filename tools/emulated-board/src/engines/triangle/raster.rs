@@ -1,4 +1,4 @@
-//! The raster pass: from descriptors and band lists in memory to a frame in memory.
+//! The raster pass: draws descriptors and band lists in memory to a frame in memory.
 
 use glint_core::picture::Size;
 use glint_model::FrameBuffer;
@@ -14,10 +14,10 @@ use crate::MainMemory;
 use crate::engines::parameters::Parameters;
 use crate::engines::raymarch::Raymarcher;
 
-/// Number of words of 16 bytes of a descriptor.
+/// Size of a descriptor in 16-byte words.
 const DESCRIPTOR: u32 = 3;
 
-/// The first and the last word of a line that was drawn; without one, the first is after the last.
+/// The first and last drawn word of a line; for an empty line, the first is greater than the last.
 type Extent = [i32; 2];
 
 const EMPTY: Extent = [i32::MAX, 0];
@@ -30,7 +30,7 @@ const fn united(a: Extent, b: Extent) -> Extent {
 
 /// A set of lists and descriptors.
 struct Set {
-    /// Numbers of the first words.
+    /// Addresses of the lists and the descriptors, in 16-byte words.
     lists: u32,
     descriptors: u32,
     /// Number of descriptors.
@@ -41,10 +41,10 @@ struct Set {
 pub struct RasterUnit {
     colour: Vec<u16>,
     depth: Vec<u32>,
-    /// The words drawn in each line of this frame, and in the last frame of each slot.
+    /// Extents of the lines of this frame, and of the last frame in each slot.
     now: Vec<Extent>,
     last: [Vec<Extent>; 2],
-    /// For each slot, whether its frame buffer holds a complete frame.
+    /// Whether the frame buffer of each slot contains a complete frame.
     known: [bool; 2],
 }
 
@@ -60,12 +60,12 @@ impl RasterUnit {
         }
     }
 
-    /// The frame in a slot has not been completed.
+    /// The frame in the slot is not complete.
     pub fn cancel(&mut self, slot: bool) {
         self.known[usize::from(slot)] = false;
     }
 
-    /// Does the work of a pass.
+    /// Draws the frame of a pass.
     ///
     /// # Errors
     /// The reason why the pass is refused; memory is then unchanged.
@@ -156,7 +156,7 @@ impl RasterUnit {
     fn begin(&mut self, size: Size, clear: u16) -> Drawing<'_> {
         let [width, height] = size.pixels();
         let pixels = size.pixel_count();
-        // A picture is at most as large as these.
+        // A picture has at most these numbers of pixels and lines.
         let colour = self.colour.get_mut(..pixels).unwrap_or_default();
         let depth = self.depth.get_mut(..pixels).unwrap_or_default();
         colour.fill(clear);
@@ -177,7 +177,7 @@ impl RasterUnit {
         }
     }
 
-    /// Writes the words of a frame that can differ from those in memory. Returns their number.
+    /// Writes the words of a frame that can differ from the words in memory. Returns their number.
     fn flush(
         &mut self,
         size: Size,
@@ -227,7 +227,7 @@ impl RasterUnit {
 /// Counts of a frame.
 #[derive(Default)]
 struct Counts {
-    /// Words read from memory.
+    /// Number of words read from memory.
     read: u64,
     groups: u64,
     covered: u64,
@@ -241,12 +241,12 @@ struct Drawing<'a> {
     extents: &'a mut [Extent],
     counts: Counts,
     time: RasterTime,
-    /// Whether a list was too long, or named a number that is not a descriptor, or a descriptor was damaged.
+    /// Whether a list was too long, contained an invalid descriptor number, or named a damaged descriptor.
     is_damaged: bool,
 }
 
 impl Drawing<'_> {
-    /// Draws the list of a band in a set.
+    /// Draws the list of a band of a set.
     fn draw_list(&mut self, set: &Set, band: u32, list_shift: u32, ram: &MainMemory) {
         let length = entry(ram, set.lists, band);
         self.counts.read += 1;
@@ -265,12 +265,12 @@ impl Drawing<'_> {
             let words = [0, 1, 2].map(|word| record(ram, first.wrapping_add(word)));
             let words = words.as_flattened().as_chunks().0.iter();
             let descriptor = Descriptor::from_words(words.map(|word| u32::from_le_bytes(*word)));
-            // A descriptor stays in the engine for the bands after the first one.
+            // The engine keeps a descriptor for the bands after its first band, so its words are read once.
             self.draw(&descriptor, &bounds);
         }
     }
 
-    /// Draws the part of a descriptor's contents in a band.
+    /// Draws the part of a descriptor's primitive in a band.
     fn draw(&mut self, descriptor: &Descriptor, band: &Bounds) {
         let Self {
             target, extents, ..
@@ -313,7 +313,7 @@ impl Drawing<'_> {
         self.counts.drawn += u64::from(drawn);
     }
 
-    /// Draws the field, which the gateware does in each band after the triangles there.
+    /// Draws the field; the gateware draws it band by band, after the triangles of the band.
     fn draw_field(&mut self, raymarcher: &mut Raymarcher, now: u64) {
         let field = raymarcher.draw(self.size, &mut self.target, now);
         let last = self.size.width() as i32 / GROUP - 1;

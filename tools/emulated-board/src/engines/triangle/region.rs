@@ -1,4 +1,4 @@
-//! Places of a pass in main memory: the check before the pass, and the words of 16 bytes that it reads.
+//! Memory regions of a pass: checks them before the pass, and reads 16-byte words from them.
 
 use glint_core::picture::Size;
 use glint_model::triangle::descriptor::list_word;
@@ -7,16 +7,16 @@ use litex_pac::triangle::{Error, Size as SizeCode};
 
 use crate::MainMemory;
 
-/// Number of bits of a count of descriptors or entries.
+/// Width in bits of the counters of descriptors and entries.
 pub const COUNT_BITS: u32 = 20;
 
-/// Largest valid `list_shift`: longer lists would exceed the counter of entries.
+/// Largest valid `list_shift`: longer lists exceed the counter of entries.
 const LAST_SHIFT: u32 = COUNT_BITS - 3;
 
-/// Size of a word of memory in bytes.
+/// Size of a memory word in bytes.
 pub const WORD: u32 = 16;
 
-/// The size with a code in a register; `None` for the code that is none.
+/// The picture size for a register code; `None` for an invalid code.
 pub fn picture_size(code: Option<SizeCode>) -> Option<Size> {
     Some(match code? {
         SizeCode::W320 => Size::W320,
@@ -25,14 +25,14 @@ pub fn picture_size(code: Option<SizeCode>) -> Option<Size> {
     })
 }
 
-/// The regions of a pass that have been checked.
+/// The result of checks of a pass's regions.
 #[derive(Default)]
 pub struct Regions {
     is_misplaced: bool,
 }
 
 impl Regions {
-    /// Checks a region from the byte `address` on: whether it is aligned to a word and wholly in main memory.
+    /// Checks that a region of `words` words from `address` on is aligned to a word and within main memory.
     pub fn check(&mut self, address: u32, words: u64) {
         let place = address.wrapping_sub(MAIN_RAM.base);
         let left = MAIN_RAM.size.saturating_sub(place) / WORD;
@@ -50,7 +50,7 @@ impl Regions {
     }
 }
 
-/// Words of the table of lengths and of all lists of a set; as many as no memory has for a wrong `list_shift`.
+/// Number of words of the table of lengths and all lists of a set; more than any memory has for an invalid `list_shift`.
 pub fn list_words(size: Size, list_shift: u32) -> u64 {
     if list_shift > LAST_SHIFT {
         u64::MAX
@@ -59,14 +59,14 @@ pub fn list_words(size: Size, list_shift: u32) -> u64 {
     }
 }
 
-/// The word of main memory with a number, which is the address over 16. Bits beyond main memory have no effect.
+/// The memory word with the index `number`, its address divided by 16. Index bits beyond main memory are ignored.
 pub fn record(ram: &MainMemory, number: u32) -> [u8; WORD as usize] {
     const _: () = assert!(MAIN_RAM.size.is_power_of_two());
     let place = number.wrapping_mul(WORD) & (MAIN_RAM.size - 1);
     ram.array(MAIN_RAM.base + place).unwrap_or_default()
 }
 
-/// The word of 32 bits with a number in a list that begins with the word of memory `first`.
+/// The 32-bit entry `number` of a list that begins at the memory word `first`.
 pub fn entry(ram: &MainMemory, first: u32, number: u32) -> u32 {
     let record = record(ram, first.wrapping_add(number / 4));
     let place = number as usize % 4;

@@ -18,11 +18,11 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// Reads the parameters. A shift, a near plane or an exponent out of the range of docs/formats/camera.md becomes the nearest one in the
-    /// range: there is no frame with such constants.
+    /// Reads the parameters. A shift, a near plane or an exponent out of the range of docs/formats/camera.md is clamped to the
+    /// range, because no frame has such constants.
     pub fn new(flags: Geometry, parameters: &Parameters, size: Size) -> Self {
         let scale = DepthScaleRegister::from_bits(parameters.word(offset::DEPTH_SCALE));
-        // Four bits in two's complement.
+        // A 4-bit number in two's complement.
         let exponent = i32::from(((scale.exponent() << 4) as i8) >> 4);
         let shift = parameters.unsigned(offset::SCALE_SHIFT, 5) as i32;
         let near = i64::from(parameters.unsigned(offset::NEAR_HIGH, 7)) << 32

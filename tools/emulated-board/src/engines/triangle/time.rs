@@ -1,34 +1,34 @@
-//! The work of passes, and estimates of their clock cycles.
+//! Estimates the clock cycles of passes.
 //!
-//! The rates of the engine's parts are exact (docs/triangle.md, "Clocks of the engine alone", and docs/line.md, "Clocks"); how far parts
-//! overlap, and what memory costs, is not. A sphere like that of docs/triangle.md takes 3,675 clocks of geometry and 7,151 of raster here,
-//! the gateware 4,200 and 7,517 alone with a memory.
+//! The rates of the engine's parts are exact (docs/triangle.md, "Clocks of the engine alone", and docs/line.md, "Clocks"); the
+//! overlap of the parts and the cost of memory accesses are estimates. A sphere similar to the one in docs/triangle.md takes
+//! 3,675 cycles of geometry and 7,151 of raster here; the gateware alone with a memory takes 4,200 and 7,517.
 
 use glint_core::picture::Size;
 use glint_model::line::{Line, Segment};
 use litex_pac::triangle::{Counters, Error};
 
-/// Number of cycles of a pass that is refused, from its request to its end.
+/// Number of cycles of a refused pass, from its request to its end.
 pub const REFUSAL: u64 = 20;
-/// Number of cycles from `cancel` until the engine is ready again: the band buffer is cleared, one row per clock.
+/// Number of cycles from `cancel` until the engine is ready again: it clears the band buffer, one row per cycle.
 pub const RECOVERY: u64 = 2_100;
 
-/// Number of cycles of any geometry pass: parameters are copied, and lists emptied and closed.
+/// Constant number of cycles of a geometry pass: it copies parameters, and empties and closes the lists.
 const GEOMETRY: u64 = 400;
-/// Number of cycles of any raster pass.
+/// Constant number of cycles of a raster pass.
 const RASTER: u64 = 250;
-/// Number of cycles between the last group of a band and its flush.
+/// Number of cycles between the last group of a band and the flush of the band.
 const BAND: u64 = 16;
-/// Number of cycles of a triangle's entry into a band.
+/// Number of cycles to start a triangle in a band.
 const ENTRY: u64 = 8;
 
-/// Statistics of a pass.
+/// Results of a pass for its counters and its end.
 pub struct Work {
-    /// Error with which it ends.
+    /// Error at the end of the pass.
     pub error: Error,
-    /// Clock cycles that it takes.
+    /// Number of clock cycles of the pass.
     pub cycles: u64,
-    /// Growth of the counters, without those of all cycles.
+    /// Increments of the counters, except the cycle counters.
     pub counters: Counters,
 }
 
@@ -41,12 +41,12 @@ pub struct GeometryTime {
     pub drawn: u32,
     /// Vertices fetched.
     pub vertices: u32,
-    /// Number of cycles of the set-up of lines.
+    /// Number of cycles of the line set-up.
     lines: u64,
 }
 
 impl GeometryTime {
-    /// Adds a segment with a number of pieces: 31 cycles, 28 more for a depth step, one for each pixel and each piece.
+    /// Adds a segment of several pieces: 31 cycles, 28 more for a depth step, 1 for each pixel and each piece.
     pub fn add_line(&mut self, segment: &Segment, pieces: u64) {
         let line = Line::new(&segment.ends);
         let division = line.is_some_and(|line| line.depth_step != 0);
@@ -54,8 +54,8 @@ impl GeometryTime {
         self.lines += 31 + if division { 28 } else { 0 } + pixels + pieces;
     }
 
-    /// The cycles of the slowest part: 11 for a triangle drawn, 3 for each one, 6 for a vertex; and an eighth of the others, which do not
-    /// overlap with it wholly.
+    /// The estimated cycles: those of the slowest part, plus an eighth of the cycles of the other parts, which overlap with it
+    /// only partly. A drawn triangle takes 11 cycles, any triangle 3, a vertex 6.
     pub fn cycles(&self) -> u64 {
         let parts = [
             11 * u64::from(self.drawn),
@@ -71,30 +71,30 @@ impl GeometryTime {
 /// The time of a raster pass.
 #[derive(Default)]
 pub struct RasterTime {
-    /// Number of cycles in which groups of pixels are drawn.
+    /// Number of cycles to draw groups of pixels.
     pub walking: u64,
     cycles: u64,
-    /// Number of cycles of drawing the current band.
+    /// Number of cycles to draw the current band.
     band: u64,
-    /// Number of cycles of the flush of the previous band.
+    /// Number of cycles to flush the previous band.
     flush: u64,
 }
 
 impl RasterTime {
-    /// Adds a triangle or a piece of a line with a number of groups in the current band.
+    /// Adds a triangle or a piece of a line that has `groups` groups in the current band.
     pub fn add(&mut self, groups: u32) {
         self.walking += u64::from(groups);
         self.band += u64::from(groups).max(ENTRY);
     }
 
-    /// Ends a band, whose flush writes a number of words, and takes a cycle more for each empty line.
+    /// Ends a band; its flush writes `words` words, and takes one more cycle for each empty line.
     pub fn end_band(&mut self, size: Size, words: u32) {
         self.cycles += self.band.max(self.flush) + BAND;
         self.band = 0;
         self.flush = u64::from(words.max(size.band_lines()));
     }
 
-    /// Adds the cycles of a field: the rays of a band are drawn while those of the band before are written.
+    /// Adds the cycles of a field: the rays of a band are drawn while the previous band is flushed.
     pub const fn add_field(&mut self, cycles: u64) {
         self.cycles += cycles;
     }

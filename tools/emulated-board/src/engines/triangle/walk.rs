@@ -1,4 +1,4 @@
-//! The walk over the chunks of a mesh in memory, whose content may be anything.
+//! Iterator over the chunks of a mesh in memory; checks the chunks, because memory may contain anything.
 
 use std::ops::Range;
 
@@ -7,23 +7,23 @@ use glint_core::mesh::ChunkHeader;
 use super::region::record;
 use crate::MainMemory;
 
-/// Most vertices and triangles of a chunk.
+/// Maximum number of vertices, and of triangles, of a chunk.
 const MOST: u32 = (1 << 24) - 1;
 
-/// A walk over chunks.
+/// An iterator over chunks.
 pub struct Walk {
-    /// Number of the word of the next chunk's header.
+    /// Index of the word with the next chunk's header.
     header: u64,
-    /// Number of the first word after the mesh.
+    /// Index of the first word after the mesh.
     past: u64,
     has_begun: bool,
-    /// Whether the walk has met a chunk without vertices or beyond the mesh's end, and has ended there.
+    /// Whether the iterator has stopped at a chunk that has no vertices or extends beyond the mesh's end.
     pub is_damaged: bool,
     /// Number of words read.
     pub words: u32,
 }
 
-/// A chunk, by the numbers of its words of memory.
+/// A chunk, by the indices of its memory words.
 pub struct Chunk {
     /// The first vertex.
     pub vertices: u32,
@@ -32,7 +32,7 @@ pub struct Chunk {
 }
 
 impl Walk {
-    /// A walk from the word `first` to the word before `past`.
+    /// An iterator from the word `first` to the word before `past`.
     pub fn new(first: u32, past: u64) -> Self {
         Self {
             header: first.into(),
@@ -43,7 +43,7 @@ impl Walk {
         }
     }
 
-    /// The next chunk; `None` after the last one. A mesh has at least one.
+    /// The next chunk; `None` after the last one. A mesh has at least one chunk.
     pub fn chunk(&mut self, ram: &MainMemory) -> Option<Chunk> {
         if self.is_damaged || self.has_begun && self.header >= self.past {
             return None;
@@ -65,7 +65,7 @@ impl Walk {
         self.words = self.words.wrapping_add(triangles);
         Some(Chunk {
             vertices: first as u32,
-            // The end is in main memory, whose addresses have 32 bits.
+            // The end is within main memory, so it fits 32 bits.
             triangles: base as u32..end as u32,
         })
     }
