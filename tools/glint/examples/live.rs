@@ -9,7 +9,7 @@ use glint::gesture::moving_hand;
 use glint::imu::sensor;
 use virtual_board::virtual_image_sensor::{ImageSensor, Model, Timing};
 
-/// Time of a measurement in seconds of the board.
+/// Duration of a measurement in seconds of the board's time.
 const SECONDS: u64 = 2;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

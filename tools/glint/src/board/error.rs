@@ -1,8 +1,8 @@
-//! Errors of boards that are opened or started.
+//! Errors of opening or starting a board.
 
 use glint_board_api::built::NotBuilt;
 
-/// An error while a board is opened or started.
+/// An error of opening or starting a board.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// An error of the virtual board.
@@ -34,7 +34,7 @@ pub enum OpenError {
     /// The serial ports of this host cannot be listed.
     #[error("the serial ports cannot be listed: {0}")]
     Ports(serialport::Error),
-    /// No serial port, or more than one, is probably a board's.
+    /// No serial port, or more than one, is probably connected to a board.
     #[error(
         "serial: expected one port with the USB bridge of a board, found {found}; --board PORT selects one"
     )]

@@ -1,4 +1,4 @@
-//! Access to boards over their serial line: the emulated or the virtual board in this process, or a board on a serial port.
+//! Opens boards: the emulated or the virtual board in this process, or a board on a serial port.
 
 mod error;
 mod name;

@@ -11,12 +11,12 @@ pub enum BoardName {
     Emulated,
     /// `virtual`: the verilated SoC, simulated in this process.
     Virtual,
-    /// Any other name: a serial port, such as `/dev/ttyUSB1`, or `serial` for the one that is probably a board's.
+    /// Any other name: a serial port, such as `/dev/ttyUSB1`, or `serial` for the port that is probably connected to a board.
     Serial(String),
 }
 
 impl BoardName {
-    /// Whether the board is simulated in this process, with a monitor, pins and memory that the host reaches.
+    /// Whether the board is simulated in this process; such a board has a monitor, pins and memory that the host can access.
     pub const fn is_simulated(&self) -> bool {
         matches!(self, Self::Emulated | Self::Virtual)
     }
@@ -44,8 +44,7 @@ impl fmt::Display for BoardName {
     }
 }
 
-/// Backend of a command, as named on the command line: the bit-exact model, which runs in this process without a
-/// board, or a board.
+/// Backend of a command, as named on the command line: the bit-exact model in this process, or a board.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelOrBoard {
     /// `model`: the bit-exact model.
@@ -55,7 +54,7 @@ pub enum ModelOrBoard {
 }
 
 impl ModelOrBoard {
-    /// Whether this is a board that is simulated in this process.
+    /// Whether the backend is a board that is simulated in this process.
     pub const fn is_simulated(&self) -> bool {
         matches!(self, Self::Board(name) if name.is_simulated())
     }

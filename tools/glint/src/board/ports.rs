@@ -1,9 +1,9 @@
-//! The serial ports of this host, and which of them is probably a board's.
+//! Lists the serial ports of this host, and guesses the port that is connected to a board.
 
 use super::error::OpenError;
 use serialport::{SerialPortType, available_ports};
 
-/// USB vendor FTDI, which makes the bridges of both boards.
+/// USB vendor FTDI, the maker of the USB bridges of both supported boards.
 const FTDI: u16 = 0x0403;
 /// FT2232H, the bridge of the Urbana: its interface 0 is JTAG, and interface 1 the serial line.
 const FT2232H: u16 = 0x6010;
@@ -13,18 +13,18 @@ const FT231X: u16 = 0x6015;
 /// A serial port.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Port {
-    /// Name to open it by, such as `/dev/ttyUSB1`.
+    /// Name of the port for opening it, such as `/dev/ttyUSB1`.
     pub name: String,
-    /// Maker and product of its USB device, or the kind of port.
+    /// Maker and product of the port's USB device, or the kind of port.
     pub device: String,
     /// Whether the port has the USB bridge of a supported board.
     pub likely: bool,
 }
 
-/// The serial ports of this host, by name.
+/// The serial ports of this host, sorted by name.
 ///
 /// # Errors
-/// The operating system does not list them.
+/// The operating system cannot list the ports.
 pub fn ports() -> Result<Vec<Port>, OpenError> {
     let found = available_ports().map_err(OpenError::Ports)?;
     let mut ports: Vec<Port> = found
@@ -62,10 +62,10 @@ fn describe(name: String, kind: &SerialPortType) -> Port {
     }
 }
 
-/// The port that is probably a board's: the only one with a board's USB bridge.
+/// The port that is probably connected to a board: the only port with a board's USB bridge.
 ///
 /// # Errors
-/// There is none, or more than one.
+/// There is no such port, or more than one.
 pub fn guess() -> Result<String, OpenError> {
     let ports = ports()?;
     chosen(&ports).ok_or_else(|| OpenError::Guess {
@@ -79,7 +79,7 @@ fn chosen(ports: &[Port]) -> Option<String> {
     likely.next().is_none().then(|| port.name.clone())
 }
 
-/// The names of ports on one line, for an error.
+/// Formats the names of ports on one line, for an error message.
 pub fn summary(ports: &[Port]) -> String {
     if ports.is_empty() {
         return "no serial port".to_owned();
@@ -124,7 +124,7 @@ mod tests {
             summary(&urbana),
             "/dev/ttyS0, /dev/ttyUSB0, /dev/ttyUSB1 (likely a board)"
         );
-        // Two boards, and none.
+        // Two boards, and no board.
         assert_eq!(chosen(&[line, other]), None);
         assert_eq!(chosen(&[plain, jtag]), None);
         assert_eq!(summary(&[]), "no serial port");

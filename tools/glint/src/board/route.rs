@@ -1,18 +1,18 @@
-//! Channels of data into and out of a board.
+//! Routes for data to and from a board.
 
 use super::name::BoardName;
 
-/// The route by which data get into and out of a board.
+/// The route of data to and from a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Route {
     /// Over the serial line.
     Serial,
-    /// Directly through the simulated memory, which the emulated and the virtual board offer.
+    /// Directly through the memory of a simulated board: the emulated or the virtual board.
     Memory,
 }
 
 impl Route {
-    /// The fastest route of a board.
+    /// The fastest route of the board `name`.
     pub const fn of(board: &BoardName) -> Self {
         match board {
             BoardName::Emulated | BoardName::Virtual => Self::Memory,

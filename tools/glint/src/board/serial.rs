@@ -8,9 +8,9 @@ use std::io::{self, Read, Write};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Name that stands for the port that is probably a board's.
+/// Name for the port that is probably connected to a board.
 const GUESS: &str = "serial";
-/// Shortest time-out of a read from the port, so that a loop of reads does not keep a core busy.
+/// Shortest time-out of a read from the port; it keeps a loop of reads from using a whole CPU core.
 const SHORTEST: Duration = Duration::from_millis(1);
 
 /// A board on a serial port with 8 data bits, no parity, 1 stop bit and no flow control.
@@ -20,7 +20,7 @@ pub struct SerialBoard {
 }
 
 impl SerialBoard {
-    /// Opens a port; `serial` stands for the one that is probably a board's.
+    /// Opens a port; `serial` selects the port that is probably connected to a board.
     ///
     /// # Errors
     /// [`OpenError::Open`] for a port that does not exist, [`OpenError::Busy`] for one in use, [`OpenError::Guess`] if no port
@@ -43,7 +43,7 @@ impl SerialBoard {
 /// The error for a port that cannot be opened.
 fn open_error(name: &str, source: serialport::Error) -> OpenError {
     let port = name.to_owned();
-    // The crate has one kind for a port that does not exist and for one that another program has locked.
+    // The crate `serialport` reports a missing port and a locked port as the same kind of error.
     if source.kind() == serialport::ErrorKind::NoDevice && Path::new(name).exists() {
         return OpenError::Busy { port };
     }
@@ -61,7 +61,7 @@ impl Board for SerialBoard {
         while !bytes.is_empty() {
             match self.port.write(bytes) {
                 Ok(written) => bytes = &bytes[written..],
-                // The port's buffer is full. It empties at the speed of the line, so the loop tries again.
+                // The port's buffer is full. The buffer empties at the speed of the line, so the loop writes again.
                 Err(error) if is_transient(&error) => {}
                 Err(error) => return Err(error.into()),
             }

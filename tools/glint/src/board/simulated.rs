@@ -1,4 +1,4 @@
-//! Boards that are simulated in this process, at their start.
+//! Starts boards that are simulated in this process.
 
 use super::error::OpenError;
 use emulated_board::EmulatedBoard;
@@ -45,7 +45,8 @@ pub fn emulated_bios() -> Result<SimulatedBoard<EmulatedBoard>, OpenError> {
     Ok(SimulatedBoard::new(EmulatedBoard::full(&bios)))
 }
 
-/// Reads the firmware file at `path`, or without a path the file of `cargo xtask firmware`, which [`built::find`] finds.
+/// Reads the firmware file at `path`, or without a path the firmware that `cargo xtask firmware` has built and [`built::find`]
+/// finds.
 ///
 /// # Errors
 /// The firmware is not built, or the file cannot be read.

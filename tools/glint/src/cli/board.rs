@@ -24,30 +24,31 @@ use std::time::Duration;
 use virtual_board::pty::Pty;
 use virtual_board::virtual_flash::{Flash, MAX_BYTES};
 
-/// Text at the end of the firmware's prompt and of the BIOS's.
+/// Ends of the prompts of the firmware and of the BIOS.
 const PROMPTS: [&[u8]; 2] = [b"glint> ", b"litex\x1b[0m> "];
 
-/// Run a board for programs or in a web page until Ctrl-C: print its serial port or the page's address.
+/// Run a board until Ctrl-C, for programs or in a web page: print its serial port or the page's address.
 ///
-/// Without --web every program that talks to a serial port can use the port, one at a time: `glint … --board PORT`, litex_term, a
-/// script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens at once;
-/// Ctrl-] ends it and the board.
+/// Without --web, any program that uses serial ports can open the port, one program at a time: `glint … --board PORT`,
+/// litex_term, a script. Several boards run side by side. On a terminal without --pty and --ready-file, the board's console opens
+/// at once; Ctrl-] ends it and the board.
 #[derive(Args)]
 pub struct BoardArguments {
-    /// Symbolic link to make to the port, removed at the end; a link of an earlier board is replaced.
+    /// Symbolic link to the port to create, removed at the end; an earlier board's link is replaced.
     #[arg(long, value_name = "LINK")]
     pty: Option<PathBuf>,
-    /// File to write the port's path or the page's address to, when the board can be used; an earlier one is removed at the start.
+    /// File that receives the port's path or the page's address as soon as the board is ready; an earlier file is removed at the
+    /// start.
     #[arg(long, value_name = "FILE")]
     ready_file: Option<PathBuf>,
-    /// Start with the BIOS, which waits for a program, as a board without one in its flash memory.
+    /// Start with the BIOS, which waits for a program, like a board without a program in its flash memory.
     #[arg(long, conflicts_with = "firmware")]
     bios: bool,
-    /// Start with the BIOS and this image in the flash memory (`glint image make`), as a board at power-up.
+    /// Start with the BIOS and this image in the flash memory (`glint image make`), like a board at power-up.
     #[arg(long, value_name = "IMAGE", conflicts_with = "firmware")]
     flash: Option<PathBuf>,
-    /// Serve the live page at this address, a web page with the board's monitor, console, buttons, switches, LEDs and digits, instead of
-    /// a serial port; port 0 selects a free one. The address that is printed opens the page [default: 127.0.0.1:0].
+    /// Serve the live page at this address instead of a serial port: a web page with the board's monitor, console, buttons,
+    /// switches, LEDs and digits; port 0 selects a free port. The printed address opens the page [default: 127.0.0.1:0].
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = "127.0.0.1:0", conflicts_with_all = ["pty", "bios", "flash"])]
     web: Option<SocketAddr>,
     /// Board: `emulated`, or `virtual` (the verilated SoC), which is slow; with --web also a serial port.
@@ -76,7 +77,7 @@ impl BoardArguments {
         }
     }
 
-    /// The file of `--ready-file`, opened. An earlier one is removed, so that its presence tells when the board can be used.
+    /// Opens the file of `--ready-file`. Removes an earlier file, so that the file exists only when the board is ready.
     fn ready(&self) -> anyhow::Result<Option<Output>> {
         let ready = self.ready_file.as_deref();
         if let Some(earlier) = ready.filter(|ready| ready.is_file()) {
@@ -118,7 +119,7 @@ impl BoardArguments {
         Ok(server.run(&mut *board, &self.board.to_string(), &stop)?)
     }
 
-    /// A board that starts with the BIOS, with its flash.
+    /// A board that starts with the BIOS, and its flash memory.
     fn powered<S: Simulation>(
         &self,
         mut board: SimulatedBoard<S>,
@@ -145,7 +146,7 @@ impl BoardArguments {
         let (report, events) = channel();
         let end = report.clone();
         ctrlc::set_handler(move || {
-            // Without a receiver the program ends already.
+            // Without a receiver the program is already ending.
             let _ = end.send(Event::End);
         })?;
         let pty = Pty::start(Watched {
@@ -164,7 +165,7 @@ impl BoardArguments {
             let port = port.to_string_lossy();
             return talk(&mut SerialBoard::open(&port, self.line.baud.rate()?)?);
         }
-        // A board without the BIOS has started already.
+        // A board without the BIOS has already started.
         let bios = self.bios || self.flash.is_some();
         let mut starting = bios.then(|| spinner("the board starts"));
         while let Event::Started = events.recv()? {
@@ -183,12 +184,12 @@ enum Event {
     End,
 }
 
-/// A board that reports its first prompt.
+/// A board that sends an event at its first prompt.
 struct Watched<B> {
     board: B,
-    /// The end of the output, in which a prompt may have begun.
+    /// The last bytes of the output, which may be the start of a prompt.
     heard: Vec<u8>,
-    /// Receiver of the event of the first prompt; `None` after it.
+    /// Sender of the event of the first prompt; `None` afterwards.
     report: Option<Sender<Event>>,
 }
 
@@ -227,7 +228,7 @@ impl<B: Uart> Uart for Watched<B> {
         if PROMPTS.iter().any(is_said)
             && let Some(report) = self.report.take()
         {
-            // Without a receiver the program ends already.
+            // Without a receiver the program is already ending.
             let _ = report.send(Event::Started);
         }
         let longest = PROMPTS.map(<[u8]>::len).into_iter().max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The options on the command line for the camera.
+//! The camera options of the command line.
 
 use super::common::{bad_value, named};
 use super::messages::note;
@@ -15,8 +15,8 @@ use std::path::{Path, PathBuf};
 /// Options of the camera.
 #[derive(Args)]
 pub struct CameraArguments {
-    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The image plane at
-    /// distance 1 has a half width of 0.9, the near plane is at 0.1 [default: one that shows the whole model, with a field
+    /// A camera on a sphere about the origin: the distance (2 to 5), azimuth and polar angle in degrees. The half width of the
+    /// image plane at distance 1 is 0.9, and the near plane is at 0.1 [default: a camera that shows the whole model; with a field
     /// 4,30,60].
     #[arg(
         long,
@@ -25,7 +25,7 @@ pub struct CameraArguments {
         allow_hyphen_values = true
     )]
     camera: Option<String>,
-    /// A camera at the eye E that looks in the direction of the gaze G, with the direction U (by default z) up on the screen.
+    /// A camera at the eye E in the direction of the gaze G, with the direction U (by default z) up on the screen.
     #[arg(
         long,
         value_name = "EX,EY,EZ,GX,GY,GZ[,UX,UY,UZ]",
@@ -33,7 +33,7 @@ pub struct CameraArguments {
         allow_hyphen_values = true
     )]
     look_at: Option<String>,
-    /// A camera at the eye E that looks along +y, turned by YAW to the right, PITCH down and ROLL about its direction, in degrees.
+    /// A camera at the eye E along +y, turned to the right by YAW, down by PITCH, and about its direction by ROLL, in degrees.
     #[arg(
         long,
         value_name = "EX,EY,EZ,YAW,PITCH[,ROLL]",
@@ -48,39 +48,40 @@ pub struct CameraArguments {
     view: Option<PathBuf>,
 }
 
-/// Options that apply to any camera, and to the default one that shows the whole model.
+/// Options for any camera, including the default camera that shows the whole model.
 #[derive(Args)]
 struct LensArguments {
-    /// The axis of the model that points up on the screen, if no camera is given [default: y for .obj, .gltf and .glb, otherwise z].
+    /// The axis of the model that points up on the screen if no camera is given [default: y for .obj, .gltf and .glb, otherwise
+    /// z].
     #[arg(long, value_parser = named(Axis::ALL, Axis::name))]
     up: Option<Axis>,
-    /// Enlarge the middle of the picture by this factor, by a narrower field of view.
+    /// Enlarge the middle of the picture by this factor, with a narrower field of view.
     #[arg(long, value_name = "FACTOR")]
     zoom: Option<f64>,
     /// The horizontal field of view, 1 to 179 degrees, instead of the camera's half width. Pixels are square.
     #[arg(long, value_name = "DEGREES")]
     fov: Option<String>,
-    /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field needs perspective.
+    /// Orthographic projection, with WIDTH world units (0.0174 to 230) across the picture. A field requires perspective.
     #[arg(long, value_name = "WIDTH", conflicts_with_all = ["fov", "zoom", "stereo"])]
     orthographic: Option<String>,
 }
 
-/// Subject of a picture without a given camera.
+/// Subject of a picture whose camera is not given.
 pub struct Shown<'a> {
-    /// The sphere around the model; `None` for a field, with or without a mesh.
+    /// The bounding sphere of the model; `None` for a field, with or without a mesh.
     pub sphere: Option<Sphere>,
-    /// The name of the model's file or generator, if it has one.
+    /// The name of the model's file or generator, if any.
     pub model: Option<&'a str>,
-    /// Whether a mesh limits the distance of the eye.
+    /// Whether a mesh limits the distance of the camera.
     pub has_mesh: bool,
-    /// Whether a field needs perspective.
+    /// Whether the subject has a field, which requires perspective.
     pub has_field: bool,
     /// The two eyes.
     pub stereo: Option<Stereo>,
 }
 
 impl CameraArguments {
-    /// Whether a camera is given, and not only its lens.
+    /// Whether an option gives a camera; lens options alone do not.
     const fn is_given(&self) -> bool {
         self.camera.is_some()
             || self.look_at.is_some()
@@ -88,7 +89,7 @@ impl CameraArguments {
             || self.view.is_some()
     }
 
-    /// The file of the camera, if it has one.
+    /// The file of the camera, if any.
     pub fn file(&self) -> Option<&Path> {
         self.view.as_deref()
     }
@@ -137,7 +138,7 @@ impl CameraArguments {
         self.lens.applied(view)
     }
 
-    /// The camera of a picture of a scene, whose own camera is `view`. The options of the lens apply to that camera too.
+    /// The camera for a picture of a scene whose own camera is `view`. The lens options also apply to the scene's camera.
     pub fn of_scene(&self, view: View) -> anyhow::Result<View> {
         if self.lens.up.is_some() {
             return Err(bad_value("--up", "a model", "a --scene").into());
@@ -155,8 +156,8 @@ impl CameraArguments {
         }
     }
 
-    /// The cameras of a whole turn in this number of steps, the first one that of [`view`](Self::view). A camera that shows the whole model
-    /// goes around the model about the axis that is up, any other one around the origin about z.
+    /// The cameras of a full turn in the given number of steps, starting with the camera of [`view`](Self::view). A camera that
+    /// shows the whole model goes around the model about the up axis; any other camera goes around the origin about z.
     pub fn turn(&self, shown: &Shown, steps: u16) -> anyhow::Result<Vec<View>> {
         match shown.sphere.filter(|_| !self.is_given()) {
             Some(sphere) => {
@@ -171,19 +172,19 @@ impl CameraArguments {
     }
 }
 
-/// The angles of a whole turn in this number of steps, from 0 on.
+/// The angles of a full turn in the given number of steps, starting with 0.
 fn angles(steps: u16) -> impl Iterator<Item = Turns> {
     (0..steps).map(move |step| Turns(((u64::from(step) << 32) / u64::from(steps)) as u32))
 }
 
-/// The cameras of a whole turn about the z axis through the origin in this number of steps, from `first` on.
+/// The cameras of a full turn about the z axis in the given number of steps, starting with `first`.
 pub fn turn(first: &View, steps: u16) -> anyhow::Result<Vec<View>> {
     let turned = |angle| Ok(view::turned(first, angle).map_err(|error| error.in_file("camera"))?);
     angles(steps).map(turned).collect()
 }
 
 impl LensArguments {
-    /// The camera that shows the whole of the model `name`, `turned` about the axis `up`.
+    /// The camera that shows the whole model `name`, turned by `turned` about the axis `up`.
     fn framed(&self, sphere: &Sphere, name: &str, up: Axis, turned: Turns) -> anyhow::Result<View> {
         let angle = self.fov.as_deref().map(view::field_of_view).transpose();
         let angle = angle.map_err(|error| error.in_file("--fov"))?;
@@ -191,7 +192,7 @@ impl LensArguments {
         self.projected(view.map_err(|error| bad_value(name, "a camera", error.to_string()))?)
     }
 
-    /// The axis that is up, by the option or by the format of the model, which a note says.
+    /// The up axis from the option or from the format of the model; prints a note in the second case.
     fn up_of(&self, model: Option<&str>) -> Axis {
         self.up.unwrap_or_else(|| {
             let extension = model.and_then(|model| Path::new(model).extension()?.to_str());
@@ -213,7 +214,7 @@ impl LensArguments {
         })
     }
 
-    /// The camera with the lens of the options.
+    /// Applies the lens options to the camera.
     fn applied(&self, view: View) -> anyhow::Result<View> {
         let view = match &self.fov {
             Some(angle) => {
@@ -224,7 +225,7 @@ impl LensArguments {
         self.projected(view)
     }
 
-    /// The camera with the zoom or the orthographic projection of the options.
+    /// Applies the zoom or the orthographic projection of the options to the camera.
     fn projected(&self, view: View) -> anyhow::Result<View> {
         let view = match self.zoom {
             Some(factor) => view::zoomed(view, factor).map_err(|error| error.in_file("--zoom"))?,
@@ -240,7 +241,7 @@ impl LensArguments {
     }
 }
 
-/// Refuses a camera that has an eye too far away for a mesh. `source` names the option that gave the camera.
+/// Rejects a camera that is too far away for a mesh. `source` names the option that gave the camera.
 fn check_eye(view: &View, shown: &Shown, source: &str) -> anyhow::Result<()> {
     let eyes = shown.stereo.map_or([*view; 2], |stereo| stereo.eyes(view));
     let far = eyes.iter().find(|eye| !eye.is_within(MAX_EYE));

@@ -1,4 +1,4 @@
-//! Options and access to boards that the commands share.
+//! Options that several commands share, and their access to boards.
 
 use super::config;
 use super::progress::{show_simulation, spinner};
@@ -21,13 +21,13 @@ pub struct SizeArguments {
     /// the rays of a field [default: the scene's; without a scene, 320x180 with the precision of `balanced`].
     #[arg(long, value_parser = named(Quality::ALL, Quality::name))]
     quality: Option<Quality>,
-    /// Size of the picture: 320x180, 640x360 or 1280x720, instead of that of the quality.
+    /// Size of the picture: 320x180, 640x360 or 1280x720; overrides the size of the quality.
     #[arg(long, value_name = "WxH")]
     size: Option<String>,
 }
 
 impl SizeArguments {
-    /// Changes of a scene by the options.
+    /// The changes of a scene that the options make.
     pub fn changes(&self) -> anyhow::Result<Changes> {
         Ok(Changes {
             quality: self.quality,
@@ -50,7 +50,7 @@ impl SizeArguments {
 /// The speed of a serial port.
 #[derive(clap::Args)]
 pub struct Baud {
-    /// Baud rate of a serial port, in bits per second [default: that of GLINT_BAUD, of the configuration file, or 115200].
+    /// Baud rate of a serial port, in bits per second [default: from GLINT_BAUD or the configuration file, otherwise 115200].
     #[arg(long, value_name = "BITS")]
     baud: Option<u32>,
 }
@@ -64,7 +64,7 @@ impl Baud {
         config::baud(self.baud)
     }
 
-    /// Refuses the option with a board that is not on a serial port.
+    /// Rejects the option for a board that is not on a serial port.
     pub fn check(&self, name: &BoardName) -> Result<(), InputError> {
         if self.baud.is_some() && name.is_simulated() {
             return Err(bad_value(
@@ -77,7 +77,7 @@ impl Baud {
     }
 }
 
-/// Options for the connection to a board.
+/// Options of the connection to a board.
 #[derive(clap::Args)]
 pub struct LineArguments {
     #[command(flatten)]
@@ -88,7 +88,7 @@ pub struct LineArguments {
 }
 
 impl LineArguments {
-    /// Refuses options that the board `name` does not have.
+    /// Rejects options that do not apply to the board `name`.
     pub fn check(&self, name: &BoardName) -> Result<(), InputError> {
         if self.firmware.is_some() && !name.is_simulated() {
             let expected = "the emulated or the virtual board";
@@ -111,7 +111,7 @@ impl LineArguments {
         started(board::emulated(&firmware)?)
     }
 
-    /// Opens a board on a serial port, and ends a command or transfer that an earlier program has left.
+    /// Opens a board on a serial port, and cancels an unfinished command or transfer of an earlier program.
     pub fn serial_board(&self, port: &str) -> anyhow::Result<SerialBoard> {
         let mut board = self.open(port)?;
         let spinner = spinner("waiting for the board");
@@ -126,7 +126,7 @@ impl LineArguments {
         Ok(SerialBoard::open(port, self.baud.rate()?)?)
     }
 
-    /// Opens the board that `name` selects, which may not run its firmware yet.
+    /// Opens the board `name`, whose firmware may not be running yet.
     pub fn unsynchronised_board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         match name {
             BoardName::Serial(port) => Ok(Box::new(self.open(port)?)),
@@ -134,7 +134,7 @@ impl LineArguments {
         }
     }
 
-    /// Opens the board that `name` selects. A simulated board is started and runs its firmware.
+    /// Opens the board `name`. A simulated board is started, and runs its firmware.
     pub fn board(&self, name: &BoardName) -> anyhow::Result<Box<dyn Board>> {
         Ok(match name {
             BoardName::Emulated => Box::new(self.emulated_board()?),
@@ -153,7 +153,7 @@ fn started<S: Simulation>(mut board: SimulatedBoard<S>) -> anyhow::Result<Simula
     Ok(board)
 }
 
-/// Options of a command that transfers data to and from a board, and prints a result.
+/// Options of a command that transfers data to or from a board, and prints a result.
 #[derive(clap::Args)]
 pub struct TransferArguments {
     /// Route of the data to and from a board [default: memory for the emulated and the virtual board, serial for a board on a serial port].
@@ -167,7 +167,7 @@ pub struct TransferArguments {
 }
 
 impl TransferArguments {
-    /// Rejects board options when the model draws or computes on the host; `backend` is the option `--backend`.
+    /// Rejects board options if the backend is the model on the host; `backend` is the value of `--backend`.
     pub fn check(&self, board: &ModelOrBoard, backend: Option<Backend>) -> Result<(), InputError> {
         let given = [
             ("--backend", backend.is_some()),
@@ -195,7 +195,7 @@ pub fn named<T: Copy + Send + Sync + 'static, const N: usize>(
     })
 }
 
-/// Returns the error for an option or an argument whose value is not as `expected`.
+/// Returns the error for an option or an argument whose value is not the `expected` one.
 pub fn bad_value(name: &str, expected: &str, found: impl Into<String>) -> InputError {
     FormatError::whole(expected, found).in_file(name.escape_debug().to_string())
 }

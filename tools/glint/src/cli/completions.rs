@@ -4,7 +4,7 @@ use super::messages::say;
 use clap::{Args, Command};
 use clap_complete::{Shell, generate};
 
-/// Print the completions of this program for a shell.
+/// Print the shell completions of this program.
 ///
 /// For bash: `glint completions bash > ~/.local/share/bash-completion/completions/glint`.
 #[derive(Args)]

@@ -1,4 +1,4 @@
-//! Defaults of the options for boards: from the environment, then from the configuration file.
+//! Defaults of the board options: from the environment, otherwise from the configuration file.
 
 use anyhow::Context;
 use glint::board::BoardName;
@@ -8,24 +8,24 @@ use std::env;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// Baud rate without an option, a variable or an entry.
+/// Baud rate if no option, variable or configuration entry sets it.
 const BAUD: u32 = 115_200;
 
 /// The configuration file, `glint/config.toml` in the user's configuration folder.
 #[derive(Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(deny_unknown_fields)]
 struct Config {
-    /// Name of the board of commands that need one.
+    /// Name of the default board.
     board: Option<String>,
     /// Baud rate of serial ports, in bits per second.
     baud: Option<u32>,
 }
 
-/// The board of a command that needs one.
+/// The board option of commands that need a board.
 #[derive(clap::Args)]
 pub struct BoardChoice {
-    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of
-    /// the configuration file, or emulated].
+    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: from
+    /// GLINT_BOARD or the configuration file, otherwise emulated].
     #[arg(long)]
     board: Option<BoardName>,
 }
@@ -40,7 +40,7 @@ impl BoardChoice {
     }
 }
 
-/// The board of an option, of the environment or of the configuration file, in this order; without any, the emulated board.
+/// The board from the option, the environment or the configuration file, in this order; the emulated board if none names a board.
 ///
 /// # Errors
 /// The configuration file is damaged.
@@ -58,7 +58,7 @@ pub fn board(option: Option<&BoardName>) -> anyhow::Result<BoardName> {
     })
 }
 
-/// The baud rate of an option, of the environment or of the configuration file, in this order; without any, 115,200.
+/// The baud rate from the option, the environment or the configuration file, in this order; 115,200 if none sets it.
 ///
 /// # Errors
 /// The variable is not a number, or the configuration file is damaged.
@@ -76,13 +76,13 @@ pub fn baud(option: Option<u32>) -> anyhow::Result<u32> {
     Ok(read()?.baud.unwrap_or(BAUD))
 }
 
-/// The value of an environment variable that is set, and not empty.
+/// The value of an environment variable that is set and not empty.
 fn variable(name: &str) -> Option<String> {
     let value = env::var_os(name)?.to_string_lossy().into_owned();
     Some(value).filter(|value| !value.is_empty())
 }
 
-/// The path of the configuration file, if the user has a home.
+/// The path of the configuration file, if the user has a home folder.
 fn path() -> Option<PathBuf> {
     let folder = env::var_os("XDG_CONFIG_HOME").map(PathBuf::from);
     let folder = folder.filter(|folder| folder.is_absolute());
@@ -90,7 +90,7 @@ fn path() -> Option<PathBuf> {
     Some(folder?.join("glint").join("config.toml"))
 }
 
-/// Reads the configuration file, if there is one.
+/// Reads the configuration file, if it exists.
 fn read() -> anyhow::Result<Config> {
     let Some(path) = path() else {
         return Ok(Config::default());

@@ -21,7 +21,7 @@ pub struct ModelArguments {
     name: String,
     /// Output file; the extension selects the format: .obj, .stl, .ply or .glm. `-` is standard output, in the format of --to.
     out: PathBuf,
-    /// Format of the output [default: that of its name].
+    /// Format of the output [default: from the extension of its name].
     #[arg(long, value_enum)]
     to: Option<To>,
     /// Keep the generator's coordinates, without scaling.
@@ -35,24 +35,26 @@ pub struct ModelArguments {
 /// Convert a mesh: scale it to the 1×1×1 box about the origin, triangulate it, round it to multiples of 2^-14, and order its
 /// triangles for the engine.
 ///
-/// Reads OBJ (with vertex colours and the colours of the material file in the same folder), STL and PLY, ASCII or binary, glTF
-/// (without textures and skins), and GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded coordinates.
+/// Reads OBJ (with vertex colours, and colours from the material file in the same folder), STL and PLY, ASCII or binary, glTF
+/// (without textures and skins), and GLM, the format that boards load. OBJ, STL and PLY are written with scaled, unrounded
+/// coordinates.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// Mesh file to read; `-` is standard input, whose contents tell the format.
+    /// Mesh file to read; `-` is standard input, whose format is detected from its contents.
     input: PathBuf,
     /// Output file; the extension selects the format: .obj, .stl, .ply or .glm. `-` is standard output, in the format of --to.
     out: PathBuf,
-    /// Format of the output [default: that of its name].
+    /// Format of the output [default: from the extension of its name].
     #[arg(long, value_enum)]
     to: Option<To>,
     /// Keep the coordinates; those outside [-2, 2) are an error.
     #[arg(long)]
     keep_scale: bool,
-    /// Keep the order of the triangles, instead of one in which the engine fetches fewer vertices (.glm only).
+    /// Keep the order of the triangles, instead of an order in which the engine fetches fewer vertices (.glm only).
     #[arg(long)]
     keep_order: bool,
-    /// Turn faces over until neighbours agree and closed parts face outwards. Notes tell where that is not possible.
+    /// Flip faces until neighbouring faces agree and closed parts face outwards. A note names the parts where this is not
+    /// possible.
     #[arg(long)]
     fix_winding: bool,
     /// Print the report as JSON.
@@ -140,7 +142,7 @@ struct Copied {
     remarks: Vec<String>,
 }
 
-/// An output that counts its bytes.
+/// An output that counts the written bytes.
 struct Counted<'o> {
     out: &'o mut dyn Write,
     bytes: &'o mut usize,

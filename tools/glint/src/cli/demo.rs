@@ -1,4 +1,4 @@
-//! `glint demo`: a tour of the whole machine.
+//! `glint demo`: a demonstration of the whole system.
 
 use super::convert::load;
 use super::messages::say;
@@ -29,11 +29,11 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Run the whole machine: boot the virtual board, load its firmware, upload models, render, capture the monitor.
+/// Demonstrate the whole system: boot the virtual board, load its firmware, upload models, render, capture the monitor.
 #[derive(Args)]
 pub struct DemoArguments {
-    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first goes over the serial line of a board that boots
-    /// through its BIOS; the others go into the memory of a second board.
+    /// Mesh files or generators [default: icosphere:6, gear, teapot]. The first model goes over the serial line of a board that
+    /// boots through its BIOS; the other models go directly into the memory of a second board.
     models: Vec<String>,
     /// Output folder.
     #[arg(long, default_value = "out")]
@@ -62,18 +62,18 @@ const EYES: Stereo = Stereo {
     tint: Tint::RedBlue,
 };
 const SPONGE_FRAMES_PER_SECOND: u16 = 3;
-/// Longest wait for the BIOS's request for a serial boot, in milliseconds of the board's time.
+/// Longest wait for the BIOS's serial boot request, in milliseconds of the board's time.
 const BOOT_MS: u64 = 10_000;
 
 /// A model with its name on the command line.
 type Named<'n> = (&'n str, Model);
 
-/// A model's row in the table that the demo prints.
+/// A row of the table that the demo prints: the results of a model.
 struct Row {
     number: u32,
     picture: PathBuf,
     stats: Stats,
-    /// Clock cycles that the board's soft core takes for the frame that the accelerators have drawn, if measured.
+    /// Clock cycles that the board's soft core takes for the frame drawn by the accelerators, if measured.
     cpu_cycles: Option<u64>,
     cycles_per_second: f64,
 }
@@ -94,7 +94,7 @@ impl DemoArguments {
             .collect::<anyhow::Result<Vec<_>>>()?;
         let firmware = built_firmware(self.firmware.as_deref())?;
 
-        // The two boards run in parallel: the simulation of a board uses one core, and most hosts have two.
+        // The two boards run in parallel: the simulation of a board uses one CPU core, and most hosts have at least two.
         let (first, others) = models.split_first().context("no model")?;
         let (mut rows, lines) = std::thread::scope(|scope| {
             let second = scope.spawn(|| self.second_board(first, others, &firmware));
@@ -112,8 +112,8 @@ impl DemoArguments {
         lines.into_iter().try_for_each(say)
     }
 
-    /// Shows a model on the first board over the serial line only: BIOS, serial boot of the firmware, upload of the model. Then
-    /// the soft core draws the same picture, to compare the cycles.
+    /// Draws a model on the first board, over the serial line only: BIOS, serial boot of the firmware, upload of the model. Then
+    /// the soft core draws the same picture, for a comparison of the cycles.
     fn first_board(&self, model: &Named, firmware: &[u8]) -> anyhow::Result<Row> {
         let mut board = board::verilated_bios()?;
         let mut renderer =
@@ -126,9 +126,9 @@ impl DemoArguments {
         Ok(row)
     }
 
-    /// Runs the second board, which starts with the firmware in its memory. It shows `models`, uploaded through its memory, then
-    /// animates an orbit around the last of them (`first` if there is none) and a flight to the sponge, and shows the built-in
-    /// scenes.
+    /// Runs the second board, which starts with the firmware in its memory. It draws `models`, which are uploaded to its memory,
+    /// then animates an orbit around the last model (`first` if there is no other) and a flight to the sponge, and draws the
+    /// built-in scenes.
     fn second_board(
         &self,
         first: &Named,
@@ -166,7 +166,7 @@ impl DemoArguments {
         Ok((rows, lines))
     }
 
-    /// Shows a model on the board, saves the monitor's picture, and checks that it equals the picture of the bit-exact model.
+    /// Draws a model on the board, saves the monitor's picture, and checks that it equals the picture of the bit-exact model.
     fn show(
         &self,
         renderer: &mut BoardRenderer<SimulatedBoard>,
@@ -177,7 +177,7 @@ impl DemoArguments {
         let (start, start_cycles) = (Instant::now(), renderer.board().inner().cycles());
         let subject = Subject::mesh(Mesh::new_checked(&model.mesh)?);
         let frame = Frame::new(subject, camera(azimuth(number))?, SIZE);
-        // The other board, in its thread, shows no progress beside this one.
+        // The second board runs in its own thread, and shows no progress while the first board does.
         let bar = (route == Route::Serial).then(|| bar(name));
         let stats = renderer.show(&frame, route, &mut |done, all| {
             bar.iter().for_each(|bar| advance(bar)(done, all));
@@ -203,8 +203,8 @@ impl DemoArguments {
         })
     }
 
-    /// Writes an animation of one turn of the camera around the shown model to `path`. Returns the mean number of cycles
-    /// of a frame.
+    /// Writes an animation of one turn of the camera around the current model to `path`. Returns the mean number of cycles of a
+    /// frame.
     fn orbit<B: Board>(&self, renderer: &mut BoardRenderer<B>, path: &Path) -> anyhow::Result<u64> {
         let console = renderer.console();
         console.command("backend gateware")?;
@@ -213,8 +213,8 @@ impl DemoArguments {
         let mut cycles = 0;
         let mut images = Vec::new();
         for number in 0..self.orbit {
-            // The command `camera` has a shorter text than the command `view`, and most of a frame's time goes into the transfer
-            // of text over the serial line.
+            // The command `camera` is shorter than the command `view`, and most of a frame's time is the transfer of text over
+            // the serial line.
             let degrees = f64::from(number) * 360.0 / f64::from(self.orbit);
             let command = format!("camera {DISTANCE} {degrees:.3} {POLAR_DEGREES}");
             renderer.console().command(&command)?;
@@ -235,8 +235,8 @@ impl DemoArguments {
         Ok(cycles / u64::from(self.orbit.max(1)))
     }
 
-    /// Writes an animation to `path`, in which the camera moves towards the sponge and around it. Returns the mean number of
-    /// cycles that a frame takes.
+    /// Writes an animation to `path` in which the camera moves towards the sponge and around it. Returns the mean number of
+    /// cycles of a frame.
     fn sponge<B: Board>(
         &self,
         renderer: &mut BoardRenderer<B>,
@@ -281,14 +281,14 @@ impl DemoArguments {
     }
 }
 
-/// Refuses a folder with pictures if they may not be replaced.
+/// Rejects a folder that contains pictures, unless they may be replaced.
 fn check_folder(folder: &Path) -> anyhow::Result<()> {
     let files = folder.read_dir();
     let files = files.with_context(|| format!("{}: cannot be read", folder.display()))?;
     for file in files {
         let path = file?.path();
         if path.extension().is_some_and(|extension| extension == "png") {
-            // An error says what to do.
+            // The error message states how to proceed.
             Output::open(&path, PICTURE, [""; 0])?;
         }
     }
@@ -302,8 +302,8 @@ fn write_picture(
     Output::open(path, PICTURE, [""; 0])?.write(write)
 }
 
-/// Shows a built-in scene on the board with flat shading, which the gateware has in every build, checks that its picture equals that
-/// of the bit-exact model, and writes it to `path`. Returns the number of cycles of the frame.
+/// Draws a built-in scene on the board with flat shading, which every gateware build has, checks that its picture equals the
+/// picture of the bit-exact model, and writes it to `path`. Returns the number of cycles of the frame.
 fn show_scene<B: Board>(
     renderer: &mut BoardRenderer<B>,
     name: &str,
@@ -334,8 +334,8 @@ fn show_scene<B: Board>(
     Ok(stats.cycles.unwrap_or_default())
 }
 
-/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, `clock` the frequency of the board's
-/// clock in Hz.
+/// Formats the summary line of an animation; `cycles` is the mean number of cycles of a frame, and `clock` the frequency of the
+/// board's clock in Hz.
 fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String {
     let clock = f64::from(clock);
     format!(
@@ -346,7 +346,7 @@ fn line(path: &Path, what: &str, size: Size, cycles: u64, clock: u32) -> String 
     )
 }
 
-/// Azimuth of the camera for the picture of the model with this number. Each model is seen from a different side.
+/// Azimuth of the camera for the picture of model `number`. Each model is seen from a different side.
 fn azimuth(number: u32) -> Turns {
     Turns::from_degrees(Q32_32::from_num(number * 50 + 30))
 }
@@ -357,7 +357,7 @@ const SCENES: [&str; 3] = ["objects", "simplegpu", "wireframe"];
 const DISTANCE: u32 = 2;
 const POLAR_DEGREES: u32 = 60;
 
-/// Half width of the image plane at distance 1. With this value models nearly fill the height of the picture.
+/// Half width of the image plane at distance 1. With this value most models nearly fill the height of the picture.
 const HALF_WIDTH: f64 = 0.6;
 
 /// The demo's camera at `azimuth`.
@@ -377,7 +377,7 @@ fn camera(azimuth: Turns) -> anyhow::Result<View> {
     .map_err(anyhow::Error::msg)
 }
 
-/// Boots a board from reset: the BIOS, its serial boot, then the firmware to its prompt. Returns the firmware's console.
+/// Boots a board from reset: the BIOS, its serial boot, then the firmware up to its prompt. Returns the firmware's console.
 fn boot<'b>(
     board: &'b mut SimulatedBoard,
     firmware: &[u8],
@@ -404,7 +404,7 @@ fn boot<'b>(
     Ok(console)
 }
 
-/// File name of a picture, without extension, derived from the name of its model.
+/// File name of a model's picture, without extension.
 fn file_stem(name: &str) -> String {
     let stem = Path::new(name)
         .file_stem()
@@ -454,7 +454,7 @@ fn print_table(rows: &[Row]) -> anyhow::Result<()> {
 mod tests {
     use super::*;
 
-    /// Each part of the tour sets everything that its pictures depend on, so earlier parts have no effect.
+    /// Each part of the demo sets all parameters of its pictures, so earlier parts have no effect.
     #[test]
     fn pictures_after_a_mesh_are_the_models() {
         let firmware = built_firmware(None).unwrap();

@@ -1,4 +1,4 @@
-//! The options on the command line for what a picture shows beside a model: a distance field, and the options of a scene.
+//! The command-line options for a distance field, and for the appearance of a scene.
 
 use super::common::{SizeArguments, bad_value};
 use super::options::OptionArguments;
@@ -21,17 +21,17 @@ pub struct FieldArguments {
 }
 
 impl FieldArguments {
-    /// The text of `--field`, if given.
+    /// The value of `--field`, if given.
     pub fn name(&self) -> Option<&str> {
         self.field.as_deref()
     }
 
-    /// The file of a list of spheres, if `--field` names one.
+    /// The file of the list of spheres, if `--field` names a file.
     pub fn file(&self) -> Option<&str> {
         self.name().and_then(field::file)
     }
 
-    /// The scene at start with these options, and with this size.
+    /// The initial scene with these options and this size.
     pub fn scene(&self, size: &SizeArguments) -> anyhow::Result<Scene> {
         let parse = |text| {
             let text = field::with_files(text)?;
@@ -51,7 +51,7 @@ impl FieldArguments {
         Ok(scene)
     }
 
-    /// The colour of meshes without a field in place of their own ones, if `--material` is given.
+    /// The colour that replaces the colours of meshes without a field, if `--material` is given.
     pub fn mesh_colour(&self, scene: &Scene) -> Result<Option<Rgb565>, InputError> {
         if scene.field.is_some() || !self.options.has("material") {
             return Ok(None);

@@ -21,22 +21,22 @@ use std::process::Command;
 
 /// Load a program onto a board through its BIOS, and start it; with --spi, write an image to the board's SPI flash.
 ///
-/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in shorter pieces. With --spi, openFPGALoader writes the parts of the
-/// image, over the Urbana's USB port: an image without a bitstream leaves that of the flash as it is.
+/// Uses LiteX's serial boot (SFL). Damaged frames are sent again, in smaller pieces. With --spi, openFPGALoader writes the parts
+/// of the image over the Urbana's USB port: an image without a bitstream keeps the bitstream in the flash.
 #[derive(Args)]
 pub struct FlashArguments {
-    /// Program to load, a flat binary, `-` for one from standard input; with --spi, an image that `glint image make` has made.
+    /// Program to load: a flat binary, or `-` for standard input; with --spi, an image made by `glint image make`.
     program: PathBuf,
-    /// Write an image to the SPI flash of an Urbana by openFPGALoader.
+    /// Write an image to the SPI flash of an Urbana with openFPGALoader.
     #[arg(long, conflicts_with_all = ["board", "address", "wait", "baud", "json"])]
     spi: bool,
     #[command(flatten)]
     board: BoardChoice,
-    /// Address to load the program at, and to start it at.
+    /// Load address and entry point of the program.
     #[arg(long, default_value = "0x40000000", value_parser = parse_address)]
     address: u32,
-    /// Time-out of the wait for the BIOS's request, in seconds of board time. The request comes after a reset, or after the
-    /// command `reboot`, which the host sends.
+    /// Time-out of the wait for the BIOS's request, in seconds of the board's time. The BIOS sends the request after a reset, or
+    /// after the command `reboot`, which the host sends.
     #[arg(long, default_value_t = 60, value_name = "SECONDS")]
     wait: u64,
     #[command(flatten)]
@@ -46,13 +46,13 @@ pub struct FlashArguments {
     json: bool,
 }
 
-/// Upload a model to a board under a name, keep the models that the board has, and show it.
+/// Upload a model to a board under a name, keep the models on the board, and show it.
 #[derive(Args)]
 pub struct UploadArguments {
     /// Mesh file, or name of a generator.
     model: String,
-    /// Name of the model on the board, at most 24 visible characters of ASCII [default: the file's name
-    /// without its ending, or `model` for a generator].
+    /// Name of the model on the board, at most 24 visible characters of ASCII [default: the file's name without its extension, or
+    /// `model` for a generator].
     #[arg(long, value_parser = mesh_name)]
     name: Option<String>,
     #[command(flatten)]
@@ -72,8 +72,8 @@ fn mesh_name(text: &str) -> Result<String, String> {
     is_name(text).then(|| text.to_owned()).ok_or(expected)
 }
 
-/// The name of a model on the board: that of its file without folder and ending, with `-` for characters that a name cannot have.
-/// `None` for a generator.
+/// The name of a model on the board: the file's name without folder and extension, with `-` in place of characters that a name
+/// cannot contain. `None` for a generator.
 fn default_name(model: &str) -> Option<String> {
     let path = Path::new(model);
     let stem = path.extension().and(path.file_stem())?.to_string_lossy();
@@ -81,7 +81,7 @@ fn default_name(model: &str) -> Option<String> {
     Some(stem.chars().map(visible).take(MAX_NAME).collect())
 }
 
-/// A simulated board whose cycles the progress shows.
+/// A simulated board that reports its cycles to the progress display.
 fn metered<S: Simulation + 'static>(board: SimulatedBoard<S>) -> Box<dyn Board> {
     show_simulation(board.meter());
     Box::new(board)
@@ -130,10 +130,10 @@ impl FlashArguments {
     }
 }
 
-/// The board of openFPGALoader that has the Urbana's FPGA and USB bridge; it has no entry for the Urbana.
+/// Name of the board in openFPGALoader that has the Urbana's FPGA and USB bridge; openFPGALoader has no entry for the Urbana.
 const LOADER_BOARD: &str = "arty_s7_50";
 
-/// Checks an image, and writes it to the SPI flash from its first part on.
+/// Checks an image, and writes it to the SPI flash from its first present part on.
 fn write_flash(path: &Path) -> anyhow::Result<()> {
     let bytes = read_file(path)?;
     let image = image::check(&bytes).map_err(|error| error.in_path(path))?;
@@ -141,7 +141,7 @@ fn write_flash(path: &Path) -> anyhow::Result<()> {
         Some(_) => 0,
         None => FIRMWARE,
     };
-    // The loader tells a raw file by its name.
+    // openFPGALoader recognises a raw file by its extension.
     let mut file = tempfile::Builder::new().suffix(".bin").tempfile()?;
     file.write_all(bytes.get(offset..).unwrap_or_default())?;
     let status = Command::new("openFPGALoader")
@@ -171,7 +171,7 @@ impl UploadArguments {
         let board = self.board.name()?;
         if board.is_simulated() {
             note(
-                "the board ends with this command; `glint board` runs one that stays, on a serial port",
+                "the board ends with this command; `glint board` runs a board that keeps running, on a serial port",
             );
         }
         let mut board = self.line.board(&board)?;

@@ -13,10 +13,10 @@ use glint::gesture::{self, SensorFault};
 use std::path::PathBuf;
 use virtual_board::virtual_image_sensor::{ImageSensor, Images, Source};
 
-/// Size of the frames of the synthetic hand: that of the sensor's set-up.
+/// Size of the frames of the synthetic hand: the frame size after the set-up of the sensor.
 const SIZE: [usize; 2] = [320, 240];
 
-/// The hand in front of the image sensor: its mask.
+/// Show the mask of the hand in front of the image sensor.
 #[derive(Subcommand)]
 pub enum GestureCommand {
     Mask(MaskArguments),
@@ -38,7 +38,7 @@ struct SensorArguments {
     /// Pictures of the virtual image sensor: a folder of PNG files of 320x240, shown in turn [default: a synthetic moving hand].
     #[arg(long, value_name = "FOLDER")]
     pictures: Option<PathBuf>,
-    /// Fault of the virtual image sensor.
+    /// Fault of the virtual image sensor to simulate.
     #[arg(long, value_parser = named(SensorFault::ALL, SensorFault::name))]
     fault: Option<SensorFault>,
     #[command(flatten)]
@@ -46,7 +46,7 @@ struct SensorArguments {
 }
 
 impl SensorArguments {
-    /// The files that the virtual image sensor shows.
+    /// The picture files of the virtual image sensor.
     fn files(&self) -> anyhow::Result<Vec<PathBuf>> {
         let Some(folder) = &self.pictures else {
             return Ok(Vec::new());
@@ -93,7 +93,7 @@ impl SensorArguments {
     }
 }
 
-/// Set the image sensor up, and write the pixels of the hand's colour in its next frame as a picture.
+/// Set up the image sensor, and write the mask of the hand's colour in its next frame as a picture.
 #[derive(Args)]
 pub struct MaskArguments {
     #[command(flatten)]

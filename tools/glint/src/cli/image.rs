@@ -17,13 +17,13 @@ pub enum ImageCommand {
     Check(CheckArguments),
 }
 
-/// Make an image of a firmware, scenes with their meshes, and a bitstream.
+/// Make an image of a firmware, scenes with their meshes, and optionally a bitstream.
 #[derive(Args)]
 pub struct MakeArguments {
     /// Firmware, a flat binary that runs at the start of main memory: `cargo xtask firmware` makes it.
     #[arg(long, value_name = "FILE")]
     firmware: PathBuf,
-    /// Bitstream of the FPGA, .bit or raw [default: none, and the flash keeps the one that it has].
+    /// Bitstream of the FPGA, .bit or raw [default: none; the flash keeps its bitstream].
     #[arg(long, value_name = "FILE")]
     bitstream: Option<PathBuf>,
     /// Scenes that the board shows, separated by commas: built-in scenes, lists of them, or scene files.
@@ -49,7 +49,7 @@ pub struct ListArguments {
     json: bool,
 }
 
-/// Check images: lengths, checksums, meshes, the commands of scenes, and the names in lists.
+/// Check images: lengths, checksums, meshes, commands of scenes, and names in lists.
 #[derive(Args)]
 pub struct CheckArguments {
     /// Images to read.
@@ -95,7 +95,7 @@ impl MakeArguments {
     }
 }
 
-/// A part of an image: its place and length in bytes.
+/// A part of an image: its offset and length in bytes.
 #[derive(serde::Serialize)]
 struct Part<'a> {
     kind: &'static str,
@@ -118,7 +118,7 @@ fn parts<'a>(image: &Image<'a>) -> Vec<Part<'a>> {
         .map(|bytes| part("bitstream", "-", 0, bytes));
     let firmware = part("firmware", "-", FIRMWARE, image.firmware);
     let items = image.contents.items().map(|item| {
-        // The image has been checked.
+        // The image has been checked, so its parts are within its bytes.
         let bytes = item.checked().unwrap_or_default();
         part(item.kind.name(), item.name, CONTENTS + item.offset(), bytes)
     });

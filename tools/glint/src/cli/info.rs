@@ -7,7 +7,7 @@ use clap::Args;
 use glint::console::Console;
 use serde_json::{Map, Value};
 
-/// Show what a board is: its gateware, firmware, clock, memory and state.
+/// Show information about a board: its gateware, firmware, clock, memory and state.
 #[derive(Args)]
 pub struct InfoArguments {
     #[command(flatten)]

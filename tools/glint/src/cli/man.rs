@@ -6,17 +6,17 @@ use anyhow::Context;
 use clap::{Args, Command};
 use std::path::PathBuf;
 
-/// Write the manual pages of this program: glint.1, and one for each command.
+/// Write the manual pages of this program: glint.1, and a page for each command.
 ///
 /// For `man`: `glint man ~/.local/share/man/man1`.
 #[derive(Args)]
 pub struct ManArguments {
-    /// Output folder; it is created if it is missing.
+    /// Output folder; it is created if it does not exist.
     folder: PathBuf,
 }
 
 impl ManArguments {
-    /// Writes the pages of `program`.
+    /// Writes the manual pages of `program`.
     pub fn run(self, program: Command) -> anyhow::Result<()> {
         let made = tempfile::tempdir().context("creating a temporary folder")?;
         clap_mangen::generate_to(program, made.path()).context("generating the manual pages")?;

@@ -1,4 +1,4 @@
-//! What the commands print: results on standard output, warnings and notes on standard error.
+//! Output of the commands: results on standard output, warnings and notes on standard error.
 
 use anyhow::Context;
 use clap::builder::styling::AnsiColor;
@@ -6,16 +6,17 @@ use serde::Serialize;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 
-/// Whether an output goes to standard output.
+/// Whether a command writes its output file to standard output.
 static STDOUT_IS_OUTPUT: AtomicBool = AtomicBool::new(false);
 
-/// Leaves standard output to an output: from now on `say` prints to standard error. Returns false if an output has it already.
+/// Reserves standard output for an output file: from now on `say` prints to standard error. Returns false if standard output has
+/// already been reserved.
 pub fn give_up_stdout() -> bool {
     !STDOUT_IS_OUTPUT.swap(true, Ordering::Relaxed)
 }
 
-/// Prints a line to standard output, or to standard error if standard output has an output. A closed pipe, as with `| head`, is
-/// not an error.
+/// Prints a line to standard output, or to standard error if standard output is reserved for an output file. A closed pipe, as in
+/// `| head`, is not an error.
 pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     let written = match STDOUT_IS_OUTPUT.load(Ordering::Relaxed) {
         true => writeln!(std::io::stderr(), "{line}"),
@@ -29,25 +30,25 @@ pub fn say(line: impl std::fmt::Display) -> anyhow::Result<()> {
     }
 }
 
-/// Amount of output in addition to a command's result.
+/// Amount of output besides a command's result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loudness {
     /// Only errors.
     Quiet,
-    /// Warnings, notes and progress too.
+    /// Also warnings, notes and progress.
     Usual,
-    /// Additionally each step with its time.
+    /// Also each step with its time.
     Verbose,
 }
 
 static LOUDNESS: AtomicU8 = AtomicU8::new(Loudness::Usual as u8);
 
-/// Sets the amount of output in addition to the command's result.
+/// Sets the amount of output besides a command's result.
 pub fn set_loudness(loudness: Loudness) {
     LOUDNESS.store(loudness as u8, Ordering::Relaxed);
 }
 
-/// Amount of output in addition to the command's result.
+/// Amount of output besides a command's result.
 pub fn loudness() -> Loudness {
     const QUIET: u8 = Loudness::Quiet as u8;
     const VERBOSE: u8 = Loudness::Verbose as u8;
@@ -77,11 +78,11 @@ pub fn fail(text: impl std::fmt::Display) {
     print_labelled(AnsiColor::Red, "error", text);
 }
 
-/// Prints a line after a label to standard error. On a terminal the label has the colour, unless the environment has NO_COLOR, as the
-/// errors of the command line have.
+/// Prints a label and a line to standard error. On a terminal the label is coloured like the command line's errors, unless the
+/// environment sets NO_COLOR.
 fn print_labelled(colour: AnsiColor, label: &str, text: impl std::fmt::Display) {
     let style = colour.on_default().bold();
-    // An error of standard error cannot be reported.
+    // An error of writing to standard error cannot be reported.
     let _ = writeln!(anstream::stderr(), "{style}{label}:{style:#} {text}");
 }
 

@@ -32,10 +32,11 @@ pub use messages::fail;
 
 /// Host program of Glint: converts meshes, renders pictures, controls boards.
 ///
-/// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot, gear,
-/// teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual`, a serial port such as /dev/ttyUSB1, or `serial`
-/// for the port that `glint ports` guesses. ~/.config/glint/config.toml sets the usual one: `board = "NAME"`, `baud = NUMBER`. Exit code 2:
-/// bad input, with one line that names the place, what was expected and what was found. Exit code 1: any other failure.
+/// MODEL is a mesh file (.obj, .stl, .ply, .gltf, .glb, .glm) or a generator: cube, icosphere:N (frequency, 1 to 64), torus-knot,
+/// gear, teapot, scan:N (frequency, 1 to 64), sponge:N (0 to 4). BOARD is `emulated`, `virtual`, a serial port such as
+/// /dev/ttyUSB1, or `serial` for the port that `glint ports` guesses. ~/.config/glint/config.toml sets the usual one: `board =
+/// "NAME"`, `baud = NUMBER`. Exit code 2: bad input, with one line that names the location, the expected value and the found
+/// value. Exit code 1: any other failure.
 #[derive(Parser)]
 #[command(name = "glint", version, max_term_width = 110)]
 pub struct Arguments {
@@ -47,7 +48,7 @@ pub struct Arguments {
     /// Print each step with its time.
     #[arg(short, long, global = true, conflicts_with = "quiet")]
     verbose: bool,
-    /// Replace output files that are not empty; by default they are refused.
+    /// Replace output files that are not empty; by default they are an error.
     #[arg(short, long, global = true)]
     force: bool,
 }

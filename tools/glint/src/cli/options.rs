@@ -1,4 +1,4 @@
-//! The options of a scene on the command line, which the console's table states.
+//! The scene options of the command line, generated from the console's table of options.
 
 use super::common::bad_value;
 use clap::builder::{PossibleValuesParser, ValueParser};
@@ -8,19 +8,19 @@ use glint_core::console::{self, FORMS, Forms, HostOption, Row, accepted_words};
 use glint_core::light::MAX_LIGHTS;
 use glint_scene::{AnyBoard, Scene};
 
-/// The options that the command line has, with their values.
+/// The options given on the command line, with their values.
 pub struct OptionArguments {
     given: Vec<Given>,
 }
 
-/// An option with its values.
+/// A given option with its values.
 struct Given {
     row: &'static Row,
     option: &'static HostOption,
     values: Vec<String>,
 }
 
-/// The options of the table.
+/// The rows of the table that are options of the command line.
 fn options() -> impl Iterator<Item = (&'static Row, &'static HostOption)> {
     let rows = FORMS.iter();
     rows.filter_map(|row| Some((row, row.forms.host.as_ref()?)))
@@ -69,7 +69,7 @@ fn argument(command: &Command, row: &Row, option: &HostOption) -> Arg {
                 .allow_hyphen_values(true)
         }
     };
-    // Meshes alone have the option.
+    // Only meshes without a field have the option.
     let argument = match with.contains(&"model") && !with.contains(&"field") {
         true => argument.requires("model"),
         false => argument,
@@ -123,10 +123,10 @@ impl OptionArguments {
         self.given.iter().any(|given| given.option.name == name)
     }
 
-    /// Sets the given options in `scene`, which may or may not have a field.
+    /// Applies the given options to `scene`, with or without a field.
     ///
     /// # Errors
-    /// A value is not accepted, or the option needs a field.
+    /// A value is invalid, or the option requires a field.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), InputError> {
         for Given {
             row,
@@ -155,7 +155,7 @@ impl OptionArguments {
                     Ok(_) => return Err(refuse(quote(value.as_bytes()))),
                     Err(error) => {
                         let reason = error.value().map(|reason| reason.to_string());
-                        // The reason may quote the value.
+                        // The reason may contain the value.
                         let reason = reason.map(|reason| reason.escape_debug().to_string());
                         let found = reason.unwrap_or_else(|| quote(value.as_bytes()));
                         return Err(refuse(found));

@@ -26,14 +26,14 @@ use std::path::PathBuf;
 
 /// Render an animation in which the camera goes once around a model, a distance field, a model in a field, or a scene.
 ///
-/// A camera that shows the whole model goes around the model about the axis that is up. With an option for the camera, in a field and in
-/// a scene it goes around the origin about the z axis, from the camera of the picture that `glint render` draws.
+/// A camera that shows the whole model goes around the model about the up axis. With a camera option, in a field, and in a scene,
+/// it goes around the origin about the z axis, starting with the camera of `glint render`.
 #[derive(Args)]
 pub struct OrbitArguments {
-    /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
+    /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
     model: Option<String>,
-    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
-    /// states camera, quality and size, which the options of the camera, --quality and --size replace.
+    /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
+    /// sets camera, quality and size; the camera options, --quality and --size override them.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
     scene: Option<String>,
     #[command(flatten)]
@@ -46,14 +46,14 @@ pub struct OrbitArguments {
     /// Number of frames.
     #[arg(long, default_value_t = 36, value_parser = clap::value_parser!(u16).range(1..=360))]
     frames: u16,
-    /// Frames a second of the animation. A GIF has steps of 1/100 s.
+    /// Frames per second of the animation. The frame time of a GIF is a multiple of 1/100 s.
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(1..=50))]
     rate: u16,
     /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
     /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
-    /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
+    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
     #[command(flatten)]
@@ -62,7 +62,7 @@ pub struct OrbitArguments {
     transfer: TransferArguments,
 }
 
-/// The output of `--json`.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Outcome<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -74,7 +74,7 @@ struct Outcome<'a> {
     board: String,
     size: [u32; 2],
     frames: u16,
-    /// Mean of the cycles of a frame, if the renderer counts them.
+    /// Mean cycles of a frame, if the renderer counts cycles.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles: Option<u64>,
 }
@@ -129,7 +129,7 @@ impl OrbitArguments {
         self.write(out, &frame, &views, None)
     }
 
-    /// The output, which is none of the inputs.
+    /// Opens the output file, which must not be one of the inputs.
     fn open(&self, scene: Option<&SceneFile>) -> anyhow::Result<Output> {
         let names = [
             self.model.as_deref(),
@@ -146,7 +146,7 @@ impl OrbitArguments {
         Output::open(&self.out, ANIMATION, files.chain(camera))
     }
 
-    /// Renders a frame from all cameras, and writes the animation.
+    /// Renders a frame for each camera, and writes the animation.
     fn write(
         &self,
         out: Output,
@@ -197,7 +197,7 @@ impl OrbitArguments {
         ))
     }
 
-    /// Begins the animation in the format of the output's name.
+    /// Starts the animation in the format that the output's extension selects.
     fn animation<W: Write>(&self, out: W, size: [u32; 2]) -> io::Result<Animation<W>> {
         let is_gif = self
             .out
@@ -210,7 +210,7 @@ impl OrbitArguments {
         }
     }
 
-    /// Renders a frame from all cameras, and calls `take` with each picture.
+    /// Renders a frame for each camera, and calls `take` with each picture.
     fn draw(
         &self,
         frame: &Frame,
@@ -236,7 +236,7 @@ impl OrbitArguments {
         Ok(())
     }
 
-    /// Draws a frame from all cameras on a board, which gets its meshes once.
+    /// Draws a frame for each camera on a board, and uploads the meshes once.
     fn draw_on(
         &self,
         name: &BoardName,

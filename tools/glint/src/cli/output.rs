@@ -1,5 +1,5 @@
-//! Output files. Each is checked before the work begins, and written whole or not at all. A file with contents is replaced on request
-//! only (`--force`). `-` is standard output.
+//! Output files. Each is checked before the work begins, and written completely or not at all. A file that is not empty is
+//! replaced only with `--force`. `-` is standard output.
 
 use super::common::bad_value;
 use super::messages::give_up_stdout;
@@ -13,24 +13,24 @@ use std::os::unix::fs::{MetadataExt, PermissionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Extensions of a picture.
+/// Extensions of a picture file.
 pub const PICTURE: &[&str] = &["png"];
-/// Extensions of an animation.
+/// Extensions of an animation file.
 pub const ANIMATION: &[&str] = &["png", "gif"];
-/// Extensions of distances as little-endian numbers.
+/// Extensions of a file of distances: little-endian numbers.
 pub const DEPTH: &[&str] = &["f32", "bin", "raw"];
 /// Extensions of statistics.
 pub const STATISTICS: &[&str] = &["json"];
-/// Extensions of a mesh.
+/// Extensions of a mesh file.
 pub const MESH: &[&str] = &["obj", "stl", "ply", "glm"];
-/// Extensions of a program of the wireframe simulator.
+/// Extensions of a program file of the wireframe simulator.
 pub const PROGRAM: &[&str] = &["wft", "wfb"];
-/// Extensions of an image for a flash.
+/// Extensions of a flash image file.
 pub const IMAGE: &[&str] = &["bin", "img"];
-/// Extensions of a table.
+/// Extensions of a table file.
 pub const TABLE: &[&str] = &["csv"];
 
-/// The name of standard output.
+/// The file name that stands for standard output.
 pub const STDOUT: &str = "-";
 
 /// Whether files that are not empty are replaced.
@@ -41,18 +41,18 @@ pub fn set_replace(replace: bool) {
     REPLACE.store(replace, Ordering::Relaxed);
 }
 
-/// An output file that can be written.
+/// An output file that has been checked.
 pub struct Output {
     path: PathBuf,
-    /// The device or pipe, such as /dev/null, that is written directly; `None` for a file, which is replaced.
+    /// The open device or pipe, such as /dev/null, which is written directly; `None` for a file, which is replaced.
     device: Option<File>,
 }
 
 impl Output {
-    /// Checks that the file at `path` can be written, and opens a device or a pipe. `inputs` are the files that the command reads.
+    /// Checks that the file at `path` can be written; opens a device or a pipe. `inputs` are the files that the command reads.
     ///
     /// # Errors
-    /// The name has another extension than `extensions`, the file is one of `inputs`, it has contents and may not be replaced, or it
+    /// The extension is not one of `extensions`, the file is one of `inputs`, it is not empty and may not be replaced, or it
     /// cannot be written.
     pub fn open<P: AsRef<Path>>(
         path: &Path,
@@ -94,7 +94,7 @@ impl Output {
             return Err(bad_value(&path.display().to_string(), expected, found).into());
         }
         if device.is_none() {
-            // A file without a name shows that the folder takes new files; it vanishes when it is closed.
+            // Creating an unnamed file shows that the folder is writable; the file vanishes when it is closed.
             tempfile::tempfile_in(folder(&target(path))).with_context(|| unwritable(path))?;
         }
         Ok(Self {
@@ -103,7 +103,7 @@ impl Output {
         })
     }
 
-    /// Standard output as the output; what the command prints goes to standard error instead.
+    /// Uses standard output as the output file; the command's messages go to standard error instead.
     fn stdout() -> anyhow::Result<Self> {
         let stdout = io::stdout();
         if isatty(&stdout) {
@@ -120,7 +120,7 @@ impl Output {
         })
     }
 
-    /// The open file, for an output that grows while the command runs, such as a log.
+    /// Opens the file for an output that grows while the command runs, such as a log.
     ///
     /// # Errors
     /// The file cannot be created.
@@ -131,8 +131,8 @@ impl Output {
         }
     }
 
-    /// A nameless file for contents that are made over a long time, which [`write`](Self::write) copies in the end. It vanishes when it is
-    /// closed, or when the program is killed.
+    /// Creates an unnamed file for contents that take a long time to produce; [`write`](Self::write) copies them at the end. It
+    /// vanishes when it is closed, or when the program is killed.
     ///
     /// # Errors
     /// The file cannot be created.
@@ -144,12 +144,12 @@ impl Output {
         file.with_context(|| self.unwritable())
     }
 
-    /// First words of an error of this output.
+    /// Start of the error message of an output that cannot be written.
     pub fn unwritable(&self) -> String {
         unwritable(&self.path)
     }
 
-    /// Writes the file whole or not at all: `write` fills a new file beside it, which then takes its place.
+    /// Writes the file completely or not at all: `write` fills a new file in the same folder, which then replaces the output.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -166,7 +166,7 @@ impl Output {
     /// Writes a value as JSON, indented.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// Those of [`write`](Self::write).
     pub fn write_json(self, value: &impl Serialize) -> anyhow::Result<()> {
         let json = serde_json::to_string_pretty(value)?;
         self.write(|out| writeln!(out, "{json}"))
@@ -177,7 +177,8 @@ fn unwritable(path: &Path) -> String {
     format!("{}: cannot be written", path.display())
 }
 
-/// Refuses a name with another extension than those given, if some are. A name without an extension promises nothing, and is accepted.
+/// Rejects a name with an extension other than `extensions`, unless `extensions` is empty. A name without an extension is
+/// accepted.
 fn check_extension(path: &Path, extensions: &[&str]) -> anyhow::Result<()> {
     let Some(found) = path.extension() else {
         return Ok(());
@@ -195,7 +196,7 @@ fn check_extension(path: &Path, extensions: &[&str]) -> anyhow::Result<()> {
     Err(bad_value(&path.display().to_string(), &expected, found).into())
 }
 
-/// The file that a new file replaces. A symbolic link stays, and the file that it leads to is replaced.
+/// The file that is replaced: a symbolic link stays, and its target is replaced.
 fn target(path: &Path) -> PathBuf {
     path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
@@ -215,7 +216,7 @@ fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) ->
         .permissions(permissions)
         .tempfile_in(folder(&path))?;
     fill(file.as_file(), write)?;
-    // Some file systems report only now that they are full.
+    // Some file systems report a full disk only at this call.
     file.as_file().sync_all()?;
     file.persist(path)?;
     Ok(())

@@ -4,9 +4,9 @@ use super::messages::{print_json, say};
 use clap::Args;
 use glint::board::ports;
 
-/// List the serial ports of this host, and which of them is probably a board's.
+/// List the serial ports of this host, and guess which port is connected to a board.
 ///
-/// A port with the USB bridge of the Urbana or the ULX3S is marked; `--board serial` takes the only one.
+/// A port with the USB bridge of the Urbana or the ULX3S is marked; `--board serial` selects it if it is the only one.
 #[derive(Args)]
 pub struct PortsArguments {
     /// Print the ports as JSON.

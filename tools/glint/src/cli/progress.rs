@@ -1,4 +1,4 @@
-//! Progress of long steps: a bar on a terminal; without one a line every ten seconds, so that logs stay short.
+//! Progress of long steps: a bar on a terminal, otherwise a line every ten seconds, which keeps logs short.
 
 use super::messages::{Loudness, loudness};
 use glint::board::Meter;
@@ -9,15 +9,15 @@ use std::sync::Mutex;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-/// Time between two lines without a terminal.
+/// Interval of progress lines without a terminal.
 const PERIOD: Duration = Duration::from_secs(10);
 /// Frames a second of the monitor, in board time.
 const MONITOR_HZ: f64 = 60.0;
 
-/// The simulated board of this process, if it has one.
+/// The cycle counter of the simulated board in this process, if any.
 static SIMULATION: Mutex<Option<Meter>> = Mutex::new(None);
 
-/// Shows the cycles of a simulated board with all steps from now on.
+/// Adds the cycles of a simulated board to the progress of all later steps.
 pub fn show_simulation(meter: Meter) {
     if let Ok(mut simulation) = SIMULATION.lock() {
         *simulation = Some(meter);
@@ -27,17 +27,17 @@ pub fn show_simulation(meter: Meter) {
 /// Unit of a step's progress.
 #[derive(Clone, Copy)]
 enum Unit {
-    /// Nothing: its length is unknown.
+    /// None: the length of the step is unknown.
     None,
     Bytes,
-    /// Items that the text names.
+    /// Items, with their name in the plural.
     Items(&'static str),
 }
 
-/// A step of a command that may take long. Its progress disappears from a terminal when it is dropped.
+/// A step of a command that may take a long time. Dropping a step removes its progress from the terminal.
 pub struct Step {
     bar: ProgressBar,
-    /// Ends the thread that prints lines, when it is dropped.
+    /// Dropping the sender ends the thread that prints lines.
     _lines: Option<Sender<()>>,
 }
 
@@ -51,12 +51,12 @@ pub fn bar(label: &str) -> Step {
     Step::new(label, Unit::Bytes)
 }
 
-/// A step that counts items, which the text `items` names.
+/// A step that counts items; `items` is their name in the plural.
 pub fn count_bar(label: &str, items: &'static str) -> Step {
     Step::new(label, Unit::Items(items))
 }
 
-/// Returns a progress callback that sets the position and the length of a step.
+/// Returns a progress callback that sets the position and the length of the step.
 pub fn advance(step: &Step) -> impl FnMut(u64, u64) {
     move |done, all| {
         step.bar.set_length(all);
@@ -91,7 +91,7 @@ impl Step {
         let style = ProgressStyle::with_template(&template);
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         let simulation = move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
-            // An error of the terminal cannot be reported.
+            // An error of writing to the terminal cannot be reported.
             let _ = out.write_str(&simulation(from, state.elapsed()));
         };
         bar.set_style(style.with_key("simulation", simulation));
@@ -100,7 +100,7 @@ impl Step {
             return Self { bar, _lines: None };
         }
         let print = |line: String| {
-            // An error of standard error cannot be reported.
+            // An error of writing to standard error cannot be reported.
             let _ = writeln!(io::stderr(), "{line}");
         };
         let lines = Some(every(PERIOD, bar.clone(), unit, from, print));
@@ -128,7 +128,7 @@ impl Step {
             let seconds = self.bar.elapsed().as_secs_f64();
             let label = self.bar.message();
             self.bar.suspend(|| {
-                // An error of standard error cannot be reported.
+                // An error of writing to standard error cannot be reported.
                 let _ = writeln!(io::stderr(), "{label}: {seconds:.3} s");
             });
         }
@@ -168,7 +168,7 @@ fn every(
     sender
 }
 
-/// Appends the progress, the rate and the remaining time to `line`. Returns whether the step has begun.
+/// Appends the progress, the rate and the remaining time of a step to `line`. Returns whether the step has begun.
 fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: Duration) -> bool {
     let seconds = elapsed.as_secs_f64();
     let rate = done as f64 / seconds;
@@ -195,7 +195,7 @@ fn line_of(line: &mut String, unit: Unit, done: u64, all: Option<u64>, elapsed: 
     true
 }
 
-/// The remaining time, once a part of the step is done.
+/// The remaining time; empty until a part of the step is done.
 fn left(done: u64, all: u64, rate: f64) -> String {
     if done == 0 {
         return String::new();
@@ -255,13 +255,13 @@ mod tests {
         let start = text(Unit::Items("frames"), 0, Some(36));
         assert_eq!(start.unwrap(), "mesh: 0 of 36 frames, 0.0/s");
         assert_eq!(text(Unit::None, 0, None).unwrap(), "mesh: 20 seconds");
-        // A step that has not begun is silent.
+        // A step that has not begun prints no line.
         assert_eq!(text(Unit::Bytes, 0, Some(0)), None);
     }
 
     #[test]
     fn a_simulation_counts_cycles_and_frames() {
-        // A second of the board has 60 frames, and takes 20 s.
+        // A second of the board's time has 60 frames, and takes 20 s.
         let text = simulated(81_250_000, 81_250_000, Duration::from_secs(20));
         assert_eq!(
             text,
@@ -269,7 +269,7 @@ mod tests {
         );
     }
 
-    /// Lines come until the step ends.
+    /// Progress lines are printed until the step ends.
     #[test]
     fn a_step_prints_lines_until_its_end() {
         let bar = ProgressBar::hidden().with_message("mesh");
@@ -288,7 +288,7 @@ mod tests {
             assert!(lines.recv().unwrap().starts_with("mesh: 1 of 4 frames, "));
         }
         drop(end);
-        // The thread drops its end of the channel.
+        // The thread then drops its end of the channel.
         while lines.recv().is_ok() {}
     }
 }

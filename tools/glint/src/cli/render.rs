@@ -31,14 +31,15 @@ use std::path::PathBuf;
 /// Render a model, a distance field, or a model in a distance field to a picture.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// A mesh file, `-` for one from standard input, or a generator's name. With --field the mesh is drawn in the field.
+    /// A mesh file, `-` for standard input, or a generator's name. With --field, the mesh is drawn in the field.
     model: Option<String>,
-    /// A scene: the name of a built-in one (`glint scene list`), or a scene file (docs/scenes.md), `-` for one from standard input. It
-    /// states camera, quality and size, which the options of the camera, --quality and --size replace.
+    /// A scene: the name of a built-in scene (`glint scene list`), a scene file (docs/scenes.md), or `-` for standard input. It
+    /// sets camera, quality and size; the camera options, --quality and --size override them.
     #[arg(long, value_name = "NAME|FILE.toml", conflicts_with = "model")]
     scene: Option<String>,
-    /// A further model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S` or
-    /// `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour RRGGBB`.
+    /// An additional model and its position in the world; repeatable. `MODEL` and then, in this order of application, `scale S`
+    /// or `scale X,Y,Z`, `rotate AXIS DEGREES`, `move X,Y,Z`, `matrix NUMBERS` (three rows, and the translation), `colour
+    /// RRGGBB`.
     #[arg(long, value_name = "MODEL PLACE", conflicts_with_all = ["field", "scene"])]
     object: Vec<String>,
     #[command(flatten)]

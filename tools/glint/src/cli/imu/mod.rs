@@ -8,7 +8,7 @@ use clap::Subcommand;
 use replay::ReplayArguments;
 use sensor::{CalibrateArguments, RecordArguments, StreamArguments};
 
-/// Gyroscope and accelerometer: stream, calibrate, record, replay.
+/// Stream, calibrate, record and replay gyroscope and accelerometer data.
 #[derive(Subcommand)]
 pub enum ImuCommand {
     Stream(StreamArguments),

@@ -23,22 +23,22 @@ use std::path::{Path, PathBuf};
 ///
 /// LOG.csv has a header with t_us,ax,ay,az,gx,gy,gz and optionally temp, in any order, then one sample a line in raw counts.
 /// ORIENTATION.csv gets t_us,w,x,y,z,yaw,pitch,roll for each sample: the quaternion from body to world (z up), and intrinsic
-/// z-y-x angles in degrees. The first attitude is the identity, or with tilt correction yaw 0 and the measured direction of
-/// gravity. Samples with a time stamp not later than the one before are ignored. Over a gap of more than half a second the
-/// attitude is held.
+/// z-y-x angles in degrees. The first attitude is the identity; with tilt correction it has yaw 0 and the measured direction of
+/// gravity. Samples whose time stamp is not later than the previous one are ignored. Over a gap of more than half a second the
+/// attitude does not change.
 #[derive(Args)]
 pub struct ReplayArguments {
     /// Log to read; `-` is standard input.
     #[arg(value_name = "LOG.csv")]
     log: PathBuf,
-    /// Backend: `model` (the firmware's arithmetic on this host), `emulated` (the firmware in an emulator), `virtual`
-    /// (the verilated SoC) or a serial port. All write the same attitudes.
+    /// Backend: `model` (the firmware's arithmetic on this host), `emulated` (the firmware in an emulator), `virtual` (the
+    /// verilated SoC) or a serial port. All backends write identical attitudes.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
     /// File to write the attitudes to.
     #[arg(long, value_name = "ORIENTATION.csv")]
     out: PathBuf,
-    /// Fixed sample period in microseconds, instead of the time stamps; ORIENTATION.csv keeps the stamps.
+    /// Fixed sample period in microseconds, instead of the time stamps; ORIENTATION.csv contains the time stamps of the log.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=i64::from(LONGEST_STEP)))]
     dt_us: Option<u32>,
     /// Gyroscope scale in LSB per °/s: 131, 65.5, 32.8, 16.4 for an MPU-6050 at ±250, 500, 1000, 2000 °/s.
@@ -47,8 +47,8 @@ pub struct ReplayArguments {
     /// Accelerometer scale in LSB per g: 16384, 8192, 4096, 2048 for an MPU-6050 at ±2, 4, 8, 16 g.
     #[arg(long, value_name = "LSB", default_value = "4096")]
     accel_lsb: String,
-    /// Length of the rest at the start of the log, in seconds. The mean rate during the rest is the bias; motion during the rest
-    /// is an error. 0 means none.
+    /// Duration of the rest at the start of the log, in seconds. The mean rate during the rest is the bias; motion during the
+    /// rest is an error. 0 disables the bias measurement.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     still: Option<String>,
     /// Disable tilt correction by the accelerometer.
@@ -61,7 +61,7 @@ pub struct ReplayArguments {
     transfer: TransferArguments,
 }
 
-/// The summary of a replay, as the command prints it.
+/// The summary of a replay, in the form that the command prints.
 #[derive(Serialize)]
 struct Summary<'a> {
     log: &'a Path,
@@ -73,14 +73,14 @@ struct Summary<'a> {
     gaps: u64,
     saturated: u64,
     rejected: u64,
-    /// Mean number of cycles that a board takes for a sample.
+    /// Mean number of cycles of a sample on a board.
     #[serde(skip_serializing_if = "Option::is_none")]
     cycles_per_sample: Option<u64>,
     calibration: Option<Calibrated>,
     end: Attitude,
 }
 
-/// The result of a calibration, as the command prints it: bias and deviation in LSB of the gyroscope, drift in °/h.
+/// The result of a calibration, in the form that the command prints: bias and deviation in LSB of the gyroscope, drift in °/h.
 #[derive(Serialize)]
 struct Calibrated {
     samples: u32,
@@ -175,7 +175,7 @@ impl ReplayArguments {
                 Stage::Replay => replay,
             };
             if now != stage {
-                // Resets both bars, so that only the bar of the new stage is shown.
+                // Resets both progress bars, so that only the bar of the new stage is shown.
                 bars.iter().for_each(Step::reset);
                 stage = now;
             }

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// Stream samples: t_us,ax,ay,az,gx,gy,gz in raw counts.
 ///
-/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them.
+/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 samples a second.
 #[derive(Args)]
 pub struct StreamArguments {
     /// Number of samples to stream.
@@ -88,7 +88,8 @@ impl CalibrateArguments {
 
 /// Record a board's samples to a log for `glint imu replay`.
 ///
-/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 of them, each with its time stamp.
+/// The sensor takes 1,000 samples a second. A serial line at 115,200 baud carries about 250 samples a second, with their time
+/// stamps.
 #[derive(Args)]
 pub struct RecordArguments {
     /// Log to write.

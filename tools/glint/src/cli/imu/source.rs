@@ -17,7 +17,8 @@ use std::path::{Path, PathBuf};
 pub struct SensorArguments {
     #[command(flatten)]
     board: BoardChoice,
-    /// Motion of the virtual sensor: a log in raw counts, from the board's start [default: at rest, with noise and bias].
+    /// Motion of the virtual sensor: a log in raw counts, which begins at the board's start [default: at rest, with noise and
+    /// bias].
     #[arg(long, value_name = "LOG.csv")]
     sensor: Option<PathBuf>,
     #[command(flatten)]
@@ -25,12 +26,12 @@ pub struct SensorArguments {
 }
 
 impl SensorArguments {
-    /// The log with the virtual sensor's motion, if given.
+    /// The motion of the virtual sensor from the log, if given.
     pub fn file(&self) -> Option<&Path> {
         self.sensor.as_deref()
     }
 
-    /// Opens the board and waits for its sensor's first sample.
+    /// Opens the board and waits for the first sample of its sensor.
     pub fn open(&self) -> anyhow::Result<Box<dyn Board>> {
         let name = self.board.name()?;
         anyhow::ensure!(
@@ -63,7 +64,7 @@ impl SensorArguments {
     }
 }
 
-/// Reads and parses the log at `path`. A warning names the columns that are ignored.
+/// Reads and parses the log at `path`. A warning names the ignored columns.
 pub fn read_log(path: &Path) -> anyhow::Result<Vec<Entry>> {
     let text = read_file(path)?;
     let log = log::parse(&text).map_err(|error| error.in_path(path))?;
