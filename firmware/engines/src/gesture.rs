@@ -1,4 +1,4 @@
-//! The gesture engine from the control of the hand, and the set-up of the image sensor at its wires.
+//! Settings of the gesture engine for gesture control, and set-up of the image sensor over the engine's I2C wires.
 
 use embedded_hal::delay::DelayNs;
 use glint_core::gesture::{Region, Setting, Statistics, Window};
@@ -10,7 +10,7 @@ use glint_i2c::{NoAcknowledge, TwoWires};
 /// Reason why the image sensor cannot be set up.
 pub type SetUpError = Error<NoAcknowledge>;
 
-/// Time in ms after the end of a reset in which a chip may not answer: that of the OV5640, which is the longest.
+/// Longest time in ms after the end of a reset in which a chip may not answer: that of the OV5640.
 const RESET_TIME: u32 = 20;
 
 type Sensor<'a> = ImageSensor<TwoWires<&'a mut GestureEngine, Waiting>>;
@@ -19,18 +19,18 @@ fn sensor(engine: &mut GestureEngine, clock: Clock) -> Sensor<'_> {
     ImageSensor::new(TwoWires::new(engine, Waiting(clock)))
 }
 
-/// Resets the image sensor, sets it up for a size, and takes its frames from the next VSYNC on. This takes some 50 ms, in which
-/// the CPU does nothing else but interrupts.
+/// Resets the image sensor, sets it up for a size, and starts the engine, which takes frames from the next VSYNC on. Takes some 50 ms, in
+/// which the CPU serves only interrupts.
 ///
 /// # Errors
-/// The chip is absent, unknown, or does not accept its set-up; it is then turned off.
+/// The chip is absent or unknown, or does not accept its set-up; its power is then off.
 pub fn start(
     engine: &mut GestureEngine,
     size: FrameSize,
     mut clock: Clock,
 ) -> Result<Model, SetUpError> {
     engine.set_power(false);
-    // Longer than the shortest reset of all chips.
+    // Longer than the minimum length of a reset of every supported chip.
     clock.delay_ms(1);
     engine.set_power(true);
     clock.delay_ms(RESET_TIME);
@@ -42,7 +42,7 @@ pub fn start(
     started
 }
 
-/// Whether the image sensor that [`start`] found still has its settings. This takes some 5 ms; without a sensor less than 1 ms.
+/// Whether the image sensor that [`start`] found still has its settings. Takes some 5 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
 /// The chip does not answer.
@@ -55,10 +55,10 @@ pub fn keeps(
     block_on(sensor(engine, clock).keeps(model, size))
 }
 
-/// Finds an image sensor after another one was unplugged. This takes some 2 ms; without a sensor less than 1 ms.
+/// Finds an image sensor after another one was unplugged. Takes some 2 ms, or less than 1 ms without a sensor.
 ///
 /// # Errors
-/// There is no known chip.
+/// No known chip answers.
 pub fn find(engine: &mut GestureEngine, clock: Clock) -> Result<Model, SetUpError> {
     engine.set_power(true);
     block_on(sensor(engine, clock).find())
@@ -69,13 +69,13 @@ pub fn set_windows(engine: &mut GestureEngine, windows: [Window; 2]) {
     engine.set_windows(windows.map(|window| [window.lower, window.upper]));
 }
 
-/// Sets what the engine counts.
+/// Sets the pixels that the engine counts.
 pub fn set_gate(engine: &mut GestureEngine, setting: &Setting) {
     let Region { first, last } = setting.region;
     engine.set_gate([first, last], setting.least_run);
 }
 
-/// The statistics of the last whole frame; `None` if the engine replaced them meanwhile.
+/// The statistics of the last whole frame; `None` if the engine replaced them during the reading.
 #[must_use]
 pub fn statistics(engine: &GestureEngine) -> Option<Statistics> {
     let counts = engine.counts()?;

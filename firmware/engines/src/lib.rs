@@ -1,5 +1,5 @@
-//! What ties the drivers of the engines to frames: they take registers and numbers, and get them here from the model's frame constants
-//! and from the control of the hand.
+//! Adapters from the model to the drivers of the engines: they convert frame constants and the settings of gesture control to register
+//! values.
 
 #![no_std]
 #![forbid(unsafe_code)]

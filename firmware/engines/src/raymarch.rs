@@ -1,4 +1,4 @@
-//! The raymarcher's registers from the frame constants of a field.
+//! Converts the frame constants of a field to the raymarcher's registers.
 
 use core::fmt;
 
@@ -13,7 +13,7 @@ use glint_model::raymarch::{Blend, FieldSetup, FieldStats, Lights, Palette};
 /// A feature that a frame needs and this build of the raymarcher lacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Missing {
-    /// Sponges deeper than this number of levels, which is the limit of this build; 0 if the build has no sponges.
+    /// Sponges of more than this number of levels, the limit of this build; 0 if the build has no sponges.
     Levels(u8),
     /// Flat fields (fields with plane faces) of this kind.
     Flat(Kind),
@@ -93,12 +93,12 @@ pub const fn tables(palette: &Palette) -> Tables<'_> {
     [&palette.fog, &palette.occlusion]
 }
 
-/// Enables the field in every following raster pass, as [`Raymarcher::set_field`]. With `has_tables`, the raymarcher is known to hold the
+/// Enables the field in every following raster pass, as [`Raymarcher::set_field`]. With `has_tables`, the raymarcher already holds the
 /// tables of the palette, so they are neither compared nor written.
 ///
 /// # Errors
 /// The missing feature; all registers are then unchanged.
-// Not inlined: the code of a frame without a field then takes fewer lines of the instruction cache.
+// Not inlined, so that the code for a frame without a field takes fewer lines of the instruction cache.
 #[inline(never)]
 pub fn set_field(
     raymarcher: &mut Raymarcher,
@@ -172,7 +172,7 @@ pub fn set_field(
     Ok(())
 }
 
-/// Writes the constants of the spheres, of their fillet with the flat solid, and of the light on them.
+/// Writes the constants of the spheres, their fillet with the flat solid, and their lights.
 fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, lights: &Lights) {
     let write = |entry, value| raymarcher.set_constant(entry, value);
     let numbers = |x: [i32; 3]| x.map(|x| x as u32 & 0xFF_FFFF);
@@ -196,8 +196,7 @@ fn set_spheres(raymarcher: &Raymarcher, spheres: &FixedSpheres, blend: &Blend, l
     }
 }
 
-/// The kind of a flat field as a register value. `Kind::ALL` has every kind of the model, so the default `Menger` is
-/// never used.
+/// The kind of a flat field as a register value. `Kind::ALL` contains every kind of the model, so the default `Menger` is never used.
 fn kind(constants: &FlatConstants) -> Kind {
     let kind = Kind::ALL.get(usize::from(constants.kind)).copied();
     kind.unwrap_or(Kind::Menger)

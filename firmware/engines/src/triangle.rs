@@ -1,4 +1,4 @@
-//! Geometry passes from the frame constants of meshes.
+//! Converts the frame constants of meshes to geometry passes.
 
 use glint_core::camera::Projection;
 use glint_core::mesh::{Mesh, Rgb565};
@@ -15,17 +15,17 @@ pub struct MeshPass<'a> {
     pub size: Size,
     /// The frame constants of the mesh, for a picture of this size.
     pub frame: &'a MeshSetup,
-    /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. Its direction is in `frame`.
-    /// There must be no ambient light with smooth shading and without `cull`.
+    /// Colours of the light on the mesh; `None` for white light at the camera, without ambient light. The direction of the light is in
+    /// `frame`. With smooth shading and without `cull`, ambient light is not allowed.
     pub light: Option<&'a MeshLight>,
-    /// Whether back faces are left out.
+    /// Whether back faces are culled.
     pub cull: bool,
     /// Source of the colours; `Flat` if the engine has no smooth shading.
     pub shading: Shading,
-    /// Colour instead of those of the mesh.
+    /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
-    /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
-    /// same colours of the light.
+    /// Empty memory for the output of the pass; `None` to append to the output of the previous pass, whose picture size and light colours
+    /// must be equal.
     pub lists: Option<Lists>,
 }
 
@@ -71,7 +71,7 @@ pub fn shading(engine: &TriangleEngine) -> Shading {
     }
 }
 
-/// A size of a picture as a register value.
+/// The register value for a picture size.
 #[must_use]
 pub const fn size_code(size: Size) -> triangle::Size {
     match size {

@@ -1,4 +1,4 @@
-//! Frames that a build of the raymarcher cannot draw. The emulated board's tests compare all others with the model.
+//! Tests of frames that a build of the raymarcher cannot draw. The emulated board's tests compare all other frames with the model.
 
 use glint_core::camera::View;
 use glint_core::field::Field;

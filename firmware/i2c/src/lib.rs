@@ -1,5 +1,5 @@
-//! What drivers of buses and of devices share beyond `embedded-hal`: [`PeriodicI2c`], a bus that repeats a read, and [`TwoWires`], a
-//! bus of two wires that software moves.
+//! Interfaces of bus and device drivers that `embedded-hal` lacks: [`PeriodicI2c`], a bus that repeats a read, and [`TwoWires`], a
+//! bit-banged bus.
 #![no_std]
 #![forbid(unsafe_code)]
 

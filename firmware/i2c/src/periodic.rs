@@ -1,4 +1,4 @@
-//! Periodic I2C reads: the interface between a bus that repeats a transaction and the drivers of sensors.
+//! Periodic I2C reads: the interface between the drivers of sensors and a bus that repeats a read.
 
 use embedded_hal_async::i2c::I2c;
 
@@ -17,7 +17,7 @@ pub struct PeriodicRead {
     pub batch: u8,
 }
 
-/// A bus that can repeat a read periodically, until another transaction or an error ends the repetition.
+/// A bus that repeats a read periodically until another transaction or an error.
 pub trait PeriodicI2c: I2c {
     /// Begins to repeat `read`; the first read starts one period from now.
     ///
@@ -28,6 +28,6 @@ pub trait PeriodicI2c: I2c {
     /// Waits for the bytes of the next read, fills `bytes` with them, and returns the time at which the read started, in µs.
     ///
     /// # Errors
-    /// The bus reports an error, no read is being repeated, or the queue overflowed because reads were not taken in time.
+    /// The bus reports an error, no read is being repeated, or the queue of reads overflowed.
     fn next(&mut self, bytes: &mut [u8]) -> impl Future<Output = Result<u64, Self::Error>>;
 }

@@ -1,4 +1,4 @@
-//! An I2C bus of two wires that software moves.
+//! A bit-banged I2C bus.
 
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::i2c::{
@@ -14,7 +14,7 @@ pub trait Wires {
     fn sda(&mut self) -> bool;
 }
 
-/// A quarter of a clock in ns: 100 kHz, which every chip supports.
+/// A quarter of the clock period of SCL in ns, for 100 kHz, which every chip supports.
 const QUARTER: u32 = 2_500;
 
 /// A device did not acknowledge its address or a byte of data.
@@ -38,19 +38,19 @@ impl embedded_hal_async::i2c::Error for NoAcknowledge {
     }
 }
 
-/// An I2C bus on two [`Wires`], at no more than 100 kHz. Devices must not stretch the clock; the chips of SCCB never do.
+/// A bit-banged I2C bus on two [`Wires`], of at most 100 kHz. Devices must not stretch the clock; SCCB chips never do.
 pub struct TwoWires<W, D> {
     wires: W,
     delay: D,
 }
 
 impl<W: Wires, D: DelayNs> TwoWires<W, D> {
-    /// Makes a bus; `delay` sets its pace.
+    /// Makes a bus; `delay` times its clock.
     pub const fn new(wires: W, delay: D) -> Self {
         Self { wires, delay }
     }
 
-    /// Sets the wires for a quarter of a clock.
+    /// Sets the wires and waits a quarter of a clock period.
     async fn set(&mut self, scl: bool, sda: bool) {
         self.wires.set(scl, sda);
         self.delay.delay_ns(QUARTER).await;
@@ -92,7 +92,7 @@ impl<W: Wires, D: DelayNs> TwoWires<W, D> {
         Ok(())
     }
 
-    /// Receives a byte, and acknowledges it unless it is the last one.
+    /// Receives a byte, and acknowledges it unless it is the last byte.
     async fn receive(&mut self, is_last: bool) -> u8 {
         let mut byte = 0;
         for _ in 0..8 {
@@ -123,7 +123,7 @@ impl<W: Wires, D: DelayNs> TwoWires<W, D> {
                     }
                 }
                 Operation::Read(bytes) => {
-                    // The device sends on into the next operation if this is a read too.
+                    // If the next operation is also a read, the device continues to send.
                     let ends = !matches!(operations.peek(), Some(Operation::Read(_)));
                     let length = bytes.len();
                     for (place, byte) in bytes.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! The bus behind the registers: the CPU's bus on the board, a model on a host.
+//! The bus of the registers: the CPU's bus on the board, a model on a host.
 
 #[cfg(target_os = "none")]
 pub(crate) use board::{read, write};
@@ -14,7 +14,7 @@ mod board {
     /// Reads the word at `address`.
     ///
     /// # Safety
-    /// `address` must be that of a register.
+    /// `address` must be the address of a register.
     #[inline]
     pub unsafe fn read(address: usize) -> u32 {
         // SAFETY: the caller guarantees the address of a register, which is aligned to a word.
@@ -24,7 +24,7 @@ mod board {
     /// Writes the word at `address`.
     ///
     /// # Safety
-    /// `address` must be that of a writable register.
+    /// `address` must be the address of a writable register.
     #[inline]
     pub unsafe fn write(address: usize, value: u32) {
         // SAFETY: the caller guarantees the address of a register, which is aligned to a word.
@@ -46,7 +46,7 @@ mod host {
         fn write(&mut self, address: usize, value: u32);
     }
 
-    /// An empty bus: every read gives 0, as in the address window of an absent block.
+    /// An empty bus: every read returns 0, as in the address window of an absent block.
     struct Empty;
 
     impl Bus for Empty {

@@ -3,7 +3,7 @@
 use core::arch::asm;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// The interrupt lines that reach the CPU, as [`Interrupt::bit`](crate::Interrupt::bit)s: its CSR 0xBC0.
+/// The mask of enabled interrupt lines, with one [`Interrupt::bit`](crate::Interrupt::bit) per line: the CPU's CSR 0xBC0.
 #[inline]
 #[must_use]
 pub fn interrupt_mask() -> u32 {
@@ -13,7 +13,7 @@ pub fn interrupt_mask() -> u32 {
     mask
 }
 
-/// Enables exactly the interrupt lines of `mask`.
+/// Enables the interrupt lines in `mask` and disables all others.
 ///
 /// # Safety
 /// No critical section may rely on the old mask, and the handlers of the enabled lines must be ready.
@@ -93,7 +93,7 @@ pub fn cycles() -> u64 {
     }
 }
 
-/// The low word of [`cycles`]: enough for spans below 2^32 cycles (52 s at 81.25 MHz), and faster.
+/// The low word of [`cycles`]: for intervals below 2^32 cycles (52 s at 81.25 MHz); faster to read.
 #[inline]
 #[must_use]
 pub fn cycles_low() -> u32 {

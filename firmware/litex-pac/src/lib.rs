@@ -4,9 +4,8 @@
 //! module `cpu`, on the board only, is written by hand, because the CPU's registers are not part of that description.
 //!
 //! A peripheral is a zero-sized handle that exists once ([`Peripherals::take`]), and its methods name its
-//! registers. A [`Register`](register::Register) is read or written as a number or as a type with a getter and a
-//! `with_…` setter for each field. A field with named values has an enumeration. `Counters` of a block holds a
-//! reading of all its free-running counters.
+//! registers. The value of a [`Register`](register::Register) is a number, or a type with a getter and a `with_…` setter for each field. A
+//! field with named values is an enumeration. The `Counters` of a block are a snapshot of all its free-running counters.
 //!
 //! ```
 //! use litex_pac::{bus, uart};
@@ -24,7 +23,7 @@
 //! ```
 //!
 //! On a host the registers do not exist: [`bus::connect`] connects a model at the same addresses, so that tests
-//! run the same drivers. `recording` has a simple one.
+//! run the same drivers. The module `recording` has a simple model.
 //!
 //! # Limits
 //! A register of two words is read word by word. The result is consistent for counters only ([`register::WideRegister::read`]).

@@ -54,7 +54,7 @@ impl<T: Value, A> Register<T, A> {
     /// The register at `address`.
     ///
     /// # Safety
-    /// `address` must be that of a register that allows `A`; reading the register must not affect memory.
+    /// `address` must be the address of a register that allows `A`; reading the register must not affect memory.
     #[must_use]
     pub const unsafe fn at(address: usize) -> Self {
         Self {
@@ -103,7 +103,7 @@ impl<A> WideRegister<A> {
     /// The register whose high word is at `address`.
     ///
     /// # Safety
-    /// `address` must be that of a register of two words that allows `A`; reading the register must not affect memory.
+    /// `address` must be the address of a register of two words that allows `A`; reading the register must not affect memory.
     #[must_use]
     pub const unsafe fn at(address: usize) -> Self {
         Self {
@@ -112,8 +112,7 @@ impl<A> WideRegister<A> {
         }
     }
 
-    /// Reads both words, and repeats the reading while the high word changes, so that the value of
-    /// a counter is consistent.
+    /// Reads both words, again if the high word has changed, so that the value of a counter is consistent.
     #[inline]
     #[must_use]
     pub fn read(&self) -> u64 {
@@ -158,7 +157,7 @@ mod tests {
     #[test]
     fn a_wide_counter_is_consistent() {
         bus::connect(Carrying(0xffff_ffff));
-        // SAFETY: the model that is connected above answers at this address.
+        // SAFETY: the model connected above answers at this address.
         let counter = unsafe { WideRegister::<ReadOnly>::at(0x100) };
         assert_eq!(counter.read(), 0x1_0000_0002);
     }
@@ -173,7 +172,7 @@ mod tests {
     #[test]
     fn modify_reads_then_writes() {
         bus::connect(Carrying(40));
-        // SAFETY: the model that is connected above answers at this address.
+        // SAFETY: the model connected above answers at this address.
         let register = unsafe { Register::<u16, ReadWrite>::at(4) };
         register.modify(|value| value + 2);
         assert_eq!(register.read(), 42);

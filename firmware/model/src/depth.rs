@@ -1,9 +1,9 @@
-//! The scale between depths and depth codes.
+//! The scale that converts depths to depth codes.
 
 use glint_core::fixed::Q32_32;
 
-/// The scale K of depth codes, as `mantissa`·2^`exponent`: in perspective a surface at depth z along the camera's axis n has the
-/// code K/z, and a code stands for the depth K/code (docs/formats/camera.md, "Frame constants").
+/// The scale K of depth codes, as `mantissa`·2^`exponent`: in perspective, a surface at depth z along the camera's forward axis n has the
+/// code K/z (docs/formats/camera.md, "Frame constants").
 ///
 /// In orthographic projection codes are linear: a code is 2^(`exponent` − 19) world units (docs/formats/camera.md, "Orthographic
 /// projection").
@@ -13,20 +13,20 @@ pub struct DepthScale {
     pub mantissa: u32,
     /// Exponent ke, −5 to 5; in orthographic projection −6 to 10.
     pub exponent: i32,
-    /// In orthographic projection, the depth of the code 2^18, 37 fraction bits.
+    /// In orthographic projection, the depth whose code is 2^18, with 37 fraction bits.
     pub origin: Option<i64>,
 }
 
-/// Number of codes that an orthographic frame has for its range of depths: the four highest and the four lowest ones are beyond it.
+/// Number of codes for the depth range of an orthographic frame: all but the four highest and the four lowest codes.
 const LINEAR_CODES: i64 = (1 << 18) - 8;
 
 impl DepthScale {
     /// Returns the scale for a mesh with the given `radius` (14 fraction bits). `origin` is the depth of the world's
     /// origin and `near` the depth of the near plane, each with 37 fraction bits.
     ///
-    /// The scale is (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the
-    /// mesh's bounding sphere about the origin if the sphere begins beyond the near plane. The axis n may be 10^−4
-    /// longer than 1, so the radius is enlarged by a part of 2^−13.
+    /// The scale is (2^18 − 4) times the smallest possible depth of the mesh: the depth of the near plane, or of the nearest point of the
+    /// mesh's bounding sphere about the origin if that is farther. The length of the axis n may be 1 + 10^−4, so the radius is multiplied
+    /// by 1 + 2^−13.
     pub(crate) fn new(origin: i64, near: i64, radius: u32) -> Self {
         Self::from_nearest(near.max(origin - Self::reach(radius)))
     }
@@ -37,18 +37,17 @@ impl DepthScale {
         (radius << 23) + (radius << 10)
     }
 
-    /// Returns the scale (2^18 − 4)·`nearest`, where `nearest` is the smallest depth in a frame: in (0, 64], with 37
-    /// fraction bits.
+    /// Returns the scale of a frame whose smallest depth is `nearest`, in (0, 64], with 37 fraction bits: (2^18 − 4)·`nearest`.
     pub(crate) fn from_nearest(nearest: i64) -> Self {
         // `nearest` is at most 2^43, so the product is below 2^61.
         let scale = nearest as u64 * ((1 << 18) - 4);
         Self::cut(scale, -37)
     }
 
-    /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits: the smallest
-    /// power of two, from 2^(`least` − 19) world units on, with a code for each depth. `nearest` has the code 2^18 − 4.
+    /// Returns the scale of an orthographic frame for depths from `nearest` to `farthest`, with 37 fraction bits: the smallest power of
+    /// two, at least 2^(`least` − 19) world units per code, with which every depth has a code. `nearest` has the code 2^18 − 4.
     pub(crate) fn linear(nearest: i64, farthest: i64, least: i32) -> Self {
-        // A code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at 10 or before.
+        // A code is 2^(18 + ke) units of a depth. Depths differ by less than 2^46, so the loop ends at an exponent of at most 10.
         let mut exponent = least;
         while LINEAR_CODES << (18 + exponent) < farthest - nearest && exponent < 10 {
             exponent += 1;
@@ -62,7 +61,7 @@ impl DepthScale {
 
     /// Returns this scale times `scale`, a number above 0, times 2^`shift`, with the mantissa truncated to 17 bits.
     pub(crate) fn times(&self, scale: Q32_32, shift: u32) -> Self {
-        // Multiplies the mantissa of 17 bits by 40 bits of `scale`, of which 24 are fraction bits.
+        // Multiplies the mantissa (17 bits) by `scale` truncated to 40 bits, of which 24 are fraction bits.
         let product = u64::from(self.mantissa) * (scale.to_bits() as u64 >> 8);
         Self::cut(product, self.exponent - 24 + shift as i32)
     }
@@ -77,8 +76,7 @@ impl DepthScale {
         }
     }
 
-    /// Converts a depth code to the depth along the camera's axis n, to nearest; `None` for code 0, which
-    /// marks an empty pixel.
+    /// Converts a depth code to the depth along the camera's forward axis n, to nearest; `None` for code 0, an empty pixel.
     pub fn distance(&self, code: u32) -> Option<Q32_32> {
         if let (Some(origin), 1..) = (self.origin, code) {
             let below = (1 << 18) - i64::from(code);

@@ -1,6 +1,7 @@
-//! Edges of meshes as lines, each in front of its own faces by a bias that follows from their slopes (docs/formats/line.md, "Lines").
+//! Edges of meshes as lines, each moved in front of its adjacent faces by a depth bias computed from their slopes (docs/formats/line.md,
+//! "Lines").
 //!
-//! [`EdgeList`] finds each edge of a mesh once, in memory of the caller, and makes the segments of a frame.
+//! [`EdgeList`] lists each edge of a mesh once, in memory of the caller, and makes the segments of a frame.
 
 mod list;
 mod table;
@@ -18,8 +19,8 @@ pub use list::EdgeList;
 /// The colour of the edges: white.
 pub const EDGE_COLOUR: Rgb565 = Rgb565::WHITE;
 
-/// The biases, in depth codes, that keep lines at the border of a face in front of it: of a line with a pixel in each row, and of one
-/// with a pixel in each column. Those of no face are 0.
+/// The biases, in depth codes, that keep lines at the border of a face in front of the face: for a line with a pixel in each row, and for
+/// a line with a pixel in each column. Without a face they are 0.
 type Biases = [u16; 2];
 
 /// Counts of the edges of a frame.
@@ -27,7 +28,7 @@ type Biases = [u16; 2];
 pub struct EdgeStats {
     /// Edges of the mesh.
     pub edges: u32,
-    /// Edges with a part in the volume of the frame, which are drawn as lines.
+    /// Edges drawn as lines, because a part is in the view volume of the frame.
     pub drawn: u32,
 }
 
@@ -42,8 +43,7 @@ impl EdgeStats {
 /// A corner of a face, or an end of an edge: its position in the mesh, and the vertex after the vertex stage.
 type Corner<'a> = ([i16; 3], &'a Projected);
 
-/// The biases for a face with these corners; those of no face if no part of it has an area on the screen, or for a back face with
-/// `cull`.
+/// The biases for a face with these corners; 0 for a face without area on the screen, and with `cull` for a back face.
 fn face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
     let [
         (_, Projected::Visible(a)),
@@ -61,7 +61,7 @@ fn face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases {
     biases([a, b, c], area, nearest - farthest)
 }
 
-/// The biases for a face that may leave the volume of the frame.
+/// The biases for a face that may leave the view volume of the frame.
 ///
 /// Not inlined, so that other faces do not load this code into the instruction cache.
 #[inline(never)]
@@ -87,25 +87,25 @@ fn clipped_face(frame: &MeshSetup, corners: &[Corner; 3], cull: bool) -> Biases 
     biases(part, area, range)
 }
 
-/// Whether a face with this doubled area is drawn. A front face is counter-clockwise on the screen.
+/// Whether a face with this doubled signed area is drawn. A front face is counter-clockwise on the screen.
 const fn is_drawn(frame: &MeshSetup, area: i64, cull: bool) -> bool {
     let is_back = (area > 0) != frame.mirrors;
     area != 0 && !(cull && is_back)
 }
 
-/// The biases for a face, by three of its vertices, the doubled area of their triangle, and the range of the depths of all its vertices.
+/// The biases for a face, from three of its vertices, the doubled area of their triangle, and the depth range of all vertices of the face.
 ///
-/// A pixel of a line is up to half a pixel away from the edge, along its minor axis. There the face is nearer by at most half its slope,
-/// and by at most the difference of its depths; the roundings of both depths add 1.52 codes.
+/// A pixel of a line is up to half a pixel away from the edge, along its minor axis. There the face is nearer than the edge by at most
+/// half its slope, and by at most its depth range; rounding of both depths adds 1.52 codes.
 #[inline(never)]
 fn biases([a, b, c]: [&ScreenVertex; 3], area: i64, range: u32) -> Biases {
-    // Depths have 24 bits, so their differences fit.
+    // Depths have 24 bits, so their differences fit 32 bits.
     let w = [b.w as i32 - a.w as i32, c.w as i32 - a.w as i32];
     let bias = |along: [i32; 2]| {
         // Depths are in 2^-6 codes, distances in 2^-8 pixels, and the area in 2^-16 square pixels.
         let twice = 4 * determinant(w, along).unsigned_abs();
         let double = 2 * area.unsigned_abs();
-        // Rounded up. The soft core divides 64 bits by a function, which `div_ceil` would call twice.
+        // Rounded up. The soft core divides 64-bit numbers by a library function, which `div_ceil` would call twice.
         let quotient = twice / double;
         let half_slope = quotient + u64::from(quotient * double < twice);
         half_slope.min(u64::from(range.div_ceil(64))) + 2
@@ -123,8 +123,7 @@ fn determinant([a, b]: [i32; 2], [c, d]: [i32; 2]) -> i64 {
     i64::from(a) * i64::from(d) - i64::from(b) * i64::from(c)
 }
 
-/// The line of an edge; `None` if the edge is outside of the volume of the frame. `biases` are the largest ones of the faces at the
-/// edge.
+/// The line of an edge; `None` if the edge is outside of the view volume. `biases` are the largest biases of the faces at the edge.
 fn segment(frame: &MeshSetup, ends: [&Corner; 2], biases: Biases) -> Option<Segment> {
     let [a, b] = if let [(_, Projected::Visible(a)), (_, Projected::Visible(b))] = ends {
         [*a, *b]
@@ -142,7 +141,7 @@ fn segment(frame: &MeshSetup, ends: [&Corner; 2], biases: Biases) -> Option<Segm
     })
 }
 
-/// The ends of the part of an edge in the volume of the frame, on the screen.
+/// The ends on the screen of the part of an edge that is in the view volume.
 ///
 /// Not inlined, so that other edges do not load this code into the instruction cache.
 #[inline(never)]

@@ -16,11 +16,11 @@ pub const SIZES: [(u32, u32); 3] = {
     ]
 };
 
-/// Largest distance of the eye from the origin in a frame with a mesh, in world units. It bounds the translation in the
-/// mesh's frame constants, and thereby the bit widths of the vertex stage.
+/// Largest distance of the eye from the origin in a frame with a mesh, in world units. This bounds the translation in the mesh's frame
+/// constants, and thereby the bit widths of the vertex stage.
 pub const MAX_EYE: u32 = 8;
 
-/// Smallest and largest half width of the camera in a frame with a field, in world units. It bounds the directions of rays.
+/// Smallest and largest half width of the camera in a frame with a field, in world units. This bounds the directions of rays.
 pub const FIELD_HALF_WIDTH: [U8_28; 2] = [U8_28::lit("0.05"), U8_28::lit("4")];
 
 /// One of the buffers of a picture.
@@ -48,10 +48,10 @@ pub enum RenderError {
         buffer: Buffer,
         /// Number of pixels of the picture.
         expected: usize,
-        /// Elements of the buffer.
+        /// Number of elements of the buffer.
         found: usize,
     },
-    /// The scratch memory has room for fewer vertices than the largest chunk of the mesh.
+    /// The scratch memory holds fewer vertices than the largest chunk of the mesh has.
     Scratch {
         /// Number of vertices of the largest chunk.
         expected: usize,
@@ -65,7 +65,7 @@ pub enum RenderError {
     },
     /// The eye of a frame with a mesh is farther than [`MAX_EYE`] from the origin.
     Eye([Q32_32; 3]),
-    /// The near plane of a frame with a mesh is nearer than the half width, the width of the picture and the size of an object allow.
+    /// The near plane of a frame with a mesh is too near for the half width, the width of the picture and the size of an object.
     Near {
         /// Distance of the near plane.
         near: U4_28,
@@ -74,7 +74,7 @@ pub enum RenderError {
     },
     /// The far plane is at the near plane or nearer.
     Far(U8_28),
-    /// The picture of an orthographic camera is narrower than its width in pixels and the size of an object allow.
+    /// The view of an orthographic camera is too narrow for the picture's width in pixels and the size of an object.
     Width {
         /// Width in world units.
         width: U8_28,
@@ -83,11 +83,11 @@ pub enum RenderError {
     },
     /// The camera in a frame with a field, or with two eyes, is orthographic.
     Orthographic,
-    /// The half width of the camera in a frame with a field is outside the range that a field allows.
+    /// The half width of the camera is out of range for a field.
     HalfWidth(U8_28),
     /// A frame has more objects than [`MAX_OBJECTS`].
     Objects(usize),
-    /// Two eyes were requested for a wireframe, which has an eye of its own, or for a frame of which each eye's is drawn instead.
+    /// Two eyes were requested for a wireframe, which has its own eye, or for a frame that must be drawn as one frame per eye.
     Stereo,
 }
 

@@ -1,7 +1,7 @@
 //! A frame: the description of one picture, its constants, and its drawing by the model.
 //!
-//! The CPU backend, the gateware's driver and the host share these types. [`Frame`] is the description, [`FrameConstants`]
-//! are computed from the description once, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
+//! The CPU backend, the gateware backend and the host share these types. [`Frame`] is the description, [`FrameConstants`] are computed
+//! once per frame, and [`Frame::draw`] draws the picture in integers, bit for bit as the gateware does.
 
 mod constants;
 mod description;
@@ -50,7 +50,7 @@ impl Frame<'_> {
         Ok(constants)
     }
 
-    /// Number of vertices for which the scratch memory of [`draw`](Self::draw) needs room.
+    /// Number of vertices that the scratch memory of [`draw`](Self::draw) must hold.
     pub fn scratch_vertices(&self) -> usize {
         let meshes = self.subject.meshes();
         let chunks = meshes.map(|subject| subject.mesh.largest_chunk());
@@ -71,8 +71,8 @@ impl Frame<'_> {
         })
     }
 
-    /// Makes the triangles of all meshes of the frame from the frame's `constants`, in the order in which they are drawn, and calls `emit`
-    /// with each and its setup. `scratch` is memory for projected vertices. The counts of pixels in the result are 0.
+    /// Makes the triangles of all meshes of the frame from the frame's `constants`, in drawing order, and calls `emit` with each triangle
+    /// and its setup. `scratch` is memory for projected vertices. The pixel counts in the result are 0.
     ///
     /// # Errors
     /// [`RenderError`] for scratch memory that is too small.

@@ -1,4 +1,4 @@
-//! The memory that a picture is drawn into: colours and depth codes.
+//! Frame buffers: the colours and depth codes of a picture.
 
 use crate::error::{Buffer, RenderError, SIZES};
 
@@ -39,7 +39,7 @@ impl FrameBuffer<'_> {
 
     /// Fills the picture with the colour `clear` (RGB565) and the depth codes with 0.
     pub(crate) fn clear(&mut self, clear: u16) {
-        // A fill by the constant 0 becomes a `memset` of whole words.
+        // A fill with the constant 0 compiles to a `memset` of whole words.
         match clear {
             0 => self.colour.fill(0),
             clear => self.colour.fill(clear),

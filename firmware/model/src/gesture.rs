@@ -1,8 +1,8 @@
 //! Bit-exact model of the gesture engine: from the pins of an image sensor to the statistics of its frames (docs/formats/gesture.md,
 //! "Gestures").
 //!
-//! [`channels`] converts a colour, and [`Settings`] says which pixels are marked. [`Sums`] adds up the marked pixels of a line that
-//! count, and [`Engine`] takes the states of the pins, one for each period of the sensor's clock.
+//! [`channels`] converts a colour, and [`Settings`] selects the marked pixels. [`Sums`] accumulates the counted pixels of a line, and
+//! [`Engine`] processes the state of the pins in each period of the sensor's clock.
 
 mod engine;
 mod snapshot;
@@ -31,7 +31,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All channels, in the order of their numbers in the registers.
+    /// All channels, in the order of their register values.
     pub const ALL: [Self; 6] = [
         Self::Red,
         Self::Green,
@@ -44,9 +44,8 @@ impl Channel {
 
 /// The channels of a colour, in the order of [`Channel::ALL`].
 ///
-/// Luma and chroma are those of ITU-R BT.601 at full range, with factors of 10 fraction bits: the nearest integer, a tie rounds
-/// down. All of them fit in 8 bits, because the factors of luma add up to 1 and those of chroma to 0, and a chroma's positive
-/// factor is 1/2.
+/// Full-range luma and chroma of ITU-R BT.601, with factors of 10 fraction bits, rounded to nearest, ties down. All channels fit in 8
+/// bits, because the factors of luma add up to 1 and those of chroma to 0, and a chroma's positive factor is 1/2.
 #[must_use]
 pub const fn channels(colour: Rgb565) -> [u8; 6] {
     let [r, g, b] = colour.to_rgb888();
@@ -64,9 +63,9 @@ pub struct Settings {
     pub size: [u16; 2],
     /// A pixel is marked if both channels are in their windows.
     pub windows: [(Channel, Window); 2],
-    /// The region in which pixels count.
+    /// The region in which pixels are counted.
     pub region: Region,
-    /// A marked pixel counts if it is one of at least this many in a row, in the region; 0 is 1, and at most 15.
+    /// Minimum length of a run of marked pixels in the region that is counted, at most 15; 0 acts as 1.
     pub least_run: u8,
 }
 
@@ -83,21 +82,21 @@ impl Settings {
     }
 }
 
-/// Sums over the pixels that count.
+/// Sums over the counted pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sums {
     /// Number of pixels, at most 921,600: u20.
     pub count: u32,
     /// Sums of their columns, at most 589,363,200, u30, and of their lines, at most 331,315,200, u29.
     pub sums: [u32; 2],
-    /// Bounding box of these pixels. Without a pixel its corners are exchanged: first 2047, last 0.
+    /// Bounding box of these pixels. Without a pixel, `first` is 2047 and `last` 0.
     pub bounds: Region,
     /// Sums of x·x, x·y and y·y, below 2^39: u40.
     pub products: [u64; 3],
 }
 
 impl Sums {
-    /// The sums of no pixel.
+    /// The sums for a frame without pixels.
     pub const NONE: Self = Self {
         count: 0,
         sums: [0; 2],
@@ -108,8 +107,8 @@ impl Sums {
         products: [0; 3],
     };
 
-    /// Adds the marked pixels of line `y` that are in the region and in a run of at least `settings.least_run` there. `marks` has
-    /// the line's pixels from the left.
+    /// Adds the marked pixels of line `y` that are in the region and in a run of at least `settings.least_run` there. `marks` are the
+    /// marks of the line's pixels from the left.
     pub fn add_line(&mut self, settings: &Settings, y: u16, marks: impl Iterator<Item = bool>) {
         let [left, top] = settings.region.first;
         let [right, bottom] = settings.region.last;

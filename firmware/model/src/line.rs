@@ -1,10 +1,10 @@
 //! Bit-exact model of the line engine: from two screen vertices to pixels (docs/formats/line.md, "Lines").
 //!
-//! A line has one pixel in each column if its end points are further apart horizontally than vertically, else one in each
-//! row. This axis is its *major* axis, the other one its *minor* axis. Which pixels belong to it is the diamond-exit rule:
-//! those whose diamond |x| + |y| < 1/2 pixel about the centre the path from the first end point to the second one leaves.
-//! [`Line::new`] is the set-up, [`Line::pixels`] walks the part in a rectangle, and [`draw`] writes its pixels. The engine cuts lines into
-//! [`Piece`]s.
+//! A line has one pixel in each column if its end points are further apart horizontally than vertically, otherwise one in each row. The
+//! horizontal or vertical axis along which it has one pixel per step is its *major* axis, the other axis its *minor* axis. The
+//! diamond-exit rule selects its pixels: a pixel is drawn if the path from the first to the second end point leaves the pixel's diamond,
+//! |x| + |y| < 1/2 about its centre. [`Line::new`] is the set-up, [`Line::pixels`] iterates over the pixels in a rectangle, and [`draw`]
+//! writes them. The engine cuts lines into [`Piece`]s.
 
 mod piece;
 
@@ -24,14 +24,14 @@ const REACH: core::ops::Range<i32> = -(1 << 19)..1 << 19;
 /// The largest depth code.
 const NEAREST: i64 = (1 << 18) - 1;
 
-/// How a line meets the depths of the picture.
+/// The depth test of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineDepth {
-    /// The line is drawn over everything. Its pixels take the largest depth code, so that only lines cover them later.
+    /// The line covers all other pixels. It is stored with the largest depth code, so that only later lines cover it.
     Over,
-    /// A pixel is drawn if its code is at least the stored one, which it replaces.
+    /// A pixel is drawn if its depth code is at least the stored code, which it replaces.
     Tested {
-        /// Depth codes that are added to those of the line, so that it lies in front of the faces that it bounds.
+        /// Bias added to the depth codes of the line, so that it lies in front of the adjacent faces.
         bias: u16,
     },
 }
@@ -39,18 +39,18 @@ pub enum LineDepth {
 /// A segment of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// The end points, in the order of the walk.
+    /// The end points, in drawing order.
     pub ends: [ScreenVertex; 2],
     /// The colour of its pixels.
     pub colour: Rgb565,
-    /// How it meets the depths of the picture.
+    /// Its depth test.
     pub depth: LineDepth,
 }
 
 /// Writes an end of a segment, with the depth `w`, to its words in memory.
-// Called for each end: the firmware, optimised for size, would not unroll a loop over the ends.
+// Called for each end, because the firmware, optimised for size, would not unroll a loop over the ends.
 const fn put_end(words: &mut [u32], place: &ScreenVertex, w: u32, side: u16) {
-    // Each field begins a word, and bits beyond it have no effect.
+    // Each field starts a word; the remaining bits of the word have no effect.
     words[segment_end::X.word()] = place.x as u32;
     words[segment_end::Y.word()] = place.y as u32;
     words[segment_end::W.word()] = w;
@@ -78,8 +78,8 @@ impl Segment {
         words
     }
 
-    /// The segment with these [`words`](Self::words) in memory, of which bits beyond the fields have no effect. A segment over everything
-    /// has the depth test there, and the same pixels.
+    /// The segment with these [`words`](Self::words) in memory, of which bits beyond the fields have no effect. A segment without a depth
+    /// test has one in memory, but the same pixels.
     #[must_use]
     pub fn from_words(words: [u32; Self::WORDS]) -> Self {
         let [first, second] = [0, segment_end::BITS].map(|start| {
@@ -97,7 +97,7 @@ impl Segment {
         }
     }
 
-    /// What precedes `segments` segments in memory, as long as a segment: the header of a chunk with one vertex, and that vertex.
+    /// The header of a chunk of one vertex and `segments` segments, followed by the vertex; together as long as a segment.
     #[must_use]
     pub const fn header(segments: u32) -> [u32; Self::WORDS] {
         [1, 2 * segments, 0, 0, 0, 0, 0, 0]
@@ -140,23 +140,22 @@ impl LinePixel {
 
 /// A segment after the set-up.
 ///
-/// Coordinates are mirrored on an axis along which the segment runs backward: a column or row i becomes −1 − i there. So the
-/// walk from the first end point to the second one always increases them.
+/// On an axis along which the segment runs backward, coordinates are mirrored: column or row i becomes −1 − i. The walk from the first to
+/// the second end point therefore always increases them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
-    /// Whether the columns are the major axis.
+    /// Whether the major axis is horizontal.
     pub x_major: bool,
     /// Whether the line runs to lower columns or rows along its major and its minor axis.
     pub backward: [bool; 2],
-    /// Mirrored position of the first pixel on the major and the minor axis: the numbers of its column and row, or of its row
-    /// and column.
+    /// Mirrored position of the first pixel on the major and the minor axis: its column and row, or its row and column.
     pub start: [i32; 2],
     /// Number of pixels, at least 1.
     pub count: i32,
     /// Distances of the end points along the major and the minor axis, in 1/256 pixel: 0 ≤ minor ≤ major < 2^20.
     pub span: [i32; 2],
-    /// Error term of the first pixel, −major ≤ error < 0. It rises by the minor distance with each pixel; at 0 and above the
-    /// walk moves along the minor axis and takes the major distance off.
+    /// Error term of the first pixel, −major ≤ error < 0. Each pixel adds the minor distance; if the result is 0 or more, the walk takes
+    /// one step along the minor axis and subtracts the major distance.
     pub error: i32,
     /// Depth accumulator of the first pixel, s20.14.
     pub depth: i64,
@@ -167,15 +166,15 @@ pub struct Line {
 /// An end point on one axis, mirrored if the segment runs backward.
 #[derive(Clone, Copy)]
 struct Coordinate {
-    /// Number of the column or row.
+    /// Index of the column or row.
     pixel: i32,
-    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. A point
-    /// on the upper border belongs to the column or row; on a mirrored axis, one on the lower border.
+    /// Distance to the lower border of the column or row in 1/256 pixel, less 1 on an axis that is not mirrored. A point on the upper
+    /// border belongs to the column or row; on a mirrored axis, a point on the lower border.
     place: i32,
 }
 
 impl Coordinate {
-    /// Splits a coordinate, moved towards 0 by less than a unit. `!x` is −1 − x.
+    /// Splits a coordinate, rounded towards 0. `!x` is −1 − x.
     const fn new(x: i32, backward: bool) -> Self {
         let x = if backward { !(x - 1) } else { x - 1 };
         Self {
@@ -184,7 +183,7 @@ impl Coordinate {
         }
     }
 
-    /// Distance to the centre, less 1 on one of its sides.
+    /// Distance to the centre, less 1 on one side of the centre.
     const fn distance(self) -> i32 {
         if self.place >= 128 {
             self.place - 128
@@ -221,8 +220,8 @@ impl Line {
         if count <= 0 {
             return None;
         }
-        // Distances in 1/256 pixel from the first end point to the first pixel's centre along the major axis, and from the
-        // lower border of its row or column to it along the minor one.
+        // Distances in 1/256 pixel: from the first end point to the first pixel's centre along the major axis, and from the lower border
+        // of the end point's row or column to the end point along the minor axis.
         let ahead = 256 * passed + 127 - from[0].place + i32::from(backward[0]);
         let above = from[1].place + i32::from(!backward[1]);
         let tie = if x_major { dx < 0 || dy == 0 } else { dx >= 0 };
@@ -246,7 +245,7 @@ impl Line {
         })
     }
 
-    /// The part of the line in a rectangle of the picture: the same pixels as without it, except those outside.
+    /// The part of the line in a rectangle of the picture: the pixels of the whole line that are in the rectangle.
     pub fn pixels(mut self, rectangle: &Bounds) -> LinePixels {
         let columns = [rectangle.left, rectangle.right - 1];
         let rows = [rectangle.top, rectangle.bottom - 1];
@@ -269,7 +268,7 @@ impl Line {
         }
     }
 
-    /// Number of steps to the first pixel at `minor` on the minor axis, of which there may be none.
+    /// Number of steps to the first pixel at `minor` on the minor axis, possibly 0.
     fn steps_to(&self, minor: i32) -> i64 {
         let [major_span, minor_span] = self.span.map(i64::from);
         let crossed = i64::from(minor - self.start[1]);
@@ -283,7 +282,7 @@ impl Line {
         }
     }
 
-    /// Makes `steps` steps at once, if they are more than 0. No pixel remains if there are not as many.
+    /// Takes `steps` steps at once, if `steps` is above 0. If the line has fewer pixels, none remains.
     fn skip(&mut self, steps: i64) {
         if steps <= 0 {
             return;
@@ -319,8 +318,8 @@ impl Line {
     }
 }
 
-/// Whether an end point is past the diamond of its column, or row, on the way along the major axis: in the upper half on
-/// that axis, and outside of its pixel's diamond. `at` is the end point on the major and the minor axis.
+/// Whether an end point is past the diamond of its pixel along the major axis: in the upper half of the pixel on that axis, and outside of
+/// the diamond. `at` is the end point on the major and the minor axis.
 fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
     let below = Coordinate::new(v.y, false).place >= 128;
     let distance = at[0].distance() + at[1].distance() + i32::from(below);
@@ -330,14 +329,15 @@ fn passed(v: &ScreenVertex, at: [Coordinate; 2]) -> bool {
 /// The pixels of a line in a rectangle, from the first end point to the second one.
 #[derive(Clone, Debug)]
 pub struct LinePixels {
-    /// The line from the next pixel on.
+    /// The remaining line from the next pixel on.
     line: Line,
-    /// Last places in the rectangle on the major and the minor axis, mirrored like the line.
+    /// Last positions in the rectangle on the major and the minor axis, mirrored like the line.
     last: [i32; 2],
 }
 
 impl LinePixels {
-    /// The line from the next pixel on, to its end outside of the rectangle; `None` if there is no further pixel in the rectangle.
+    /// The remaining line from the next pixel on, to its end outside of the rectangle; `None` if there is no further pixel in the
+    /// rectangle.
     pub fn rest(&self) -> Option<&Line> {
         let [major, minor] = self.line.start;
         let is_inside = major <= self.last[0] && minor <= self.last[1];
@@ -353,7 +353,7 @@ impl Iterator for LinePixels {
         let line = &mut self.line;
         line.count -= 1;
         line.start[0] += 1;
-        // A line from damaged memory may wrap.
+        // The coordinates of a line from damaged memory may wrap.
         line.error = line.error.wrapping_add(line.span[1]);
         if line.error >= 0 {
             line.error = line.error.wrapping_sub(line.span[0]);
@@ -397,7 +397,7 @@ impl FrameBuffer<'_> {
     /// Draws a pixel of a line, which is in the picture. Returns whether it passed the depth test.
     #[inline]
     fn draw_pixel(&mut self, pixel: &LinePixel, depth: LineDepth, colour: Rgb565) -> bool {
-        // Both numbers are positive and both places exist.
+        // Both coordinates are at least 0, and both buffers have the pixel.
         let at = pixel.row as usize * self.width as usize + pixel.column as usize;
         let code = pixel.code(depth);
         if let (Some(stored), Some(place)) = (self.depth.get_mut(at), self.colour.get_mut(at))

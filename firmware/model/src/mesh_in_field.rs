@@ -9,12 +9,11 @@ use crate::raymarch::{FieldOptions, FieldSetup};
 use crate::triangle::MeshSetup;
 
 /// Number of low bits that are cleared in the mantissa of the shared scale. The conversion of the scale to depths in
-/// field units multiplies it by up to 40.5 for bounded fields, and the mantissa then still fits 17 bits without
-/// truncation.
+/// field units multiplies it by up to 40.5 for bounded fields; with cleared bits the mantissa still fits 17 bits without truncation.
 const EVEN_BITS: u32 = 7;
 
-/// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth
-/// codes for both, where `options` have one eye.
+/// Computes the constants of a mesh with the given `radius` (14 fraction bits) and of a field, with one scale of depth codes for both.
+/// `options` must have one eye.
 ///
 /// [`trace_frame`](crate::trace_frame) draws the mesh first, [`render_field`](crate::raymarch::render_field) the field over it.
 ///
@@ -36,8 +35,8 @@ pub fn constants(
     Ok((frame, setup))
 }
 
-/// Returns the smaller of two scales of depth codes, with its mantissa truncated to 10 bits. With the smaller scale no
-/// depth code of the mesh or the field overflows.
+/// Returns the smaller of two scales of depth codes, with its mantissa truncated to 10 bits. With the smaller scale, the depth codes of
+/// neither mesh nor field overflow.
 fn shared(a: DepthScale, b: DepthScale) -> DepthScale {
     let smaller = if (a.exponent, a.mantissa) < (b.exponent, b.mantissa) {
         a

@@ -1,4 +1,4 @@
-//! The options that all meshes of a scene have.
+//! Drawing options that all meshes of a scene share.
 
 use glint_core::colour::{Shading, Winding};
 use glint_core::mesh::Mesh;
@@ -6,16 +6,16 @@ use glint_core::mesh::Mesh;
 use crate::frame::MeshSubject;
 use crate::triangle::Clip;
 
-/// Options that all meshes of a scene have.
+/// Drawing options that all meshes of a scene share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshOptions {
-    /// Whether back faces are left out.
+    /// Whether back faces are culled.
     pub cull: bool,
     /// Source of the colours.
     pub shading: Shading,
     /// Clipping of triangles.
     pub clip: Clip,
-    /// The rule that tells which side of a triangle is seen.
+    /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
 }
 

@@ -1,8 +1,8 @@
 //! The raymarcher: frames of a distance field (docs/formats/raymarch.md, "Distance fields").
 //!
 //! Distances are in the maximum norm: the distance at a point is half the side of an empty cube about the point. A
-//! ray's direction is scaled so that its largest component is just below 1, so a step by the whole distance ends at the
-//! side of this cube. Such a step is up to √3 times as long as one with a Euclidean distance and a unit vector.
+//! ray's direction is scaled so that its largest component is just below 1, so a step by the whole distance stays in this cube. Such a
+//! step is up to √3 times as long as one with a Euclidean distance and a unit vector.
 //!
 //! Fields with spheres use the Euclidean norm for distances and for the length of rays, which is just below 1.
 //!

@@ -1,6 +1,6 @@
 //! Pictures of the self-test, and the checksums of their colours: the CRC-32 of the colours' bytes, row by row, the low byte first.
 //!
-//! The firmware draws each picture by the gateware, and compares its checksum with the one that the model computed. A test of this crate
+//! The firmware draws each picture by the gateware, and compares its checksum with the model's checksum. A test of this crate
 //! computes and stores the checksums.
 
 mod checksums;
@@ -20,7 +20,7 @@ use glint_core::wireframe::{CUBE, Motion, Program};
 
 use crate::{FieldSubject, Frame, MeshSubject, Subject, WireframeSubject};
 
-/// A picture of the self-test. Each needs another part of the gateware.
+/// A picture of the self-test. Each picture needs a different part of the gateware.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TestPicture {
     /// The torus with flat shading: the triangle engine.
@@ -54,7 +54,7 @@ impl TestPicture {
         Self::Stereo,
     ];
 
-    /// Name for messages: the block, and its part that the picture needs.
+    /// Name for messages: the gateware block, and the feature of it that the picture needs.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -68,7 +68,7 @@ impl TestPicture {
         }
     }
 
-    /// Whether this build of the firmware has the part that draws the picture.
+    /// Whether this build of the firmware includes the code that draws the picture.
     #[must_use]
     pub const fn is_built(self) -> bool {
         match self {
@@ -89,7 +89,7 @@ impl TestPicture {
     /// Calls `draw` with the description of the picture. `mesh` is the mesh of [`MESH_SHAPE`].
     ///
     /// # Errors
-    /// [`ViewError`] for a camera out of range, which no picture has.
+    /// [`ViewError`] for a camera out of range; never returned, because all pictures have valid cameras.
     pub fn describe(
         self,
         mesh: Option<Mesh>,
@@ -140,7 +140,7 @@ impl TestPicture {
         }
     }
 
-    /// The field in the form of the console.
+    /// Makes a field from its name on the console.
     const fn field(self) -> Option<&'static str> {
         match self {
             Self::Sponge => Some("menger:3"),

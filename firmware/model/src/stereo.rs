@@ -15,10 +15,10 @@ use crate::frame::{Frame, FrameStats, Subject};
 
 /// Number of words, of two pixels, in a line of the soft core's data cache.
 const LINE: usize = 8;
-/// Number of lines that are composed between two calls of `progress` in [`Eyes::compose`].
+/// Number of cache lines that are composed between two calls of `progress` in [`Eyes::compose`].
 const LINES_A_CALL: usize = 128;
 
-/// The frames of two eyes, whose pictures make one.
+/// The frames of two eyes, whose pictures are composed into one.
 #[derive(Clone, Copy, Debug)]
 pub struct Eyes<'a> {
     /// The frame of the left eye, which has the depth codes of the picture.
@@ -30,7 +30,7 @@ pub struct Eyes<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The frames of both eyes; `None` for a frame that is drawn as it is: with one eye, or with a field alone.
+    /// The frames of both eyes; `None` for a frame with one eye or with only a field, which is drawn as one frame.
     ///
     /// # Errors
     /// [`RenderError::Stereo`] for a wireframe, and [`RenderError::Orthographic`].
@@ -58,8 +58,8 @@ impl<'a> Frame<'a> {
         }))
     }
 
-    /// The frames that are drawn for this one: those of the left and the right eye, or this one itself. The depth codes of the picture are
-    /// those of the first.
+    /// The frames to draw for this frame: one for the left and one for the right eye, or only this frame. The picture has the depth codes
+    /// of the first frame.
     ///
     /// # Errors
     /// As [`eyes`](Self::eyes).
@@ -73,19 +73,19 @@ impl<'a> Frame<'a> {
 }
 
 impl Eyes<'_> {
-    /// Replaces the picture of the left eye by that of both eyes, in the colours of the glasses. A word is two pixels, the left
-    /// one in its lower half. Calls `progress` at short intervals.
+    /// Replaces the picture of the left eye by the picture of both eyes, in the colours of the glasses. A word is two pixels, the left
+    /// pixel in its lower half. Calls `progress` at short intervals.
     pub fn compose(&self, left: &mut [u32], right: &[u32], progress: &mut dyn FnMut()) {
         let (left, left_rest) = left.as_chunks_mut::<LINE>();
         let (right, right_rest) = right.as_chunks::<LINE>();
         let mut last = ([0; 2], self.composed([0; 2]));
         for (number, (left, right)) in left.iter_mut().zip(right).enumerate() {
-            // The lines are read whole, one after the other: the data cache of the soft core is direct-mapped, so that the two pictures,
-            // read in turn, would evict each other.
+            // Copies a whole cache line of each picture: the data cache of the soft core is direct-mapped, so alternating reads of the two
+            // pictures would evict each other's lines.
             let (of_right, of_left) = (*right, *left);
             let (a, b) = (of_left[0], of_right[0]);
             if of_left.iter().all(|&x| x == a) && of_right.iter().all(|&x| x == b) {
-                // Most lines have one colour for each eye, and that of the previous line.
+                // In most lines each eye has a single colour, which is that of the previous line.
                 *left = [self.remembered(&mut last, [a, b]); LINE];
             } else {
                 for (left, (a, b)) in left.iter_mut().zip(of_left.into_iter().zip(of_right)) {
@@ -101,7 +101,7 @@ impl Eyes<'_> {
         }
     }
 
-    /// Two pixels of each eye, composed, where `last` has the last ones and what they gave.
+    /// Composes two pixels of each eye; `last` caches the previous words and their result.
     #[inline(always)]
     fn remembered(&self, last: &mut ([u32; 2], u32), words: [u32; 2]) -> u32 {
         if last.0 != words {
@@ -110,7 +110,7 @@ impl Eyes<'_> {
         last.1
     }
 
-    /// Two pixels of each eye, composed.
+    /// Composes two pixels of each eye.
     fn composed(&self, [left, right]: [u32; 2]) -> u32 {
         let [a, b] = pixels(left).map(luminance);
         let [c, d] = pixels(right).map(luminance);
@@ -124,14 +124,14 @@ const fn pixels(word: u32) -> [u16; 2] {
     [word as u16, (word >> 16) as u16]
 }
 
-/// The luminance of a pixel in RGB565: that of its channels widened to 8 bits.
+/// The luminance of a pixel in RGB565, whose channels are widened to 8 bits.
 fn luminance(pixel: u16) -> u8 {
     let [low, high] = pixel.to_le_bytes();
     ((LOW[usize::from(low)] + HIGH[usize::from(high)]) >> 8) as u8
 }
 
-/// Share of the lower byte of a pixel in its luminance, in units of 2^−8, with the rounding. The luminance is the sum of this and of
-/// `HIGH`, because the bits of green that are repeated are all in the higher byte.
+/// Share of the lower byte of a pixel in its luminance, in units of 2^−8, plus the rounding. The luminance is the sum of the entries of
+/// `LOW` and `HIGH`, because the bits that widen green are all in the higher byte.
 static LOW: [u16; 256] = shares(0, HALF_LUMINANCE);
 /// Share of the higher byte of a pixel in its luminance, in units of 2^−8.
 static HIGH: [u16; 256] = shares(8, 0);
@@ -146,7 +146,7 @@ const fn shares(shift: u32, rounding: u16) -> [u16; 256] {
     shares
 }
 
-/// The counts of the frames of both eyes.
+/// The sum of the counts for both eyes.
 impl Add for FrameStats {
     type Output = Self;
 

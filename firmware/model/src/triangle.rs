@@ -1,8 +1,8 @@
 //! Bit-exact model of the triangle engine: from a mesh to pixels.
 //!
 //! Vertices are processed by [`vertex`], and triangles by [`setup`] and [`raster`]. Triangles that cross the guard band
-//! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles
-//! that the engine keeps in memory, [`vertex_cache`] tells which vertices it fetches.
+//! or the near plane are first cut by [`clip`]. [`render()`] draws a mesh; [`descriptor`] has the records of triangles that the engine
+//! writes to memory, [`vertex_cache`] models the cache that determines which vertices it fetches.
 
 mod classify;
 pub mod clip;

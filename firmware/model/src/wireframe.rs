@@ -1,4 +1,4 @@
-//! Pictures of the wireframe simulator: each segment of a program is moved, projected, and drawn as a line (docs/wireframe.md).
+//! Pictures of the wireframe simulator: each segment of a program is transformed, projected, and drawn as a line (docs/wireframe.md).
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Size;
@@ -25,7 +25,7 @@ pub struct WireframeSubject<'a> {
 }
 
 impl WireframeSubject<'_> {
-    /// The line of a segment of the program, over everything; `None` if no part of it is on the screen.
+    /// The line of a segment of the program, drawn without a depth test; `None` if no part of it is on the screen.
     #[must_use]
     pub fn line(&self, projection: &Projection, segment: Segment) -> Option<line::Segment> {
         let ends = projection.line(self.pose.segment(segment))?;
@@ -42,13 +42,13 @@ impl WireframeSubject<'_> {
 pub struct WireframeStats {
     /// Number of segments of the program.
     pub segments: u32,
-    /// Number of segments with a part behind the view plane and within the guard band.
+    /// Number of segments with a part beyond the view plane and within the guard band.
     pub lines: u32,
-    /// Pixels written; a pixel of several lines counts for each of them.
+    /// Pixels written; a pixel of several lines counts once per line.
     pub pixels: u64,
 }
 
-/// Clears a picture to `clear` and draws a program into it. The lines have the largest depth code, other pixels none. Calls
+/// Clears a picture to `clear` and draws a program into it. Pixels of lines have the largest depth code, all other pixels code 0. Calls
 /// `progress` at short intervals.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! The edges of a mesh, each once, and their segments in a frame.
+//! List of the edges of a mesh without duplicates, and their segments in a frame.
 
 use glint_core::mesh::{Mesh, Triangle};
 
@@ -11,18 +11,18 @@ use crate::triangle::{MeshSetup, Projected, project_chunk};
 /// Number of triangles between two calls of `progress`.
 const TRIANGLES_A_CALL: usize = 64;
 
-/// Instead of the number of an edge without length.
+/// Placeholder for the number of an edge of length 0.
 const NONE: u32 = u32::MAX;
-/// Mark of the number of an edge in the first triangle at it, from which the edge is drawn.
+/// Flag in the number of an edge, in the first triangle that has the edge; the edge is drawn with this triangle.
 const FIRST: u32 = 1 << 31;
 
-/// The numbers of a triangle's edges, from each corner to the next one.
+/// The numbers of a triangle's edges, each from a corner to the next corner.
 type Sides = [u32; 3];
 
-/// The edges of a mesh, each once: edges between the same two positions are the same, whatever their vertices.
+/// The edges of a mesh without duplicates: edges between equal pairs of positions count as one edge, even with different vertices.
 ///
-/// The list is made when a mesh is drawn first, and kept in memory of the caller. It needs three words for each triangle, and
-/// four times the next power of two above the number of edges.
+/// The list is made when a mesh is first drawn, in memory of the caller. It needs three words per triangle, and four words times the next
+/// power of two above the number of edges.
 pub struct EdgeList<'m> {
     /// [`Sides`] for each triangle; then, while the list is made, a [`Table`] of the edges, and later the [`Biases`] of each edge.
     memory: &'m mut [u32],
@@ -48,18 +48,18 @@ impl<'m> EdgeList<'m> {
         3 * triangles + Table::words(3 * triangles)
     }
 
-    /// Empties the list. This is necessary when the memory of its mesh has been written: a list is made again for a mesh with another
-    /// address or length only.
+    /// Empties the list. Required after writes to the memory of its mesh: otherwise a list is only made again for a mesh with another
+    /// address or length.
     pub const fn clear(&mut self) {
         self.mesh = None;
     }
 
-    /// Makes the list of a mesh, unless it is that of the mesh already.
+    /// Makes the list of a mesh, unless the list of this mesh exists.
     ///
-    /// Not inlined, as most frames need only the code after it.
+    /// Not inlined, because most frames do not run it.
     ///
     /// # Errors
-    /// [`RenderError::Edges`] for a mesh with too many edges.
+    /// [`RenderError::Edges`] for a mesh whose edges do not fit the memory.
     #[inline(never)]
     pub fn make(&mut self, mesh: &Mesh, progress: &mut dyn FnMut()) -> Result<(), RenderError> {
         let bytes = mesh.bytes();
@@ -97,8 +97,8 @@ impl<'m> EdgeList<'m> {
         Ok(())
     }
 
-    /// Calls `emit` with the segment of each edge of a mesh that has a part in the volume of the frame, in the order of the triangles.
-    /// With `cull`, back faces need no bias. `scratch` has room for the vertices of the largest chunk. Calls `progress` at short intervals.
+    /// Calls `emit` with the segment of each edge that has a part in the view volume of the frame, in the order of the triangles.
+    /// With `cull`, back faces add no bias. `scratch` must hold the vertices of the largest chunk. Calls `progress` at short intervals.
     ///
     /// # Errors
     /// [`RenderError::Edges`] or [`RenderError::Scratch`]; no segment was then emitted.
@@ -160,10 +160,10 @@ impl<'m> EdgeList<'m> {
     }
 }
 
-/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are
-/// projected into `scratch` first; otherwise it has them already.
+/// Calls `visit` with the corners of each triangle of a mesh and its `sides`. With `projects`, the vertices of each chunk are projected
+/// into `scratch` first; otherwise `scratch` already holds them.
 ///
-/// Not inlined, as memory.x puts it beside what it calls, so that both stay in the instruction cache.
+/// Not inlined, so that memory.x can place it beside its callees, and both stay in the instruction cache.
 #[inline(never)]
 fn each_triangle(
     mesh: &Mesh,
@@ -191,13 +191,13 @@ fn each_triangle(
     }
 }
 
-/// The memory for the [`Sides`] of all triangles, and the rest; `None` if it is too small.
+/// Splits off the memory for the [`Sides`] of all triangles; `None` if `memory` is too small.
 fn split(memory: &mut [u32], triangles: u32) -> Option<(&mut [Sides], &mut [u32])> {
     let (sides, rest) = memory.split_at_mut_checked(3 * triangles as usize)?;
     Some((sides.as_chunks_mut().0, rest))
 }
 
-/// What `of` returns for the vertices of a triangle, by their indices. A checked mesh has all of them.
+/// The results of `of` for the indices of a triangle's vertices. In a checked mesh all indices are valid.
 fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T; 3]> {
     let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| of(usize::from(i))) else {
         return None;
@@ -205,7 +205,7 @@ fn corners<T>(triangle: &Triangle, of: impl Fn(usize) -> Option<T>) -> Option<[T
     Some([a, b, c])
 }
 
-/// The ends of an edge from the smaller to the larger position.
+/// The ends of an edge, sorted by position.
 fn ordered<T>([from, to]: [T; 2], position: impl Fn(&T) -> [i16; 3]) -> [T; 2] {
     if position(&from) <= position(&to) {
         [from, to]
@@ -214,7 +214,7 @@ fn ordered<T>([from, to]: [T; 2], position: impl Fn(&T) -> [i16; 3]) -> [T; 2] {
     }
 }
 
-/// Two positions as the words of an edge.
+/// The key of an edge in the hash table: its two positions.
 fn key([[ax, ay, az], [bx, by, bz]]: [[i16; 3]; 2]) -> [u32; KEY_WORDS] {
     [
         packed_pair(ax, ay),

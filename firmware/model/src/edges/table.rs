@@ -1,6 +1,6 @@
 //! A hash table of edges in memory of the caller.
 
-/// Number of words of an edge.
+/// Number of words of an edge's key.
 pub const KEY_WORDS: usize = 3;
 
 /// Content of a slot without an edge.
@@ -8,16 +8,16 @@ const EMPTY: u32 = u32::MAX;
 
 /// A set of edges, which are numbered in the order of their insertion.
 pub struct Table<'m> {
-    /// Numbers of edges, each at the place of its hash or after it. Their number is a power of two.
+    /// Hash slots with edge numbers, each at the index of the edge's hash or after it. The number of slots is a power of two.
     slots: &'m mut [u32],
-    /// The edges by their numbers.
+    /// The keys of the edges, by edge number.
     keys: &'m mut [[u32; KEY_WORDS]],
     /// Number of edges.
     count: usize,
 }
 
 impl<'m> Table<'m> {
-    /// Number of slots for up to `most` edges: at most three of four are in use, so that searches are short.
+    /// Number of slots for up to `most` edges: at most three quarters of the slots are in use, so that searches are short.
     const fn slots(most: usize) -> usize {
         (most + most / 3 + 1).next_power_of_two()
     }
@@ -27,7 +27,7 @@ impl<'m> Table<'m> {
         4 * Self::slots(most)
     }
 
-    /// An empty table in `memory` for up to `most` edges, and for fewer if the memory is smaller; `None` if it is too small for any edge.
+    /// An empty table in `memory` for up to `most` edges, or fewer in a smaller memory; `None` if no edge fits.
     pub fn new(memory: &'m mut [u32], most: usize) -> Option<Self> {
         let room = 1 << (memory.len() / 4).checked_ilog2()?;
         let (slots, keys) = memory.split_at_mut_checked(Self::slots(most).min(room))?;
@@ -46,7 +46,7 @@ impl<'m> Table<'m> {
 
     /// Finds an edge, or inserts it. Returns its number, and whether it was inserted; `None` if the table is full.
     pub fn insert(&mut self, key: [u32; KEY_WORDS]) -> Option<(u32, bool)> {
-        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio, and the upper bits are mixed best.
+        // The hash of FxHasher: the multiplier is 2^32 divided by the golden ratio, and the upper bits are the best mixed.
         let hash = key.iter().fold(0u32, |hash, &word| {
             (hash.rotate_left(5) ^ word).wrapping_mul(0x9E37_79B9)
         });
@@ -55,7 +55,7 @@ impl<'m> Table<'m> {
         loop {
             let slot = self.slots.get_mut(at)?;
             if *slot == EMPTY {
-                // A slot stays empty, so that each search ends.
+                // One slot always stays empty, so that each search ends.
                 let place = self.keys.get_mut(self.count);
                 *place.filter(|_| self.count < mask)? = key;
                 let number = self.count as u32;
@@ -79,7 +79,7 @@ mod tests {
     fn a_table_has_each_edge_once_until_it_is_full() {
         let mut memory = [7; 64];
         let mut table = Table::new(&mut memory, 1000).unwrap();
-        // 16 slots, of which one stays empty, and room for 16 edges.
+        // 16 slots, one of which stays empty, and memory for 16 edges.
         for number in 0..15 {
             let key = [number & 3, number >> 2, 5];
             assert_eq!(table.insert(key), Some((number, true)));

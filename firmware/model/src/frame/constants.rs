@@ -18,7 +18,7 @@ use crate::triangle::{MeshLight, MeshSetup};
 /// [update](Self::update) it for each frame instead of moving new ones.
 #[derive(Clone, Debug, Default)]
 pub struct FrameConstants {
-    /// Those of the mesh, or those that all objects share.
+    /// Constants of the mesh, or the constants that all objects share.
     mesh: Option<MeshSetup>,
     scale: Scale,
     light: Option<MeshLight>,
@@ -35,7 +35,7 @@ pub struct FieldConstants {
 }
 
 impl FrameConstants {
-    /// Returns the constants of the mesh, or those that all objects share, if the frame has a mesh or objects.
+    /// Returns the constants of the mesh, or the constants that all objects share; `None` for a frame without a mesh or objects.
     pub const fn mesh(&self) -> Option<&MeshSetup> {
         if MESH.is_built {
             self.mesh.as_ref()
@@ -44,10 +44,10 @@ impl FrameConstants {
         }
     }
 
-    /// Returns the constants of the mesh with this number in `frame`, whose constants these are; `None` after the last mesh.
+    /// Returns the constants of the mesh with this number in `frame`, of which `self` has the constants; `None` after the last mesh.
     ///
-    /// Those of an object are computed in `own`, which the caller keeps for all objects of a frame, in their order: to copy what objects
-    /// share, and to store the constants of all, takes the soft core long.
+    /// The constants of an object are computed in `own`, which the caller reuses for all objects of a frame, in order: to copy shared
+    /// constants, or to store the constants of all objects, is slow on the soft core.
     ///
     /// # Errors
     /// A [`RenderError`] for an object that cannot be drawn.
@@ -75,7 +75,7 @@ impl FrameConstants {
         Ok(Some(own))
     }
 
-    /// Returns a copy of the constants of the mesh with this number in `frame`, whose constants these are; `None` after the last mesh.
+    /// Returns a copy of the constants of the mesh with this number in `frame`; `None` after the last mesh.
     ///
     /// # Errors
     /// As [`mesh_setup`](Self::mesh_setup).
@@ -89,7 +89,7 @@ impl FrameConstants {
         Ok(self.mesh_setup(frame, number, &mut own)?.copied())
     }
 
-    /// Checks that each mesh of `frame`, whose constants these are, can be drawn.
+    /// Checks that each mesh of `frame`, of which `self` has the constants, can be drawn.
     ///
     /// # Errors
     /// As [`mesh_setup`](Self::mesh_setup).
@@ -124,11 +124,11 @@ impl FrameConstants {
         }
     }
 
-    /// Replaces the constants by those of `frame`. Its objects are checked when their constants are computed.
+    /// Replaces the constants by the constants of `frame`. Objects are not checked until their constants are computed.
     ///
     /// # Errors
-    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants. It is [`RenderError::Stereo`] for a frame of which
-    /// each of [`Frame::eyes`] is drawn instead.
+    /// A [`RenderError`] for a frame that cannot be drawn; there are then no constants. [`RenderError::Stereo`] for a frame that must be
+    /// drawn as two frames ([`Frame::eyes`]).
     pub fn update(&mut self, frame: &Frame) -> Result<(), RenderError> {
         let result = self.compute(frame);
         if result.is_err() {
@@ -171,7 +171,7 @@ impl FrameConstants {
                 camera.update(view, size, 0, &mut self.scale)?;
                 camera.set_depths(depths(objects, camera));
             }
-            // A wireframe, or a subject that this build leaves out.
+            // A wireframe, or a subject that this build does not support.
             Subject::Wireframe(_)
             | Subject::Mesh(_)
             | Subject::Edges(..)

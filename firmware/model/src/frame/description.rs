@@ -26,7 +26,7 @@ pub struct Frame<'a> {
     pub view: View,
     /// Size of the picture.
     pub size: Size,
-    /// Colour of pixels without a triangle. A field covers every pixel.
+    /// Background: the colour of pixels without a triangle. A field covers every pixel.
     pub clear: Rgb565,
     /// Light on the meshes. A field, and a mesh in it, have the lights of the field's appearance.
     pub lighting: MeshLighting,
@@ -39,29 +39,29 @@ pub struct Frame<'a> {
 pub enum Subject<'a> {
     /// A mesh.
     Mesh(MeshSubject<'a>),
-    /// The edges of a mesh, of which [`Frame::draw`] draws the faces alone and [`Frame::draw_edges`] the edges. [`Subject::edges`]
+    /// The edges of a mesh: [`Frame::draw`] draws only the faces, and [`Frame::draw_edges`] the edges. [`Subject::edges`]
     /// makes it.
     Edges(MeshSubject<'a>, Edges),
     /// A distance field.
     Field(FieldSubject<'a>),
     /// A mesh in a distance field.
     MeshInField(MeshSubject<'a>, FieldSubject<'a>),
-    /// Several meshes, each with its own position. Of equal depths the later object wins.
+    /// Several meshes, each with its own position. At equal depths the later object wins.
     Objects(&'a [Object<'a>]),
     /// A program of the wireframe simulator.
     Wireframe(WireframeSubject<'a>),
 }
 
 /// A mesh with a position in the world.
-// In this order for the reason given at the placement.
+// The order of the fields saves data cache lines, as in `Placement`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Object<'a> {
-    /// Colour instead of those of the mesh.
+    /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
     /// The mesh and its options.
     pub subject: MeshSubject<'a>,
-    /// The place: a model matrix.
+    /// Position and orientation: a model matrix.
     pub placement: Placement,
 }
 
@@ -70,13 +70,13 @@ pub struct Object<'a> {
 pub struct MeshSubject<'a> {
     /// The mesh.
     pub mesh: Mesh<'a>,
-    /// Whether back faces are left out.
+    /// Whether back faces are culled.
     pub cull: bool,
     /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
     /// Clipping of triangles.
     pub clip: Clip,
-    /// The rule that tells which side of a triangle is seen.
+    /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
 }
 
@@ -87,7 +87,7 @@ pub struct FieldSubject<'a> {
     pub field: &'a Field,
     /// Material, lights, background, fog and occlusion.
     pub appearance: &'a Appearance,
-    /// Quality, which determines the precision of the rays. The frame has the picture's size.
+    /// Quality, which determines the precision of the rays. The size of the picture is in [`Frame`].
     pub quality: Quality,
     /// Whether a prepass marches one cone for each block of pixels before the rays (docs/formats/raymarch.md, "Cones").
     pub prepass: bool,
@@ -103,7 +103,7 @@ impl<'a> MeshSubject<'a> {
         }
     }
 
-    /// Whether back faces are left out: with [`Winding::Screen`] all triangles are seen.
+    /// Whether back faces are culled: with [`Winding::Screen`] no triangle is culled.
     pub fn culls(&self) -> bool {
         self.cull && self.winding == Winding::Mesh
     }
@@ -172,7 +172,7 @@ impl<'a> Subject<'a> {
         self.mesh_part().into_iter().chain(objects)
     }
 
-    /// The sphere around all meshes; `None` without one, and for a field, with or without a mesh in it.
+    /// The bounding sphere of all meshes; `None` without a mesh, and for a field, with or without a mesh.
     pub fn sphere(&self) -> Option<Sphere> {
         let mesh = self.mesh_part().filter(|_| self.field_part().is_none());
         let mesh = mesh.map(|subject| (subject.mesh, Matrix::IDENTITY));
@@ -181,7 +181,7 @@ impl<'a> Subject<'a> {
         Sphere::around(mesh.into_iter().chain(objects))
     }
 
-    /// The mesh with this number, with the colour instead of its own ones; `None` after the last mesh.
+    /// The mesh with this number, and the colour that replaces its own colours; `None` after the last mesh.
     #[inline(always)]
     pub fn coloured_mesh(&self, number: usize) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         match self {
@@ -198,16 +198,16 @@ impl<'a> Subject<'a> {
         }
     }
 
-    /// The mesh of a subject without objects, with the colour instead of its own ones.
-    // Not inlined, so that the function above, which the firmware calls for each object of a frame, is short and loads no table.
+    /// The mesh of a subject without objects, and the colour that replaces its own colours.
+    // Not inlined, so that `coloured_mesh`, which the firmware calls for each object of a frame, is short and loads no table.
     #[inline(never)]
     fn coloured_part(&self) -> Option<(&MeshSubject<'a>, Option<Rgb565>)> {
         let is_hidden = matches!(self, Self::Edges(_, Edges::Hidden));
         Some((self.mesh_part()?, is_hidden.then_some(Rgb565(0))))
     }
 
-    /// The mesh with this number, and the options of its drawing in a light
-    /// ([`FrameConstants::light`](super::FrameConstants::light)), of which `clear` has no effect; `None` after the last mesh.
+    /// The mesh with this number, and its drawing options for a light ([`FrameConstants::light`](super::FrameConstants::light)), whose
+    /// `clear` has no effect; `None` after the last mesh.
     pub fn numbered_mesh<'s>(
         &'s self,
         number: usize,
@@ -262,7 +262,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// A frame with one eye, and the lights of meshes and the background of `appearance`. Behind lines alone the background is black.
+    /// A frame with one eye, and the mesh lights and the background of `appearance`. A wireframe has a black background.
     pub fn in_appearance(
         subject: Subject<'a>,
         view: View,
@@ -285,7 +285,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// The lighting of the meshes: that of the frame, or of the field's appearance for a mesh in a field.
+    /// The lighting of the meshes: the frame's, or for a mesh in a field that of the field's appearance.
     pub fn mesh_lighting(&self) -> MeshLighting {
         match &self.subject {
             Subject::MeshInField(_, field) if MESH_IN_FIELD.is_built => {

@@ -1,13 +1,13 @@
-//! The engine as a whole: from the states of the sensor's pins to frames.
+//! The complete engine: from the states of the sensor's pins to frames.
 
 use glint_core::colour::Rgb565;
 
 use super::{Settings, Snapshot, Sums};
 
-/// Counts of columns and lines stay at this value.
+/// Counts of columns and lines saturate at this value.
 const MOST: u16 = 2047;
 
-/// Polarities of the sensor's pins, and the order of its bytes.
+/// Polarities of the sensor's pins, and byte order of its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Polarity {
     /// VSYNC is low between frames.
@@ -29,7 +29,7 @@ pub struct Pins {
     pub data: u8,
 }
 
-/// Fault of a frame, with its number in the registers.
+/// Fault of a frame, with its register value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// A line was too short or too long.
@@ -40,7 +40,7 @@ pub enum Fault {
     Lines,
     /// VSYNC came inside a line.
     Cut,
-    /// Pixels came faster than the engine takes them. The model takes all of them.
+    /// Pixels came faster than the engine can process them. This never happens in the model.
     Lost,
     /// The sensor's clock stopped.
     Stopped,
@@ -53,11 +53,11 @@ pub struct Counts {
     pub frames: u32,
     /// Number of frames with a fault.
     pub frames_dropped: u32,
-    /// Number of lines with a wrong number of bytes, or cut by VSYNC.
+    /// Number of lines with a wrong number of bytes, or interrupted by VSYNC.
     pub lines_malformed: u32,
 }
 
-/// Output of the image sensor.
+/// Measured output of the image sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Number of pixels of the last line.
@@ -66,20 +66,20 @@ pub struct Seen {
     pub lines: u16,
 }
 
-/// The engine from the pins to the results.
+/// The engine, from the pins to the results.
 #[derive(Clone, Debug)]
 pub struct Engine {
-    /// The settings that the next frame takes.
+    /// The settings for the next frame.
     pub settings: Settings,
-    /// Sums of the last whole frame; those of no pixel before the first one.
+    /// Sums of the last whole frame; before the first frame, the sums without pixels.
     pub results: Sums,
-    /// Counters, which begin at 0.
+    /// Counters, which start at 0.
     pub counts: Counts,
     /// First fault of the last frame.
     pub fault: Option<Fault>,
-    /// Output of the image sensor.
+    /// Measured output of the image sensor.
     pub seen: Seen,
-    /// Polarities of the pins. They change while the engine is off.
+    /// Polarities of the pins. They may only change while the engine is off.
     pub polarity: Polarity,
     is_enabled: bool,
     snapshot: Snapshot,
@@ -100,7 +100,7 @@ pub struct Engine {
 }
 
 impl Engine {
-    /// Makes an engine that is on and has seen nothing yet; `pins` is the state of the pins.
+    /// Makes an enabled engine before its first frame; `pins` is the current state of the pins.
     #[must_use]
     pub const fn new(polarity: Polarity, settings: Settings, pins: Pins) -> Self {
         let was_between = pins.vsync != polarity.vsync_low;
@@ -136,7 +136,7 @@ impl Engine {
         }
     }
 
-    /// Takes the state of the pins at one edge of the sensor's clock.
+    /// Processes the state of the pins at one edge of the sensor's clock.
     pub fn clock(&mut self, pins: Pins) {
         let is_between = pins.vsync != self.polarity.vsync_low;
         let is_in_line = pins.href != self.polarity.href_low && !is_between;
@@ -161,7 +161,7 @@ impl Engine {
         self.was_in_line = is_in_line;
     }
 
-    /// Turns the engine on or off. After it is on, the first frame begins at the next VSYNC.
+    /// Turns the engine on or off. After it is turned on, the first frame begins at the next VSYNC.
     pub const fn set_enabled(&mut self, is_enabled: bool) {
         self.is_enabled = is_enabled;
         self.is_active = self.is_active && is_enabled;
@@ -173,7 +173,7 @@ impl Engine {
         self.is_enabled && !self.is_active
     }
 
-    /// Learns that the sensor's clock has stopped: the frame under way is dropped.
+    /// Handles a stop of the sensor's clock: drops the current frame.
     pub const fn stop(&mut self) {
         if self.is_active {
             self.is_active = false;
@@ -225,7 +225,7 @@ impl Engine {
         };
         self.found = self.found.or(fault);
         self.counts.lines_malformed += u32::from(self.is_active && fault.is_some());
-        // The sums of a frame with a fault or with too many lines have no use.
+        // The sums of a frame with a fault or with too many lines are not needed.
         if self.found.is_none() && self.line < self.in_force.size[1] {
             let marks = self.marks.iter().take(usize::from(self.column)).copied();
             self.sums.add_line(&self.in_force, self.line, marks);

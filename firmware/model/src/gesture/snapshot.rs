@@ -2,7 +2,7 @@
 
 use glint_core::colour::Rgb565;
 
-/// Number of words of the memory for a small picture.
+/// Number of words of a small picture's memory.
 pub const SNAPSHOT_WORDS: usize = 2048;
 
 /// A small picture: every 2^step-th pixel of every 2^step-th line, as marks or colours.
@@ -30,13 +30,13 @@ impl Snapshot {
         }
     }
 
-    /// The words: RGB565 colours, or marks, 16 per word and the first in the highest bit.
+    /// The words: RGB565 colours, or marks packed 16 per word, the first in the highest bit.
     #[must_use]
     pub fn words(&self) -> &[u16] {
         &self.words
     }
 
-    /// The number of its frame among the whole ones, from 1.
+    /// The number of its frame, counting whole frames from 1.
     #[must_use]
     pub const fn frame(&self) -> u32 {
         self.frame
@@ -47,7 +47,7 @@ impl Snapshot {
         *self = Self::new(self.step, self.is_colour);
     }
 
-    /// Takes the pixel at (`x`, `y`).
+    /// Adds the pixel at (`x`, `y`) if the picture samples it.
     pub(super) fn take(&mut self, [x, y]: [u16; 2], colour: Rgb565, is_marked: bool) {
         let between = (1 << self.step) - 1;
         if (x | y) & between != 0 {
@@ -55,7 +55,7 @@ impl Snapshot {
         }
         self.marks = self.marks << 1 | u16::from(is_marked);
         self.bits = (self.bits + 1) % 16;
-        // Words beyond the memory are dropped.
+        // Words beyond the end of the memory are dropped.
         if self.is_colour {
             let _ = self.words.push(colour.0);
         } else if self.bits == 0 {

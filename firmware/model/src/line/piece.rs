@@ -1,4 +1,4 @@
-//! Pieces: the parts of a line in the bands of a picture, one in each band that it has a pixel in.
+//! Pieces: the parts of a line in the bands of a picture, one for each band in which the line has a pixel.
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Size;
@@ -11,14 +11,14 @@ use crate::triangle::setup::Bounds;
 /// The part of a line in one band of a picture, given by its first pixel there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
-    /// The line from the first pixel in the band on, to its end outside of the band. Its depths have the bias.
+    /// The line from the first pixel in the band on, to its end outside of the band. Its depths include the bias.
     pub line: Line,
     /// The colour of its pixels.
     pub colour: Rgb565,
 }
 
 impl Segment {
-    /// The pieces of the segment, in the order in which it meets the bands of a picture of this size.
+    /// The pieces of the segment in a picture of this size, in the order in which the segment crosses the bands.
     pub fn pieces(&self, size: Size) -> impl Iterator<Item = Piece> + use<> {
         let (ends, bias) = match self.depth {
             LineDepth::Over => {
@@ -53,7 +53,7 @@ impl Piece {
         [pixel.column, pixel.row]
     }
 
-    /// Draws the part of the piece in a band, which ends where the line leaves the band. Calls `visit` with each pixel, and returns the
+    /// Draws the piece in its band, up to the last pixel in the band. Calls `visit` with each pixel, and returns the
     /// number of those that passed the depth test.
     pub fn draw(
         &self,
@@ -64,7 +64,7 @@ impl Piece {
         let mut drawn = 0;
         let pixels = LinePixels {
             line: self.line,
-            // The end of the band is found by the position of each pixel.
+            // The position of each pixel shows whether the band has ended.
             last: [i32::MAX; 2],
         };
         let is_inside = |column, row| {
@@ -79,7 +79,7 @@ impl Piece {
     }
 }
 
-/// The pixels of a band of a picture.
+/// The memory of a band of a picture.
 pub fn band_bounds(size: Size, band: u32) -> Bounds {
     let rows = size.band_lines() as i32;
     Bounds {

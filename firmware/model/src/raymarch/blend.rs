@@ -1,4 +1,4 @@
-//! Unions of a flat solid, which has plane faces, and a round solid, which has spheres: sharp or with a fillet.
+//! Unions of a flat solid (plane faces) and a round solid (spheres), sharp or with a fillet.
 //!
 //! For a fillet of two surfaces with the distances a and b, the distance is their quadratic smooth minimum (I. Quilez,
 //! "smooth minimum"): min(a, b) − h²/4k with h = max(k − |a − b|, 0). Its gradient is the weighted mean of both
@@ -34,8 +34,8 @@ impl Blend {
         }
     }
 
-    /// Joins the samples of a flat solid and of a sphere at the same point: returns the sample with the smaller distance,
-    /// or a blended sample on the fillet. At equal distances a sharp union returns the sample of the flat solid.
+    /// Combines the samples of a flat solid and of a sphere at one point: returns the sample with the smaller distance, or a blended
+    /// sample on the fillet. At equal distances a sharp union returns the sample of the flat solid.
     pub fn union(&self, flat: Sample, round: Sample) -> Sample {
         let is_round = round.distance < flat.distance;
         let nearer = if is_round { round } else { flat };

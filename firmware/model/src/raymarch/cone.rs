@@ -1,4 +1,4 @@
-//! The prepass: one cone for each block of pixels, marched before the rays, gives the start of the block's rays.
+//! The prepass: one cone for each block of pixels, marched before the rays, determines where the block's rays start.
 //!
 //! A cone is the ray through the middle of a block, with a radius that grows with the ray's parameter t. At the same
 //! depth along the camera's forward axis n, points of the block's rays differ from the cone's point by at most t·spread,
@@ -59,14 +59,14 @@ impl FieldSetup {
         }
     }
 
-    /// Marches a cone as long as no ray of its block can meet a surface. Returns the parameter t at the end of the cone,
+    /// Marches a cone until a ray of its block may meet a surface. Returns the parameter t at the end of the cone,
     /// and the number of evaluations.
     pub fn march_cone(&self, cone: &Cone) -> (u32, u32) {
         let Cone { ray, spread } = cone;
         let tuning = &self.tuning;
         // The coordinates of a point are truncated by less than one unit of 2^−12, so the point moves by less than one
-        // unit in the maximum norm and less than two units in the Euclidean norm. Each step below is therefore one unit
-        // shorter, and in round fields, which use the Euclidean norm, `cut` makes it one more unit shorter.
+        // unit in the maximum norm and less than two units in the Euclidean norm. Each step below is therefore one unit shorter; in round
+        // fields, which use the Euclidean norm, `cut` removes one more unit.
         let cut = u32::from(self.is_round());
         let mut t = ray.start;
         let mut steps = 0;

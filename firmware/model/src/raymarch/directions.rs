@@ -18,8 +18,8 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Computes the directions for the cameras of two eyes, or twice that of one eye, which differ by place and shift alone. With `round`
-    /// the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
+    /// Computes the directions for the cameras of two eyes, which differ only in position and shift, or for one camera given twice. With
+    /// `round` the directions D are shorter than 1 in the Euclidean norm, otherwise in the maximum norm.
     pub fn new(eyes: &[View; 2], width: u32, height: u32, round: bool) -> Self {
         let [view, _] = eyes;
         let half_width = view.half_width().to_bits() as i64;
@@ -51,7 +51,7 @@ impl Directions {
         const ONE: i64 = (1 << 51) - (1 << 36);
         const SQUARE: i64 = (1 << 50) - (1 << 40);
         let exponent = if round {
-            // Squares the components with 25 of their fraction bits and 3 integer bits.
+            // Squares the components, each with 25 fraction bits and 3 integer bits.
             let squares = corners.map(|d| d.map(|x| ((x >> 26) + 1).pow(2)).iter().sum());
             let longest: i64 = squares.max().unwrap_or(0);
             (0..3).find(|&e| longest >> (2 * e) < SQUARE).unwrap_or(3)

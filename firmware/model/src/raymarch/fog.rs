@@ -1,4 +1,4 @@
-//! Fog: the share of a surface's colour that fog hides, by depth.
+//! Fog: the share of a surface's colour that the fog hides, as a function of depth.
 
 use glint_core::feature::{FOG, STEREO};
 use glint_core::fixed::U4_28;
@@ -8,7 +8,7 @@ use super::palette::Palette;
 use super::setup::FieldSetup;
 
 impl FieldOptions {
-    /// Returns the palette of a frame: the palette of these options with their fog, and in grey for two eyes.
+    /// Returns the palette of these options with fog; in grey for two eyes.
     pub fn palette_for(&self, setup: &FieldSetup) -> Palette {
         let palette = if FOG.is_built && self.fog != U4_28::ZERO {
             self.palette.with_fog(setup, self.fog)
@@ -23,12 +23,12 @@ impl FieldOptions {
 }
 
 impl Palette {
-    /// Adds fog to the palette, of transmittance e^(−density·z) for a surface at depth z along the camera's forward axis,
-    /// in world units. An entry of the table `fog` is the share of hidden colour at the middle of its range of depths, in
-    /// 255ths and within 0.51 of the exact value. The last entry is also used for all larger depths.
+    /// Adds fog to the palette: its transmittance is e^(−density·z) at depth z along the camera's forward axis, in world units. An entry
+    /// of the table `fog` is the share of hidden colour at the middle of the entry's depth range, in 255ths, within 0.51 of the exact
+    /// value. The last entry is also used for all larger depths.
     #[must_use]
     pub fn with_fog(self, setup: &FieldSetup, density: U4_28) -> Self {
-        // Selects the smallest depth step for which 256 steps reach a transmittance of e^−8, or the largest available step.
+        // Selects the smallest depth step with which 256 steps reach a transmittance of e^−8, otherwise the largest step.
         const ENOUGH: u64 = 8 << 32;
         let unit = fog_of_unit(setup, density);
         let fog_shift = (0..7).find(|shift| unit << (shift + 8) >= ENOUGH);

@@ -1,4 +1,4 @@
-//! Light on spheres, whose normal differs at every point: ambient light and directional lights.
+//! Ambient and directional light on spheres, whose normal varies from point to point.
 
 use glint_core::field::{FixedSphere, MAX_SPHERES};
 use glint_core::light::{Lighting, MAX_LIGHTS, Material, Rgb, whole};
@@ -21,13 +21,13 @@ pub struct Lights {
     pub list: [Light; MAX_LIGHTS],
     /// Number of lights, 1 to 4. The gateware takes one clock for each light.
     pub count: usize,
-    /// Material colours of the spheres, by number.
+    /// Material colours of the spheres, by sphere number.
     pub materials: [Rgb; MAX_SPHERES],
 }
 
 impl Lights {
-    /// Returns the lights of a scene for spheres of the given material. For the material `Normal` without any light they
-    /// are daylight, because unshaded spheres look flat.
+    /// Returns the lights of a scene for spheres of the given material. For the material `Normal` without lights, returns daylight,
+    /// because unshaded spheres look flat.
     pub fn new(material: Material, lighting: &Lighting) -> Self {
         let day = Lighting::day();
         let lighting = if material == Material::Normal && lighting.lights.is_empty() {
@@ -38,7 +38,7 @@ impl Lights {
         let mut list = [Light::default(); MAX_LIGHTS];
         for (place, light) in list.iter_mut().zip(&lighting.lights) {
             *place = Light {
-                // Converts from 14 to 16 fraction bits.
+                // Converts a direction from 14 to 16 fraction bits.
                 direction: light.direction().map(|x| i32::from(x) << 2),
                 colour: light.colour(),
             };

@@ -16,8 +16,7 @@ pub(super) const FARTHEST: u32 = (1 << (11 + FRACTION)) - 1;
 /// Precision of the march of rays, which determines the errors of a picture and the time to draw it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
-    /// Threshold: a ray hits where the distance is below `threshold` + t·2^−`footprint`; field units, 12 fraction bits,
-    /// below 2^16.
+    /// Threshold: a ray hits if the distance is below `threshold` + t·2^−`footprint`. In field units, 12 fraction bits, below 2^16.
     pub threshold: u32,
     /// Footprint: the exponent of the part of the threshold that grows with t, t·2^−`footprint`; 7 to 15.
     pub footprint: u32,
@@ -30,15 +29,15 @@ pub struct Tuning {
 
 /// Default tuning for pictures of all sizes (docs/report/raymarch.md).
 ///
-/// Errors of a picture lie at edges: a ray that passes an edge within the threshold hits there. The part of the
+/// Errors of a picture occur at edges: a ray that passes an edge within the threshold counts as a hit. The part of the
 /// threshold that grows with t is therefore much less than a pixel's width, 1/23 of a pixel even at 1280 × 720 and half
 /// width 0.9. One tuning serves all sizes, because the number of evaluations per ray hardly depends on the size. Smaller
 /// thresholds need more evaluations: if the constant part or the growing part were smaller, the slowest view of the
-/// report would take more than 14.4 evaluations per ray. A smaller constant part with a larger growing part shows more
-/// wrong faces for the same number of evaluations.
+/// report would take more than 14.4 evaluations per ray. A smaller constant part with a larger growing part gives more wrong faces for an
+/// equal number of evaluations.
 pub const DEFAULT_TUNING: Tuning = Tuning::with(Quality::Balanced.preset().faces);
 
-/// Default tuning for round fields and oblique faces, where silhouettes and the normals of spheres show the position of a hit.
+/// Default tuning for round fields and oblique faces, whose silhouettes and sphere normals reveal errors in the position of a hit.
 pub const ROUND_TUNING: Tuning = Tuning::with(Quality::Balanced.preset().round);
 
 impl Tuning {
@@ -51,7 +50,7 @@ impl Tuning {
         }
     }
 
-    /// Tuning of a field in pictures of a quality.
+    /// Tuning for a field and a picture quality.
     pub const fn of(field: &Field, quality: Quality) -> Self {
         let preset = quality.preset();
         if field.is_round() || field.has_octants() {
@@ -62,7 +61,7 @@ impl Tuning {
     }
 }
 
-/// Colour of undecided rays that are to be seen: magenta.
+/// Debug colour of undecided rays: magenta.
 const MARK: [u8; 3] = [255, 0, 255];
 
 /// Options of drawing a field.
@@ -90,7 +89,7 @@ impl FieldOptions {
         }
     }
 
-    /// Options for a field with an appearance that a camera sees, with one eye or two, in a picture of a quality.
+    /// Options for a field, its appearance, a camera, one eye or two, and a picture quality.
     pub fn new(
         field: &Field,
         appearance: &Appearance,

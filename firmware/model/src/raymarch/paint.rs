@@ -1,4 +1,4 @@
-//! Colour of a ray's end: a colour of the palette, darkened by the ray's number of steps and faded by the fog.
+//! Colour of a ray's end: a colour of the palette, darkened by the ray's number of steps and blended with the fog.
 
 use glint_core::field::Surface;
 use glint_core::light::whole;
@@ -56,7 +56,7 @@ fn lit(setup: &FieldSetup, palette: &Palette, ray: &Ray, outcome: &RayResult) ->
     Some(palette.lights.shine_on(number, sphere, normal))
 }
 
-/// Mixes two colours, to nearest: `part` is the weight of `to`, 255 for `to` alone.
+/// Mixes two colours, rounded to nearest. `part` is the weight of `to`: 255 gives only `to`.
 fn mixed(from: [u8; 3], to: [u8; 3], part: u8) -> [u8; 3] {
     core::array::from_fn(|i| {
         let [from, to] = [from[i], to[i]].map(i32::from);

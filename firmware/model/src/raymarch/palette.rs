@@ -6,17 +6,17 @@ use glint_core::light::{Background, Lighting, Material};
 
 use super::lights::{Light, Lights};
 
-/// The colours of a frame, computed from materials and lights; eight bits a channel. With two eyes only the luminance
-/// is used, and all channels of a colour are equal.
+/// The colours of a frame, computed from materials and lights; eight bits a channel. With two eyes the colours are grey: all channels have
+/// the luminance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Palette {
     /// Lit colours of the faces, by [`Surface::face`](glint_core::field::Surface::face): six perpendicular to the axes,
     /// or eight perpendicular to the diagonals.
     pub faces: [[u8; 3]; 8],
-    /// Lights and materials of the spheres.
+    /// Lights on the spheres, and materials of the spheres.
     pub lights: Lights,
-    /// Colour of an undecided ray, which has reached its step limit: that of the horizon, since such a ray runs along a face into
-    /// the distance, where fog and sky have this colour.
+    /// Colour of an undecided ray, which has reached its step limit. This is the horizon's colour, because most such rays run along a face
+    /// into the distance, where fog and sky have this colour.
     pub undecided: [u8; 3],
     /// Colour of the sky at the zenith.
     pub zenith: [u8; 3],
@@ -33,14 +33,14 @@ pub struct Palette {
 }
 
 impl Default for Palette {
-    /// Faces in the colours of their normals, in front of white, without fog or shadows.
+    /// Faces coloured by their normals on a white background, without fog or occlusion.
     fn default() -> Self {
         Self::new(Material::Normal, &Lighting::PLAIN, Background::White)
     }
 }
 
 impl Palette {
-    /// Faces of a material in the given light, in front of a background, without fog or shadows.
+    /// Faces of a material in the given light on a background, without fog or occlusion.
     pub fn new(material: Material, lighting: &Lighting, background: Background) -> Self {
         let [zenith, horizon] = background.colours();
         Self {

@@ -1,6 +1,6 @@
-//! The prepass: blocks of pixels and constants of their cones.
+//! The prepass: blocks of pixels, and the constants of their cones.
 
-/// Largest number of cones: the gateware's table has one depth for each cone.
+/// Largest number of cones, the number of depths in the gateware's table.
 const CONES: u32 = 1 << 14;
 
 /// The constants of a frame's cones.
@@ -41,8 +41,8 @@ impl Cones {
         }
     }
 
-    /// Amount by which the length index of a cone (see `Ray::length`) is larger than the length index of the ray through its
-    /// middle, so that every direction in the block has length 1 or less.
+    /// Amount added to the length index (see `Ray::length`) of the ray through a block's middle to get the cone's, so that every direction
+    /// in the block has length 1 or less.
     pub(super) const fn margin(&self, round: bool) -> u32 {
         if round {
             // With s for the spread, (|D| + s)² − |D|² is at most 2·s + s², and s is at most 2^−4.
@@ -53,8 +53,8 @@ impl Cones {
     }
 }
 
-/// Exponent of the block size of a picture, 2 to 4: blocks have 2^exponent pixels in each direction, and this is the smallest size
-/// for which the cones of all eyes fit the table.
+/// Exponent of the block size of a picture, 2 to 4: blocks are squares of 2^exponent pixels, the smallest for which the cones of all eyes
+/// fit the table.
 pub const fn block_for((width, height): (u32, u32), eyes: u32) -> u32 {
     let mut block = 2;
     while block < 4 && eyes * (width >> block) * (height >> block) > CONES {

@@ -41,7 +41,7 @@ const fn round_inverses() -> [u32; 1024] {
 /// A ray before its first step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ray {
-    /// Number of the eye: 0 for the left or only one.
+    /// Number of the eye: 0 for the left or only eye, 1 for the right eye.
     pub eye: usize,
     /// Direction, s1.17, of length 1 at most: in the maximum norm, or in the Euclidean norm for scenes with spheres.
     pub direction: [i32; 3],
@@ -121,7 +121,7 @@ impl FieldSetup {
     /// first ten fraction bits of the largest magnitude, or of |D|² rounded up for scenes with spheres.
     pub(super) fn length(&self, parts: [u32; 3]) -> u32 {
         if self.is_round() {
-            // Squares 17 bits of each component. The truncated bits change the sum by less than 2^−15, which is added.
+            // Squares 17 bits of each component. The truncated bits change the sum by less than 2^−15; this bound is added.
             let square: u64 = parts.map(|part| u64::from(part >> 7).pow(2)).iter().sum();
             ((square + (1 << 19)) >> 24) as u32 & 0x3FF
         } else {
@@ -158,11 +158,11 @@ impl FieldSetup {
         ((u64::from(depth) * u64::from(part)) >> 10) as u32
     }
 
-    /// Parameter t at which a ray enters the bounding box, or slightly less, by at most about a part of 2^−17. The point
-    /// at t is therefore never inside the box.
+    /// Parameter t at which a ray enters the bounding box, or less by a relative 2^−17 at most. The point at t is therefore never inside
+    /// the box.
     ///
-    /// Along each axis, t is the distance to the box divided by the component of the direction. The reciprocal from the
-    /// table is too small by a part of up to 1/i for index i, so the distance that remains is divided a second time.
+    /// Along each axis, t is the distance to the box divided by the component of the direction. The reciprocal from the table is too small
+    /// by up to a relative 1/i for index i, so the remaining distance is divided a second time.
     fn entry(&self, eye: usize, direction: &[i32; 3]) -> u64 {
         let Eye {
             origin, outside, ..
@@ -175,7 +175,7 @@ impl FieldSetup {
                 let outside = u64::from(outside[i]);
                 let part = u64::from(magnitude(direction[i]));
                 let near = divided(outside).min(FARTHEST.into());
-                // For a negative component, `magnitude` is one less than |d|: so |d| is at most `part` + 1.
+                // For a negative component `magnitude` is |d| − 1, so |d| is at most `part` + 1.
                 let gone = (near * (part + 1)) >> 17;
                 near + divided(outside.saturating_sub(gone + 1))
             })
@@ -196,7 +196,7 @@ impl FieldSetup {
             let state = if gone || next > tuning.far {
                 Some(State::Miss)
             } else if distance < threshold as i32 {
-                // Only the last of the points needs its surface.
+                // Only the last point needs its surface.
                 let point = self.point(ray, t).map(in_range);
                 Some(State::Hit(self.sample(point).surface))
             } else if steps >= self.cap() {
@@ -241,8 +241,8 @@ impl FieldSetup {
         self.tuning.cap << if self.is_round() { 2 } else { 0 }
     }
 
-    /// Evaluates the field at the ray's point at t. Returns the distance, and whether the ray has left the field's bounds for
-    /// good.
+    /// Evaluates the field at the ray's point at t. Returns the distance, and whether the ray has left the field's bounds and cannot
+    /// reenter them.
     pub(super) fn evaluate(&self, ray: &Ray, t: u32) -> (i32, bool) {
         let point = self.point(ray, t);
         let distance = self.distance(point.map(in_range));
@@ -260,7 +260,7 @@ impl FieldSetup {
     pub fn point(&self, ray: &Ray, t: u32) -> [i32; 3] {
         [0, 1, 2].map(|i: usize| {
             let way = i64::from(t) * i64::from(ray.direction[i]);
-            // The sum wraps only for constants that are not those of a frame.
+            // The sum wraps only for invalid frame constants.
             self.eyes[ray.eye].origin[i].wrapping_add((way >> 17) as i32)
         })
     }
@@ -272,7 +272,7 @@ impl FieldSetup {
     }
 }
 
-/// A coordinate of a point as the field takes it: s10.12.
+/// Converts a coordinate of a point to the field's format s10.12.
 fn in_range(x: i32) -> i32 {
     cropped(x, 10 + FRACTION)
 }
@@ -290,9 +290,9 @@ fn approach(ray: &Ray, distance: i32, axis: u8, positive: bool) -> (u32, u32) {
     (gap(distance), slope)
 }
 
-/// Returns gap and slope as [`approach`] does, for a face perpendicular to a diagonal. Gap and slope are three quarters
-/// of their exact values, so their quotient is right. The exact slope is a third of the sum of the direction's three
-/// components towards the face; a quarter of the sum needs no division.
+/// Like [`approach`], for a face perpendicular to a diagonal. Gap and slope are both three quarters of their exact values, so their
+/// quotient is exact. The exact slope is a third of the sum of the direction's three components towards the face; a quarter of the sum
+/// needs no division.
 fn approach_diagonal(ray: &Ray, distance: i32, signs: u8) -> (u32, u32) {
     let towards = [0, 1, 2].map(|i: usize| {
         let part = ray.direction[i] >> 7;

@@ -25,7 +25,7 @@ pub struct FieldStats {
 }
 
 impl FieldStats {
-    /// Adds the counts of other rows.
+    /// Adds the counts of further rows.
     pub const fn add(&mut self, other: &Self) {
         self.rays += other.rays;
         self.evaluations += other.evaluations;
@@ -50,8 +50,7 @@ impl FieldStats {
 /// there. With two eyes every pixel changes.
 ///
 /// With two eyes `palette` must be grey, and depths are the left eye's. `show` receives the column, row, ray and result
-/// of every ray. The function is not inlined, so that its loop and the functions that it calls do not evict each other
-/// from the instruction cache.
+/// of every ray. Not inlined, so that the loop and its callees do not evict each other from the instruction cache.
 ///
 /// # Errors
 /// [`RenderError`] if the target's size differs from the setup's; the target is then unchanged.
@@ -69,7 +68,7 @@ pub fn render_field(
 }
 
 /// Draws the rows of a field from `first` on, as many as `colour` and `depth` have, as [`render_field`] does. `first` is a multiple of
-/// 16, so that the rows begin with those of a block of the prepass.
+/// 16, so that the rows begin at a row of prepass blocks.
 #[inline(always)]
 pub fn render_rows(
     setup: &FieldSetup,
@@ -130,8 +129,8 @@ impl FieldSetup {
     }
 }
 
-/// Converts three channels of eight bits to RGB565. Each channel is rounded to nearest; values that would round beyond
-/// the largest number of the channel give this number.
+/// Converts three channels of eight bits to RGB565. Each channel is rounded to nearest; the result saturates at the channel's largest
+/// value.
 pub fn rgb565([r, g, b]: [u8; 3]) -> u16 {
     let narrow = |x: u8, bits: u32| {
         ((u32::from(x) + (0x80 >> bits)) >> (8 - bits)).min((1 << bits) - 1) as u16

@@ -108,11 +108,10 @@ impl FieldSetup {
         let rays = Directions::new(&views, width, height, round);
         let eye = |view: &View, first: [i64; 3]| {
             let origin = [0, 1, 2].map(|i: usize| {
-                // The eye of the camera is within 32 world units of the origin, and each of two eyes is at most 1 world
-                // unit to the side of it.
+                // The camera is within 32 world units of the origin, and each of two eyes at most 1 world unit to the side of the camera.
                 let place = units(view.eye()[i], scale) as i32;
                 if repeated {
-                    // The same position relative to the field, in the cell about the origin.
+                    // The equivalent position relative to the field, in the cell about the origin.
                     cropped(place, 6 + FRACTION)
                 } else {
                     place
@@ -128,8 +127,8 @@ impl FieldSetup {
 
         let near = i64::from(view.near().to_bits()) << 4;
         let nearest = nearest(view, extent);
-        // The near plane is at most 2 world units away, the corner of the box at most 64. The depth of the corner is
-        // reduced by one unit below, because it is rounded.
+        // The near plane is at most 2 world units away, the corner of the box at most 64. The code below reduces the depth of the corner
+        // by one unit, because it is rounded.
         let [plane, corner] = [near, nearest >> 5].map(|x| units(Q32_32::from_bits(x), scale));
         let near_units = plane.max(corner - 1) << rays.exponent;
         let world_depth = DepthScale::from_nearest(nearest.max(near << 5));
@@ -172,13 +171,13 @@ impl FieldSetup {
             .map_or_else(Blend::default, |beside| beside.blend)
     }
 
-    /// Whether the scene has spheres. Rays are then scaled by their Euclidean length. That length is never below the
-    /// length in the maximum norm, so distances of flat solids hold for such rays too.
+    /// Whether the scene has spheres. Rays are then scaled by their Euclidean length. The Euclidean length is never below the length in
+    /// the maximum norm, so distances of flat solids are also valid for such rays.
     pub fn is_round(&self) -> bool {
         self.spheres().is_some()
     }
 
-    /// Evaluations of a step: one for each sphere of the scene, or one without spheres.
+    /// Number of evaluations per step: one for each sphere of the scene, or one without spheres.
     pub fn passes(&self) -> u32 {
         self.spheres().map_or(1, |spheres| spheres.count as u32)
     }
@@ -238,8 +237,7 @@ fn nearest(view: &View, extent: Option<[Q32_32; 3]>) -> i64 {
         (0..3)
             .map(|i| {
                 let n = i64::from(view.n()[i].to_bits());
-                // The products have 14 + 23 fraction bits. The reach is slightly enlarged, because the length of n is
-                // not exactly 1.
+                // The products have 14 + 23 fraction bits. The reach is enlarged slightly, because the length of n is not exactly 1.
                 let place = n * (view.eye()[i].to_bits() >> 18);
                 let reach = n.abs() * ((half[i].to_bits() >> 18) + 2);
                 -place - reach - (reach >> 13)

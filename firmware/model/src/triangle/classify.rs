@@ -8,7 +8,7 @@ use crate::triangle::vertex::{Projected, ScreenVertex};
 pub enum Path<'a> {
     /// Not drawn, because the triangle lies wholly beyond one side of the picture or behind the near plane.
     Unseen,
-    /// Drawn as a whole: goes to the triangle setup.
+    /// Drawn whole: goes to the triangle setup.
     Regular([&'a ScreenVertex; 3]),
     /// Clipped first, because the triangle crosses the near plane or leaves the guard band.
     Exception,

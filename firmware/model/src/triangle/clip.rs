@@ -1,8 +1,8 @@
 //! The clipper: homogeneous Sutherland–Hodgman in integers, before the perspective division.
 //!
 //! It cuts triangles that cross the near plane or leave the guard band, or, as an option, all triangles that leave the view volume.
-//! The intersection of an edge with a plane is the exact point after rounding. It does not depend on the direction of the
-//! edge, so the two triangles at an edge get the same vertex.
+//! The intersection of an edge with a plane is the exact point, rounded. It does not depend on the direction of the edge, so both
+//! triangles at an edge get the same vertex.
 
 use glint_core::camera::Projection;
 use heapless::Vec;
@@ -16,7 +16,7 @@ use crate::triangle::volume::Volume;
 /// 9, but rounding may make a polygon concave.)
 pub const MAX_VERTICES: usize = 28;
 
-/// The polygon that remains of a triangle after clipping.
+/// A triangle after clipping: a polygon.
 #[derive(Clone, Debug, Default)]
 pub struct Polygon {
     vertices: Vec<CameraVertex, MAX_VERTICES>,
@@ -29,7 +29,7 @@ impl Polygon {
     }
 
     fn push(&mut self, vertex: CameraVertex) {
-        // There is room for every vertex that clipping can make.
+        // Clipping never makes more vertices than fit.
         let _ = self.vertices.push(vertex);
     }
 }
@@ -47,20 +47,20 @@ pub fn contains(frame: &MeshSetup, vertex: &CameraVertex) -> bool {
     planes(frame.volume).all(|plane| plane.distance(frame, vertex) >= 0)
 }
 
-/// A side of the volume of a frame.
+/// A plane that bounds the volume of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Plane {
-    /// Inside is Z ≥ near: at or beyond the near plane.
+    /// Near plane; inside is Z ≥ near.
     Near,
-    /// Inside is Z ≤ far: at the far plane or nearer.
+    /// Far plane; inside is Z ≤ far.
     Far,
     /// Left side of the picture; inside is to the right.
     Left,
     /// Right side of the picture; inside is to the left.
     Right,
-    /// Inside is at or below the top side.
+    /// Top side of the picture; inside is at or below it.
     Top,
-    /// Inside is at or above the bottom side.
+    /// Bottom side of the picture; inside is at or above it.
     Bottom,
 }
 
@@ -93,8 +93,7 @@ impl Plane {
         }
     }
 
-    /// Writes the part of `polygon` that is inside the plane to `left`. Returns false without writing if the whole
-    /// polygon is inside.
+    /// Writes the part of `polygon` inside the plane to `left`. Returns false, and writes nothing, if the whole polygon is inside.
     fn cut(self, frame: &MeshSetup, polygon: &Polygon, left: &mut Polygon) -> bool {
         let vertices = polygon.vertices();
         let Some(mut from) = vertices.last() else {
@@ -153,7 +152,7 @@ impl Plane {
     }
 }
 
-/// The homogeneous coordinate by which X and Y are divided, 37 fraction bits.
+/// The homogeneous coordinate that divides X and Y, 37 fraction bits.
 const fn divisor(frame: &MeshSetup, vertex: &CameraVertex) -> i64 {
     match frame.projection {
         Projection::Perspective => vertex.z,
@@ -167,10 +166,10 @@ fn half_pixels(frame: &MeshSetup, x: i64) -> i64 {
     x << (24 - frame.scale_shift)
 }
 
-/// Whether a triangle lies wholly beyond one side of the picture. In perspective the plane through this side and the eye separates it
-/// from the picture, so the test also holds for vertices behind the eye.
+/// Whether a triangle lies wholly beyond one side of the picture. In perspective the plane through this side and the eye separates the
+/// triangle from the picture, so the test is also valid for vertices behind the eye.
 ///
-/// Such a triangle is left out by this fast test instead of clipping, after which it would cover no pixel.
+/// This fast test replaces the clipping of such a triangle, which would cover no pixel.
 pub fn off_picture(frame: &MeshSetup, triangle: &[CameraVertex; 3]) -> bool {
     let off = |x: fn(&CameraVertex) -> i64, size: u32| {
         let places = triangle.each_ref().map(|v| {
@@ -196,8 +195,7 @@ pub fn clip(frame: &MeshSetup, triangle: [CameraVertex; 3]) -> Polygon {
     polygon
 }
 
-/// Clips an edge to the volume of the frame; `None` if nothing remains. Where it is cut, it has the vertices that the triangles at
-/// the edge get.
+/// Clips an edge to the volume of the frame; `None` if nothing remains. Its new ends are the vertices that the triangles at the edge get.
 pub fn clip_edge(
     frame: &MeshSetup,
     [mut a, mut b]: [CameraVertex; 2],

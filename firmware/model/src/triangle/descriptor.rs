@@ -38,7 +38,7 @@ pub const fn words(capability: Shading) -> usize {
     }
 }
 
-/// Start, and steps to the right and down, of the plane of the depth, and of the plane of a channel of light.
+/// Start value and steps per pixel to the right and down: of the depth plane, and of the plane of one light channel.
 type PlaneFields = [Bits; 3];
 const DEPTH: PlaneFields = [
     descriptor::DEPTH_START,
@@ -54,21 +54,21 @@ const fn light(channel: usize) -> PlaneFields {
 }
 const SMOOTH: Bits = in_planes(planes::SMOOTH);
 
-/// A field of the planes, which follow the descriptor.
+/// A field of the light planes, which follow the descriptor.
 const fn in_planes(field: Bits) -> Bits {
     field.from(descriptor::BITS)
 }
 
-/// Number of words of a piece at its start that are stored at [`stored_piece::LOW`]; the others are stored at [`stored_piece::HIGH`].
+/// Number of leading words of a piece that are stored at [`stored_piece::LOW`]; the remaining words are stored at [`stored_piece::HIGH`].
 const LOW_WORDS: usize = 4;
-/// Half a depth code, 14 fraction bits, which the depth of a piece includes.
+/// Half a depth code, 14 fraction bits, which is added to the depth of a piece.
 const HALF_A_CODE: i64 = 1 << 13;
 
 impl Descriptor {
     /// Packs a triangle; `colour` is its colour under flat shading.
     pub fn new(setup: &Setup, colour: Rgb565) -> Self {
         let bounds = setup.bounds;
-        // The bounds are in the picture and not negative, so unsigned divisions suffice.
+        // The bounds are in the picture and so not negative: unsigned divisions suffice.
         let group_start = setup.start_column / GROUP;
         let back = setup.start_column - GROUP * group_start;
         let mut words = [0; SMOOTH_WORDS];
@@ -142,13 +142,13 @@ impl Descriptor {
         Self { words }
     }
 
-    /// The words that gateware reads whose best shading is `capability`, the word with the lowest bits first.
+    /// The words read by gateware whose best shading is `capability`, lowest word first.
     pub fn words(&self, capability: Shading) -> &[u32] {
         self.words.get(..words(capability)).unwrap_or_default()
     }
 }
 
-/// Puts a plane whose start is moved `back` columns to the left.
+/// Writes a plane with its start moved `back` columns to the left.
 fn put_plane(words: &mut [u32], fields: PlaneFields, plane: &Plane, back: i32) {
     let start = plane
         .start
@@ -158,14 +158,13 @@ fn put_plane(words: &mut [u32], fields: PlaneFields, plane: &Plane, back: i32) {
     }
 }
 
-/// Start of a band's list, in words of 16 bytes from the start of the set of lists. A list has room for 4 << `shift`
-/// entries. The gap between two lists is as long as a row of a memory bank, so that the lists of neighbouring bands are
-/// in different banks.
+/// Start of a band's list, in 16-byte words from the start of the set of lists. A list holds up to 4 << `shift` entries. The gap between
+/// two lists is as long as a row of a memory bank, so that the lists of neighbouring bands are in different banks.
 pub const fn list_word(band: u32, shift: u32) -> u32 {
     LIST_TABLE_WORDS + (band << shift) + LIST_GAP_WORDS * band
 }
 
-/// Number of lines of a band in a picture of this width, which is one of [`SIZES`](crate::SIZES).
+/// Number of rows of a band in a picture of this width, one of the widths of [`SIZES`](crate::SIZES).
 pub const fn band_rows(width: u32) -> u32 {
     size(width).band_lines()
 }
@@ -181,11 +180,11 @@ const fn size(width: u32) -> Size {
     }
 }
 
-/// Number of 32-bit words of the table of list lengths, which is at the start of a set of lists.
+/// Number of 32-bit words of the table of list lengths at the start of a set of lists.
 pub const LENGTHS: usize = 4 * LIST_TABLE_WORDS as usize;
 
-/// The `shift` of [`list_word`] for a picture of this width: the largest value for which the lists of all bands fit `words` 32-bit
-/// words, with the table of their lengths. At least 2^15 words are required.
+/// The `shift` of [`list_word`] for a picture of this width: the largest value for which the table of list lengths and the lists of all
+/// bands fit `words` 32-bit words. At least 2^15 words are required.
 pub const fn list_shift(width: u32, words: usize) -> u32 {
     let room = (words / 4) as u32 - LIST_TABLE_WORDS;
     (room / size(width).bands() - LIST_GAP_WORDS).ilog2()
@@ -217,12 +216,12 @@ impl ListCounts {
         self.descriptors
     }
 
-    /// Whether a descriptor or an entry of a list had no room.
+    /// Whether the memory for descriptors or for a list was full.
     pub const fn is_full(&self) -> bool {
         self.is_full
     }
 
-    /// The counts of a set of `descriptors` descriptors and its lists, which a geometry pass has written.
+    /// The counts of a set of lists and its `descriptors` descriptors, written by a geometry pass.
     pub fn of(lists: &[u32], descriptors: u32) -> Self {
         Self {
             lengths: lists.first_chunk().copied().unwrap_or([0; LENGTHS]),
@@ -242,13 +241,13 @@ pub struct ListWriter<'a> {
     capability: Shading,
 }
 
-/// Error: no room for a descriptor or a list entry.
+/// Error: the memory for descriptors or for a list is full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Full;
 
 impl<'a> ListWriter<'a> {
-    /// Continues a set of descriptors and band lists in two regions of memory, of which `counts` are written, for a picture of this
-    /// width and gateware whose best shading is `capability`. A list has room for 4 << `list_shift` entries.
+    /// Continues a set of descriptors and band lists in two regions of memory, of which `counts` descriptors and entries are already
+    /// written, for a picture of this width and gateware whose best shading is `capability`. A list holds up to 4 << `list_shift` entries.
     pub const fn new(
         descriptors: &'a mut [u32],
         lists: &'a mut [u32],

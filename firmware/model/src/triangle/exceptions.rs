@@ -1,4 +1,4 @@
-//! Clipping of exceptions: triangles that the gateware leaves to the firmware.
+//! Clipping of exceptions: triangles that the gateware does not clip, but reports to the firmware.
 
 use glint_core::mesh::{Mesh, Rgb565};
 
@@ -6,10 +6,10 @@ use crate::triangle::mesh_setup::MeshSetup;
 use crate::triangle::primitive::{Options, Placed, clip_fan, lit_corners};
 use crate::triangle::setup::Setup;
 
-/// Clips the gateware's exceptions, given by their `numbers` in the mesh. Emits setup and colour of every part inside
-/// the view volume, and returns the number of exceptions that have such a part.
+/// Clips the gateware's exceptions, given by their `numbers` in the mesh. Emits setup and colour of every part inside the volume, and
+/// returns the number of exceptions with such a part.
 ///
-/// Numbers in ascending order, as the gateware writes them, are processed fastest. Numbers beyond the mesh are ignored.
+/// Numbers in ascending order, the gateware's order, are fastest. Numbers beyond the mesh are ignored.
 pub fn clip_exceptions(
     mesh: &Mesh,
     frame: &MeshSetup,

@@ -1,6 +1,6 @@
 //! The visible side of a triangle.
 
-/// The scalar product of a normal (s2.14) and the camera's forward direction (s2.23); below 2^41.
+/// The scalar product of a normal (s2.14) and the camera's forward direction (s2.23); its magnitude is below 2^41.
 pub fn along(normal: [i16; 3], n: &[i32; 3]) -> i64 {
     core::iter::zip(normal, n)
         .map(|(a, &b)| i64::from(a) * i64::from(b))
@@ -35,8 +35,7 @@ impl Facing {
         }
     }
 
-    /// Puts an attribute of the three vertices into clockwise order on the screen: for a front face, swaps the attributes
-    /// of vertices 1 and 2.
+    /// Sorts an attribute of the three vertices clockwise on the screen: for a front face, swaps the attributes of vertices 1 and 2.
     pub fn order<T>(self, [a, b, c]: [T; 3]) -> [T; 3] {
         match self {
             Self::Front => [a, c, b],

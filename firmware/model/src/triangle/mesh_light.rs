@@ -7,7 +7,7 @@ use glint_core::light::{MeshLighting, whole};
 /// The light on the meshes of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshLight {
-    /// The row of the light in the axes of the world, s2.23: the direction from the light, of length 1.
+    /// The row of the light in world coordinates, s2.23: the direction from the light, of length 1.
     pub row: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub forward: [i32; 3],
@@ -18,10 +18,10 @@ pub struct MeshLight {
 }
 
 impl MeshLight {
-    /// Colour and ambient light where there is no `MeshLight`: white light, and no ambient light.
+    /// Colour and ambient light without a `MeshLight`: white light, and no ambient light.
     pub const PLAIN: ([u16; 3], [u16; 3]) = ([1 << 8; 3], [0; 3]);
 
-    /// Computes the light on meshes that a camera sees.
+    /// Computes the light on meshes for a camera.
     pub fn new(lighting: &MeshLighting, view: &View) -> Self {
         let MeshLighting { ambient, light } = lighting;
         let forward = view.n().map(Q2_23::to_bits);
@@ -30,7 +30,7 @@ impl MeshLight {
             row: if light.is_at_camera() {
                 forward
             } else {
-                // Converts from 14 to 23 fraction bits.
+                // Converts a direction from 14 to 23 fraction bits.
                 light.direction().map(|x| -i32::from(x) << 9)
             },
             forward,

@@ -27,11 +27,11 @@ pub struct MeshSetup {
     pub v: [i32; 3],
     /// The camera's forward axis, s2.23.
     pub n: [i32; 3],
-    /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37; each s44. In orthographic projection
-    /// the depth of the code 2^18 is subtracted from −C·n.
+    /// The translation for the eye C: −C·u and −C·v with 14 + f fraction bits, −C·n with 37 fraction bits; each s44. In orthographic
+    /// projection, −C·n is reduced by the depth whose code is 2^18.
     pub translation: [i64; 3],
-    /// The smallest coordinate Z in front of the near plane, 37 fraction bits: in perspective `near_plane`, in orthographic
-    /// projection that of the code 2^18 − 4.
+    /// The smallest coordinate Z in front of the near plane, 37 fraction bits: in perspective `near_plane`, in orthographic projection the
+    /// depth of the code 2^18 − 4.
     pub near: i64,
     /// Distance of the near plane from the eye, 37 fraction bits.
     pub near_plane: i64,
@@ -41,10 +41,10 @@ pub struct MeshSetup {
     pub volume: Volume,
     /// Whether the mesh is an object, with a model matrix and a colour of its own.
     pub is_placed: bool,
-    /// The row of the light, s2.23: `n` for a light at the camera, otherwise the direction from the light, in the axes of an object's
-    /// mesh.
+    /// The row of the light, s2.23: `n` for a light at the camera, otherwise the direction from the light; for an object in the
+    /// coordinates of its mesh.
     pub light: [i32; 3],
-    /// Whether the mesh is mirrored, so that its front faces are clockwise on the screen.
+    /// Whether the model matrix mirrors the mesh, so that its front faces are clockwise on the screen.
     pub mirrors: bool,
 }
 
@@ -60,7 +60,7 @@ impl MeshSetup {
         Ok(setup)
     }
 
-    /// Computes the constants as [`new`](Self::new) does, in place: to copy them takes the soft core long. `scale` is kept from
+    /// Computes the constants as [`new`](Self::new) does, in place, because copying them is slow on the soft core. `scale` is kept from
     /// one frame to the next.
     ///
     /// # Errors
@@ -120,8 +120,8 @@ impl MeshSetup {
         Ok(())
     }
 
-    /// Replaces the scale of depth codes by that for a frame with several meshes, whose smallest and largest `depths` are given with
-    /// 37 fraction bits. Without a mesh both are at the near plane.
+    /// Replaces the scale of depth codes by the scale for a frame with several meshes, whose smallest and largest `depths` are given with
+    /// 37 fraction bits. Without a mesh both depths are the near plane's.
     pub(crate) fn set_depths(&mut self, depths: Option<[i64; 2]>) {
         let [nearest, farthest] = depths.unwrap_or([self.near_plane; 2]);
         match self.projection {
@@ -132,7 +132,7 @@ impl MeshSetup {
         }
     }
 
-    /// Sets the linear depth codes of an orthographic frame, and counts depths from that of the code 2^18.
+    /// Sets linear depth codes for an orthographic frame, and makes depths relative to the depth of the code 2^18.
     #[inline(never)]
     fn set_linear(&mut self, nearest: i64, farthest: i64, least: i32) {
         let depth = self.depth_of_world();
@@ -147,7 +147,7 @@ impl MeshSetup {
         self.translation[2] + self.depth.origin.unwrap_or_default()
     }
 
-    /// The content of the triangle engine's register `scale_shift`: the scale shift f, or f + 1 − ke in orthographic projection.
+    /// The value of the triangle engine's register `scale_shift`: the scale shift f, or f + 1 − ke in orthographic projection.
     pub fn engine_shift(&self) -> u32 {
         match self.projection {
             Projection::Perspective => self.scale_shift,
@@ -159,7 +159,7 @@ impl MeshSetup {
     /// Returns these constants with another clipping of triangles.
     ///
     /// # Errors
-    /// [`RenderError::Far`] for a far plane at the near plane or nearer.
+    /// [`RenderError::Far`] for a far plane that is not beyond the near plane.
     pub fn with_clip(self, clip: Clip) -> Result<Self, RenderError> {
         let volume = self.volume_of(clip)?;
         Ok(Self { volume, ..self })
@@ -174,7 +174,7 @@ impl MeshSetup {
         Ok(())
     }
 
-    /// The volume of a clipping, as [`with_clip`](Self::with_clip).
+    /// The volume for a kind of clipping, with the errors of [`with_clip`](Self::with_clip).
     pub(crate) fn volume_of(&self, clip: Clip) -> Result<Volume, RenderError> {
         match clip {
             Clip::Guard => Ok(Volume::Guard),
@@ -190,16 +190,16 @@ impl MeshSetup {
     }
 }
 
-/// The smallest exponent ke of the depth codes of an orthographic frame with one mesh: the vertex stage takes the 24 highest bits of
-/// a depth below 2^(35 + ke) units, of which it has bits 6 to 40.
+/// The smallest exponent ke of the depth codes of an orthographic frame with one mesh: the vertex stage uses the 24 highest bits of a
+/// depth below 2^(35 + ke) units, and has bits 6 to 40 of the depth.
 const LEAST_EXPONENT: i32 = -6;
-/// The smallest exponent ke of an orthographic frame with objects, from which each object subtracts up to 6.
+/// The smallest exponent ke of an orthographic frame with objects. Each object subtracts up to 6 from ke.
 const LEAST_OF_OBJECTS: i32 = 0;
 
 /// The scale s·2^f (docs/formats/camera.md, "Frame constants") as the fraction (W/2)·2^(28 + f)/h, where W is the width of the
 /// picture and h the half width of the view with 28 fraction bits.
 ///
-/// It depends on the width of the picture and the half width only, and takes a division.
+/// It depends only on the width of the picture and the half width, and is cached because it needs a division.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scale {
     width: u32,
@@ -214,7 +214,7 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
-    /// Makes this the scale of a picture of this width and a view, unless it is.
+    /// Updates the scale for a picture of this width and a view, if either has changed.
     fn update(&mut self, width: u32, view: &View) {
         let half_width = view.half_width().to_bits() as i64;
         let is_shifted = view.shift() != 0;
@@ -226,8 +226,8 @@ impl Scale {
     /// Finds the largest f up to 18 with ceil(s·2^f)·c < 2^24, where c is 1 + 2^−12, or √2·(1 + 2^−12) for a shifted picture.
     ///
     /// s is in [1.39, 73564], so f is in 7…18. A component of the basis is at most 1 + 10^−4, which is below 1 + 2^−12. With a shift of at
-    /// most 1, a component of u − shift·n is at most √2 times that.
-    // Not inlined, as most frames have the scale of the previous frame.
+    /// most 1, a component of u − shift·n is at most √2 times this bound.
+    // Not inlined, because most frames reuse the scale of the previous frame.
     #[inline(never)]
     fn new(width: u32, half_width: i64, is_shifted: bool) -> Self {
         /// The largest integer whose product with 1 + 2^−12 is below 2^24.
@@ -239,8 +239,8 @@ impl Scale {
             LARGEST
         };
         let numerator = |shift| i64::from(width / 2) << (28 + shift);
-        // ceil(s·2^24), of at least 25 bits. Without its last bits, rounded up, it is ceil(s·2^f) for a smaller f. Its leading
-        // 24 bits are then at most `largest`, or else its leading 23 bits are.
+        // `ceil` is ceil(s·2^24), which has at least 25 bits. Shifted right and rounded up it is ceil(s·2^f) for a smaller f. Either its
+        // leading 24 bits or its leading 23 bits are then at most `largest`.
         let whole: i64 = (numerator(24) + half_width - 1) / half_width;
         let cut = (whole.ilog2() - 23).max(6);
         let cut = cut + u32::from(whole > largest << cut);
@@ -256,15 +256,15 @@ impl Scale {
         }
     }
 
-    /// Replaces the translations −C·u·s and −C·v·s by those from the exact axes, within 2^−20 pixel.
+    /// Replaces the translations −C·u·s and −C·v·s by translations computed from the exact axes, within 2^−20 pixel.
     ///
-    /// In orthographic projection the distance to the eye does not reduce the error of a row. With these translations the error
-    /// acts on the position in the mesh, and not on its distance from the eye.
+    /// In orthographic projection the rounding error of a row is not divided by the distance to the eye. With exact translations the error
+    /// is proportional to the position in the mesh, and not to its distance from the eye.
     #[inline(never)]
     fn place(&self, view: &View, translation: &mut [i64; 3]) {
         let eye = view.eye().map(Q32_32::to_bits);
         for (axis, translation) in [view.u(), view.v()].into_iter().zip(translation) {
-            // Of |C·axis| < 2^58.1 in units of 2^−55 the 40 highest fraction bits remain, and s·2^24 is below 2^41.
+            // |C·axis| is below 2^58.1 in units of 2^−55 and is truncated to 40 fraction bits; s·2^24 is below 2^41.
             let along = nearest(-dot(eye, &axis.map(Q2_23::to_bits)), 15);
             let pixels = i128::from(along) * i128::from(self.whole);
             let shift = 50 - self.shift;
@@ -275,10 +275,10 @@ impl Scale {
     /// Scales a component r of an axis of the view: nearest(r·s·2^f), the quotient of 2·r·(numerator/2^23) + h and 2h, rounded
     /// down.
     ///
-    /// The soft core divides 64-bit numbers in software, in 1,200 clocks, so the only division is that of `ceil`. The
-    /// product r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.51: 2^−5 of the quotient's last place.
-    /// Rounded down, it is therefore the quotient or 1 less, and the remainder tells which.
-    // Not inlined: the soft core fetches code that runs once a frame from main memory, so small code is fast code.
+    /// The soft core divides 64-bit numbers in software, in 1,200 clocks, so only `ceil` is computed by a division. The product
+    /// r·ceil(s·2^(f + 6)) differs from r·s·2^(f + 6) by at most |r| < 2^23.51, which is 2^−5 of the quotient's last place. Rounded down,
+    /// it is therefore the quotient, or 1 less; the remainder distinguishes the two cases.
+    // Not inlined: the soft core fetches code that runs once per frame from main memory, so smaller code is faster.
     #[inline(never)]
     fn scaled(&self, r: Q2_23) -> i32 {
         let divisor = 2 * self.half_width;
@@ -291,7 +291,7 @@ impl Scale {
     }
 }
 
-/// The row u − shift·n, with which x is 0 in the middle of a shifted picture: the camera's right axis u without a shift.
+/// The row u − shift·n, which makes x = 0 the middle of a shifted picture; the camera's right axis u without a shift.
 fn across(view: &View) -> [Q2_23; 3] {
     let (u, n, shift) = (view.u(), view.n(), i64::from(view.shift().to_bits()));
     [0, 1, 2].map(|i: usize| {
@@ -301,7 +301,7 @@ fn across(view: &View) -> [Q2_23; 3] {
     })
 }
 
-/// The scalar product. Not inlined, as [`Scale::scaled`].
+/// The scalar product. Not inlined, for the reason given at [`Scale::scaled`].
 #[inline(never)]
 fn dot(a: [i64; 3], b: &[i32; 3]) -> i64 {
     core::iter::zip(a, b).map(|(a, &b)| a * i64::from(b)).sum()

@@ -11,20 +11,21 @@ use crate::triangle::volume::Volume;
 /// The smallest scale shift: with fewer fraction bits the products of the clipper do not fit 64 bits.
 const LEAST_SHIFT: u32 = 7;
 
-/// A model matrix, and what follows from it for every camera.
-// In this order, so that what the soft core reads in each frame is in few lines of its data cache.
+/// A model matrix, and values derived from it that do not depend on the camera.
+// In this order, so that the fields that the soft core reads in each frame are in few lines of its data cache.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Placement {
     matrix: Matrix,
-    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are turned.
+    /// The columns of the rotation or reflection of the matrix, without its scale, 24 fraction bits; the identity if normals are
+    /// transformed.
     rotation: [[i32; 3]; 3],
     /// Upper bound of the length to which the matrix stretches a vector of length 1, 24 fraction bits: the scale, if there is
-    /// one, otherwise the root of the sum of the squares of all entries.
+    /// one, otherwise the square root of the sum of the squares of all entries.
     stretch: u32,
-    /// Whether the normals are turned to the world or the mesh has such normals, so that the light is not turned.
+    /// Whether the normals are transformed to world coordinates, or the mesh already has such normals; the light is then not rotated.
     in_world: bool,
-    /// The matrix for normals; `None` if normals stay as they are.
+    /// The matrix for normals; `None` if normals are not transformed.
     normals: Option<Normals>,
 }
 
@@ -38,7 +39,7 @@ impl Placement {
         let [a, b, c] = entries.map(square);
         let normals = matrix.normals();
         let (kept, rotation, squared) = match normals.rotation() {
-            // The squares of the rows differ by at most a part of 2^−12 from the first one.
+            // The squares of the rows' lengths differ from that of the first row by a relative 2^−12 at most.
             Some(rotation) => (
                 None,
                 transposed(rotation.map(|row| row.map(|x| (x + (1 << 5)) >> 6))),
@@ -66,14 +67,14 @@ impl Placement {
         &self.matrix
     }
 
-    /// The matrix that transforms the normals of the mesh to the world; `None` if they stay as they are, because the light is turned or the
-    /// mesh has transformed normals.
+    /// The matrix that transforms the normals of the mesh to the world; `None` if they are not transformed, because the light is rotated
+    /// or the mesh has transformed normals.
     pub const fn normals(&self) -> Option<&Normals> {
         self.normals.as_ref()
     }
 
-    /// Returns the position of a copy of the mesh in which [`normals`](Self::normals), if there are any, have turned all normals.
-    /// The picture is the same, bit for bit.
+    /// Returns the placement for a copy of the mesh whose normals have been transformed by [`normals`](Self::normals), if any. The picture
+    /// is equal, bit for bit.
     #[must_use]
     pub const fn of_turned_mesh(&self) -> Self {
         Self {
@@ -82,7 +83,7 @@ impl Placement {
         }
     }
 
-    /// Whether light falls on the mesh in the axes of the world: its normals are turned, or have these axes.
+    /// Whether the mesh is lit in world coordinates: its normals are transformed, or are in world coordinates.
     pub const fn has_normals_in_world(&self) -> bool {
         self.in_world
     }
@@ -94,7 +95,7 @@ impl Placement {
     }
 
     /// Returns the smallest and the largest depth of a mesh at this position, with 37 fraction bits, in the camera's frame constants
-    /// `camera`. As the axis n may be 10^−4 longer than 1, the radius is enlarged by a part of 2^−13.
+    /// `camera`. The length of the axis n may be 1 + 10^−4, so the radius is multiplied by 1 + 2^−13.
     #[inline(always)]
     pub fn depths(&self, camera: &MeshSetup, radius: u32) -> [i64; 2] {
         let place = self.matrix.place().map(Q8_24::to_bits);
@@ -104,16 +105,16 @@ impl Placement {
         [z - reach, z + reach]
     }
 
-    /// Computes the frame constants of a mesh at this position from those of the camera, whose depth scale serves all objects of a
-    /// frame.
+    /// Computes the frame constants of a mesh with this placement from the constants of the camera, whose depth scale is used for all
+    /// objects of a frame.
     ///
-    /// All homogeneous coordinates are multiplied by 2^−k, with the smallest k for which the row n and the farthest vertex fit
-    /// the formats of the vertex stage; positions and depth codes do not change by this. In orthographic projection only Z is
-    /// multiplied, because X and Y are not divided.
+    /// All homogeneous coordinates are multiplied by 2^−k, with the smallest k for which the row n and the farthest vertex fit the formats
+    /// of the vertex stage; this does not change positions and depth codes. In orthographic projection only Z is multiplied, because X and
+    /// Y are not divided.
     ///
     /// # Errors
     /// [`RenderError::Near`] if the near plane is too near for the size and the distance of the object;
-    /// [`RenderError::Width`] if the picture of an orthographic camera is too narrow for them.
+    /// [`RenderError::Width`] if the view of an orthographic camera is too narrow for the object.
     pub fn setup(
         &self,
         view: &View,
@@ -125,8 +126,8 @@ impl Placement {
         Ok(setup)
     }
 
-    /// Computes the frame constants as [`setup`](Self::setup) does, in place: to copy them takes the soft core long. `setup` has the
-    /// constants of the camera, or those of another object with the same camera, and the volume in the units of the camera.
+    /// Computes the frame constants as [`setup`](Self::setup) does, in place, because copying them is slow on the soft core. `setup` must
+    /// hold the constants of the camera, or of another object with the same camera, and the volume in the camera's units.
     ///
     /// # Errors
     /// As [`setup`](Self::setup); `setup` must then not be used.
@@ -138,7 +139,7 @@ impl Placement {
         camera: &MeshSetup,
         radius: u32,
     ) -> Result<(), RenderError> {
-        // The columns and the place stay in registers during the products with all rows.
+        // The columns and the position stay in registers during the products with all rows.
         let [[ax, bx, cx], [ay, by, cy], [az, bz, cz]] = self.matrix.linear();
         let [x, y, z] = self.matrix.place();
         let (a, b, c, place) = (
@@ -163,11 +164,11 @@ impl Placement {
             );
             *result = [x, y, z];
             room |= rounded_room(x) | rounded_room(y) | rounded_room(z);
-            // A row is shorter than 2^24.5 and a place at most √3·2^29, so the product is below 2^55.
+            // A row is shorter than 2^24.5 and a position vector at most √3·2^29 long, so the product is below 2^55.
             *translation = of_camera + nearest_10(dot(row, &place));
         }
         let [x, y, z] = setup.translation;
-        // The light has the axes of the mesh, or, if its normals are turned, those of the world.
+        // The light is in the coordinates of the mesh, or, if the normals are transformed, in world coordinates.
         setup.light = if self.has_normals_in_world() {
             camera.light
         } else {
@@ -184,9 +185,9 @@ impl Placement {
         setup.is_placed = true;
         setup.mirrors = self.matrix.mirrors();
         let reach = self.reach(radius);
-        // A part of 2^−12 covers the errors of the camera's axes.
+        // A relative margin of 2^−12 covers the errors of the camera's axes.
         let reach = reach + (reach >> 12);
-        // Most objects fit the formats of the vertex stage as they are.
+        // Most objects fit the formats of the vertex stage without scaling.
         let widest = x.abs().max(y.abs()) + reach;
         let deepest = z.abs() + (reach >> 1);
         let is_perspective = camera.projection == Projection::Perspective;
@@ -197,10 +198,10 @@ impl Placement {
     }
 }
 
-/// Multiplies the homogeneous coordinates of an object by 2^−k and its rows by the power of two that fits, where `setup` has the constants
+/// Multiplies the homogeneous coordinates of an object by 2^−k and its rows by the power of two that fits. `setup` has the constants
 /// without these factors. `widest` and `deepest` are the largest |X|, |Y| and |Z|.
 ///
-/// Not inlined, as few objects need it.
+/// Not inlined, because few objects need it.
 #[inline(never)]
 fn fit(
     setup: &mut MeshSetup,
@@ -215,7 +216,7 @@ fn fit(
     if is_perspective {
         f += k;
     } else {
-        // The vertex stage has depths of up to 16 world units, for which ke is 5.
+        // The vertex stage supports depths of up to 16 world units, for which ke is 5.
         k = k.max((camera.depth.exponent - 5).max(0) as u32);
     }
     // The rows u and v get as many fraction bits as fit: f − cut.
@@ -255,7 +256,7 @@ fn fit(
     Ok(())
 }
 
-/// The exact scalar product; below 2^62 for the numbers of rows, matrices and places.
+/// The exact scalar product; below 2^62 for entries of rows, matrices and positions.
 #[inline(always)]
 const fn dot(a: &[i32; 3], b: &[i32; 3]) -> i64 {
     wide(a[0], b[0]) + wide(a[1], b[1]) + wide(a[2], b[2])
@@ -294,7 +295,7 @@ const fn halvings(x: u32) -> u32 {
     count
 }
 
-/// At least the magnitude and [`MOST_ROUNDING`].
+/// At least the magnitude, and at least [`MOST_ROUNDING`].
 #[inline(always)]
 const fn rounded_room(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32 + 1 + MOST_ROUNDING

@@ -1,4 +1,4 @@
-//! The steps of one triangle between vertex stage and walker: facing, bounds, light, and the fan of a clipped triangle.
+//! The steps between vertex stage and walker for one triangle: facing, bounds, light, and the fan of a clipped triangle.
 
 use glint_core::camera::Projection;
 use glint_core::colour::{Shading, Winding};
@@ -16,21 +16,21 @@ use crate::triangle::vertex::{CameraVertex, ScreenVertex, snap, transform};
 /// Options of drawing a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options<'a> {
-    /// Whether back faces are left out.
+    /// Whether back faces are culled.
     pub cull: bool,
-    /// Colour of pixels without a triangle, RGB565.
+    /// Background: the colour of pixels without a triangle, RGB565.
     pub clear: u16,
     /// Source of the colours: triangles (flat) or vertices (smooth).
     pub shading: Shading,
-    /// The rule that tells which side of a triangle is seen.
+    /// The rule that selects the visible side of a triangle.
     pub winding: Winding,
-    /// Colour instead of those of the mesh.
+    /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
-    /// Colours of the light; `None` for white light at the camera, without ambient light. The direction is in the frame constants.
+    /// Colours of the light; `None` for white light at the camera, without ambient light. The light's direction is in the frame constants.
     pub light: Option<&'a MeshLight>,
-    /// The matrix that transforms the normals of an object to the axes of the light; `None` if they have these axes.
+    /// The matrix that transforms the normals of an object to the coordinates of the light; `None` if they are in these coordinates.
     pub normals: Option<&'a Normals>,
-    /// Whether the axes of the light are those of the world, and not those of the mesh.
+    /// Whether the light is in world coordinates, and not in the coordinates of the mesh.
     pub lit_in_world: bool,
 }
 
@@ -50,7 +50,7 @@ impl Options<'_> {
         }
     }
 
-    /// The side of a surface that the camera sees, by its normal, which has been turned to the axes of the light.
+    /// The side of a surface that the camera sees, from the surface's normal in the coordinates of the light.
     fn seen(&self, frame: &MeshSetup, normal: [i16; 3]) -> Facing {
         let forward = match self.light {
             None => &frame.light,
@@ -62,7 +62,7 @@ impl Options<'_> {
 }
 
 impl Default for Options<'_> {
-    /// Back faces are left out, the background is black, shading is flat, and the winding is that of the mesh.
+    /// Back faces are culled, the background is black, shading is flat, and the winding is the mesh's.
     fn default() -> Self {
         Self {
             cull: true,
@@ -87,7 +87,7 @@ pub struct Placed {
     pub colour: Rgb565,
     /// Light of the vertices under smooth shading, which replaces `colour`.
     pub lit: Option<[Lit; 3]>,
-    /// The projection, which tells whether light is linear on the screen.
+    /// The projection, which determines whether light is linear on the screen.
     pub projection: Projection,
 }
 
@@ -120,8 +120,8 @@ impl Placed {
         })
     }
 
-    /// Prepares a triangle of an object, with a colour instead of its own, in a light other than white light at the camera, or by its
-    /// position on the screen ([`Winding::Screen`]); the last is never culled.
+    /// Prepares a triangle that is part of an object, has a replaced colour, is lit by another light than white light at the camera, or
+    /// has its visible side determined by [`Winding::Screen`]; with [`Winding::Screen`] it is never culled.
     ///
     /// Not inlined, so that other triangles do not load this code into the instruction cache.
     #[inline(never)]
@@ -214,7 +214,7 @@ fn light_of(frame: &MeshSetup, options: &Options, vertex: &Vertex) -> Light {
     }
 }
 
-/// Lights a vertex, for any light but the default white one at the camera; `normal` is in the axes of the light.
+/// Lights a vertex, for any light but the default white light at the camera; `normal` is in the coordinates of the light.
 ///
 /// Not inlined, so that frames with white light at the camera do not load this code into the instruction cache.
 #[inline(never)]
@@ -229,7 +229,7 @@ fn light_in(
     if options.winding == Winding::Mesh {
         return lit;
     }
-    // The normal is turned towards the camera, which may not be where the light is.
+    // The normal is flipped towards the camera, whose position may differ from the light's.
     let seen = lit.to(options.seen(frame, normal));
     Light {
         front: seen,
@@ -272,7 +272,7 @@ pub fn clip_fan(
         [c, a, b]
     };
     if options.winding == Winding::Screen && vertices[2].position < vertices[1].position {
-        // The order in the mesh does not matter at all.
+        // The vertex order in the mesh has no effect on the result.
         vertices.swap(1, 2);
     }
     let corners = vertices.map(|vertex| CameraVertex {

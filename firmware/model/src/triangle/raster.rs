@@ -2,8 +2,7 @@
 //!
 //! A triangle is convex, so each row has one span of covered pixels. The span starts where all edges of the left side pass
 //! and ends where an edge of the right side fails. From row to row the walker moves both ends of the span along the edges,
-//! pixel by pixel. Horizontal edges need no test, because the bounds contain only rows at or below a top edge and above a
-//! bottom edge.
+//! pixel by pixel. Horizontal edges need no test, because the bounds only contain rows at or below a top edge and above a bottom edge.
 
 use core::ops::{Add, BitOr, Sub};
 
@@ -44,8 +43,8 @@ fn draw_smooth(setup: &Setup, light: &[Plane; 3], target: &mut FrameBuffer) -> C
     draw_with(setup, brush, target)
 }
 
-/// Draws a triangle with flat shading as [`draw`] does. Calls `visit` with each row that has a covered pixel, and the first and the last
-/// group of eight columns with one, all of which the engine's lanes take.
+/// Draws a triangle with flat shading as [`draw`] does. Calls `visit` with each row that has a covered pixel, and with the first and the
+/// last group of eight columns that contains a covered pixel; the engine's lanes process all groups between them.
 pub fn draw_groups(
     setup: &Setup,
     colour: Rgb565,
@@ -70,8 +69,8 @@ fn draw_with(setup: &Setup, brush: impl Brush, target: &mut FrameBuffer) -> Cove
 
 /// The source of pixel colours. The walker moves it over the triangle together with the depth.
 trait Brush {
-    /// Begins the covered columns of a row, of which the first is `offset` columns right of the start column;
-    /// `columns` are the first and the last one.
+    /// Begins the covered columns of a row; `columns` are the first and the last one, and the first is `offset` columns right of the start
+    /// column.
     fn go_to(&mut self, offset: u32, columns: [i32; 2]);
     /// Moves one pixel to the right.
     fn go_right(&mut self);
@@ -91,7 +90,7 @@ impl Brush for Rgb565 {
     }
 }
 
-/// Flat shading that tells the groups of columns.
+/// Flat shading that reports the groups of columns.
 struct Grouped<'a> {
     colour: Rgb565,
     row: i32,
@@ -221,7 +220,7 @@ fn walk<A: Accumulator>(
     coverage
 }
 
-/// Writes the pixels in columns `from` to `to` of a row where the depth test passes. `depth` is the depth accumulator plus
+/// Writes the pixels in columns `from` to `to` of a row that pass the depth test. `depth` is the depth accumulator plus
 /// half a code, so that truncation rounds to nearest. Returns the number of pixels written.
 fn fill(
     target: &mut FrameBuffer,
@@ -251,10 +250,10 @@ fn fill(
     drawn
 }
 
-/// One end of a row's span: the outermost column in which the edges on this side of the triangle, one or two, pass.
+/// One end of a row's span: the outermost column in which all edges on this side of the triangle, one or two, pass.
 ///
-/// The edge functions E' of these edges decrease by |dy| per pixel in the direction away from the triangle. On a side with
-/// one edge the second E' is 0 everywhere, which passes.
+/// The edge functions E' of these edges decrease by |dy| per pixel in the direction away from the triangle. On a side with one edge the
+/// second E' is always 0, which passes.
 struct End<A> {
     /// E' of the edges at `column` in the current row.
     value: [A; 2],
@@ -267,7 +266,7 @@ struct End<A> {
     outwards: i32,
     /// Outermost column of the bounds.
     outermost: i32,
-    /// The first column beyond the bounds on the opposite side. If the end reaches it, no column of the row passes.
+    /// The first column beyond the bounds on the opposite side. If the end of the span reaches it, no column of the row passes.
     nowhere: i32,
 }
 

@@ -22,15 +22,16 @@ use crate::triangle::volume::Volume;
 pub struct Stats {
     /// Number of triangles in the mesh: `culled` + `drawn`.
     pub triangles_in: u32,
-    /// Number of triangles that did not reach the walker, the stage that finds pixels: back faces, triangles without area, behind
-    /// the near plane or off the picture, and triangles without a pixel centre in their bounds, or tiny and without a covered one.
+    /// Number of triangles that did not reach the walker, the stage that finds pixels: culled back faces, triangles without area, behind
+    /// the near plane or outside of the picture, triangles without a pixel centre in their bounds, and tiny triangles that cover no pixel
+    /// centre.
     pub culled: u32,
     /// Number of triangles that went through the clipper, with or without a visible part.
     pub clipped: u32,
     /// Number of triangles that reached the walker, whole or in part.
     pub drawn: u32,
-    /// Pixels tested by the walker: covered pixels, and pixels just outside the ends of a span. `None` where the triangle engine draws:
-    /// its walker tests groups of eight pixels, and its counter `cycles_walking` counts those.
+    /// Pixels tested by the walker: covered pixels, and pixels just outside the ends of a span. `None` if the triangle engine draws: its
+    /// walker tests groups of eight pixels, which its counter `cycles_walking` counts.
     pub pixels_tested: Option<u64>,
     /// Pixels covered, counted once for each triangle.
     pub pixels_covered: u64,
@@ -73,8 +74,8 @@ pub struct DrawnTriangle {
 
 /// Draws a mesh.
 ///
-/// `scratch` has room for the vertices of the largest chunk. Its contents and those of the frame buffer are overwritten.
-/// Unclipped triangles are drawn by index, then clipped triangles by index; of equal depths the later triangle wins.
+/// `scratch` must hold the vertices of the largest chunk. The contents of `scratch` and of the frame buffer are overwritten.
+/// Unclipped triangles are drawn by index, then clipped triangles by index; at equal depths the later triangle wins.
 ///
 /// # Errors
 /// [`RenderError`]; the frame buffer is then unchanged.
@@ -111,7 +112,7 @@ pub fn trace(
 /// Draws a mesh as [`trace`] does, from its frame constants.
 ///
 /// # Errors
-/// [`RenderError`], even for a frame buffer whose size differs from that of the constants; the frame buffer is then unchanged.
+/// [`RenderError`], also for a frame buffer whose size differs from the constants; the frame buffer is then unchanged.
 pub fn trace_frame(
     mesh: &Mesh,
     frame: MeshSetup,
@@ -140,11 +141,11 @@ pub struct PreparedMesh<'a> {
     pub options: Options<'a>,
 }
 
-/// Draws the parts of a frame over the colour `clear`, from which [`set_up_parts`] makes triangles. Calls `show` with each triangle
+/// Draws the parts of a frame (see [`set_up_parts`]) on the background colour `clear`. Calls `show` with each triangle
 /// before it is drawn.
 ///
 /// # Errors
-/// As [`set_up_parts`], or the size of a part differs from that of the frame buffer. If no triangle was drawn before, the frame buffer is
+/// As [`set_up_parts`], or the size of a part differs from the frame buffer's. If no triangle has been drawn yet, the frame buffer is
 /// unchanged.
 pub fn draw_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
@@ -181,17 +182,16 @@ pub fn draw_parts<'a>(
     })
 }
 
-/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each and its setup. `part` returns each part by
-/// its number, and `None` after the last one; it is called twice for a part with triangles to clip. The counts of pixels in the result
-/// are 0.
+/// Makes the triangles of the parts of a frame of this size, and calls `emit` with each triangle and its setup. `part` returns a part by
+/// its number, and `None` after the last part; it is called twice for a part with triangles to clip. The pixel counts in the result are 0.
 ///
-/// Unclipped triangles come by part and index, then clipped triangles by part and index, as the gateware draws them from the lists of
-/// its passes.
+/// Unclipped triangles come first, by part and index, then clipped triangles, by part and index: the order in which the gateware draws
+/// them.
 ///
-/// Compiled once, with the optimisation of this crate.
+/// Not generic, so that it is compiled once, with this crate's optimisation level.
 ///
 /// # Errors
-/// [`RenderError`]; if a later part is the cause, triangles of the previous parts have been emitted.
+/// [`RenderError`]; if a later part causes it, the triangles of the previous parts have been emitted.
 #[inline(never)]
 pub fn set_up_parts<'a>(
     part: &mut dyn FnMut(usize) -> Option<PreparedMesh<'a>>,
@@ -200,7 +200,7 @@ pub fn set_up_parts<'a>(
     emit: &mut dyn FnMut(&DrawnTriangle, &Setup),
 ) -> Result<Stats, RenderError> {
     let mut stats = Stats::default();
-    // Number of the first part with triangles to clip, of all such parts, and of the part whose vertices are in the scratch memory.
+    // Number of the first part with triangles to clip; count of such parts; number of the part whose vertices are in the scratch memory.
     let (mut first, mut projected) = (None, 0);
     let mut number = 0;
     while let Some(PreparedMesh {
@@ -266,7 +266,7 @@ pub fn set_up_parts<'a>(
 
 /// Runs the vertex stage for all vertices of a chunk.
 ///
-/// Not inlined, so that the loop over vertices keeps the registers for itself.
+/// Not inlined, so that the loop over vertices has all registers.
 #[inline(never)]
 pub fn project_chunk(frame: &MeshSetup, chunk: &Chunk, scratch: &mut [Projected]) {
     for (vertex, projected) in chunk.vertices().zip(&mut *scratch) {
@@ -329,7 +329,7 @@ impl Renderer<'_, '_> {
     }
 
     /// Draws the triangles that need clipping, of which `left` remain. With `is_projected` the vertices of the mesh are in the
-    /// scratch memory. Returns the number of those that other meshes have.
+    /// scratch memory. Returns the number that remains for other meshes.
     fn exceptions(
         &mut self,
         mesh: &Mesh,
@@ -358,7 +358,7 @@ impl Renderer<'_, '_> {
     }
 
     fn path<'s>(&self, triangle: &Triangle, scratch: &'s [Projected]) -> Path<'s> {
-        // A checked mesh has all vertices of its indices.
+        // All indices of a checked mesh are valid.
         let [Some(a), Some(b), Some(c)] = triangle.indices.map(|i| scratch.get(usize::from(i)))
         else {
             return Path::Unseen;

@@ -23,7 +23,7 @@ pub struct Oriented {
 impl Oriented {
     /// Computes steps 1 to 3 of the setup (docs/formats/triangle.md, "Triangle setup"); `None` for a triangle without area.
     ///
-    /// A difference of two positions is s21 (at most 4095 pixels), a product is below 2^40.
+    /// A difference of two positions is s21 (at most 4095 pixels), so a product is below 2^40.
     pub fn new(vertices: [ScreenVertex; 3]) -> Option<Self> {
         let [v0, v1, v2] = vertices;
         match cross(v0, v1, v2) {
@@ -41,8 +41,8 @@ impl Oriented {
         }
     }
 
-    /// The indices of the vertices of a triangle by their position on the screen: the upper left one first, which is the highest one and of
-    /// equally high ones the left one, then the others clockwise.
+    /// The indices of the vertices of a triangle by their position on the screen: first the highest vertex, or of two equally high
+    /// vertices the left one, then the others clockwise.
     pub fn screen_order(vertices: &[ScreenVertex; 3]) -> [usize; 3] {
         let [a, b, c] = vertices.each_ref().map(|v| (v.y, v.x));
         let order = if a <= b && a <= c {
@@ -83,12 +83,12 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Returns the bounds of the pixels in the picture whose centres c have min ≤ c < max in both directions, where min
-    /// and max are the limits of the vertices, which are clockwise; `None` if there is no such pixel. `None` also for a triangle
-    /// that covers no pixel and has at most 2×2 such centres, inside or outside of the picture.
+    /// Returns the bounds of the pixels in the picture whose centres c have min ≤ c < max in both directions, where min and max are the
+    /// limits of the (clockwise) vertices; `None` if there is no such pixel. Also `None` for a triangle that covers no pixel and has at
+    /// most 2×2 such centres, inside or outside of the picture.
     ///
-    /// The upper limits are exclusive, because under the top-left rule a pixel centre counts as moved slightly to the
-    /// right and, by even less, down.
+    /// The upper limits are exclusive, because the top-left rule acts as if pixel centres were moved slightly to the right and, by even
+    /// less, down.
     pub fn new(vertices: &[ScreenVertex; 3], width: u32, height: u32) -> Option<Self> {
         let [x, y] = [
             columns(vertices.map(|v| v.x)),
@@ -106,14 +106,14 @@ impl Bounds {
     }
 }
 
-/// Returns the pixels i, in the picture or not, with min ≤ 256·i + 128 < max, where min and max are the limits of the three
-/// coordinates.
+/// Returns the range of pixel indices i, in the picture or not, with min ≤ 256·i + 128 < max, where min and max are the limits of the
+/// three coordinates.
 fn columns([a, b, c]: [i32; 3]) -> Range<i32> {
     let first_at_or_after = |x: i32| (x + 127) >> 8;
     first_at_or_after(a.min(b).min(c))..first_at_or_after(a.max(b).max(c))
 }
 
-/// Whether a triangle covers none of 2×2 pixels, of which `first` is the upper left one, given by column and row.
+/// Whether a triangle covers none of 2×2 pixels; `first` is the column and row of the upper left pixel.
 ///
 /// Not inlined, because most triangles of most meshes are larger.
 #[inline(never)]
@@ -175,7 +175,7 @@ impl Plane {
     /// at the vertices, u18.6.
     ///
     /// A difference of values is below 2^24 and a difference of positions below 2^20, so Nx and Ny are below 2^45.
-    /// Inlined, because a flat triangle has a single plane.
+    /// Inlined, because this call computes the only plane of a flat triangle.
     #[inline(always)]
     fn new(triangle: &Oriented, [w0, w1, w2]: [u32; 3], [i, j]: [i32; 2]) -> Self {
         let [v0, v1, v2] = triangle.vertices;
@@ -192,7 +192,7 @@ impl Plane {
         let reciprocal = Reciprocal::of(triangle.doubled_area);
         let gx = gradient(w10 * y20 - w20 * y10, reciprocal);
         let gy = gradient(w20 * x10 - w10 * x20, reciprocal);
-        // The sum is computed modulo 2^64, so its bits 8 to 39, which the accumulator takes, are right.
+        // The sum is computed modulo 2^64, so its bits 8 to 39, which the accumulator uses, are exact.
         let (px, py) = (
             i64::from(256 * i + 128 - v0.x),
             i64::from(256 * j + 128 - v0.y),
@@ -209,7 +209,7 @@ impl Plane {
 /// One gradient of a plane: nearest(N·y·2^−(lead + 8)) for a numerator N with |N| < 2^45. The result is exact, and at most
 /// 2^62.
 ///
-/// The product N·y has 69 bits. N is therefore split in two parts, and the product with the low part is shifted first.
+/// The product N·y has 69 bits. N is therefore split into two parts, and the product with the low part is shifted first.
 const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     let shift = lead + 8;
     let high = (numerator >> 24) * y as i64;
@@ -221,7 +221,7 @@ const fn gradient(numerator: i64, Reciprocal { y, lead }: Reciprocal) -> i64 {
     }
 }
 
-/// The weight of light in orthographic projection, u18.6: half a code less than 2^17 codes, so that light keeps all of its bits.
+/// The weight of light in orthographic projection, u18.6: half a code less than 2^17 codes, so that no bit of the light is lost.
 const WEIGHT: u32 = (1 << 23) - HALF_CODE;
 
 /// The input of the walker, which finds the pixels of a triangle.
@@ -283,8 +283,7 @@ impl Setup {
         setup.with_light(triangle, lit, triangle.vertices.map(|v| v.w))
     }
 
-    /// Computes the steps of [`smooth`](Self::smooth) in orthographic projection, where light is linear on the screen: all vertices
-    /// have the same weight.
+    /// Like [`smooth`](Self::smooth), in orthographic projection: light is linear on the screen, so all vertices have the same weight.
     #[inline(never)]
     pub fn linear(triangle: &Oriented, bounds: Bounds, lit: &[Lit; 3]) -> Self {
         let setup = Self::new(triangle, bounds);
@@ -294,7 +293,7 @@ impl Setup {
         }
     }
 
-    /// Adds the planes of light, which has the weight `w` at each vertex.
+    /// Adds the light planes; `w` is the weight of the light at each vertex.
     fn with_light(self, triangle: &Oriented, lit: &[Lit; 3], w: [u32; 3]) -> Self {
         let setup = self;
         let start = [setup.start_column, setup.bounds.top];

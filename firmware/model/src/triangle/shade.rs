@@ -5,10 +5,10 @@ use glint_core::colour::Rgb565;
 use crate::triangle::facing::{Facing, along};
 use crate::triangle::rounding::nearest;
 
-/// Half a depth code, u18.6: the addition to the weight of light (docs/formats/triangle.md, "Smooth shading").
+/// Half a depth code, u18.6, added to the weight of light (docs/formats/triangle.md, "Smooth shading").
 pub const HALF_CODE: u32 = 1 << 5;
 
-/// Intensity clamp(−N·l, 0, 1), u1.8, for the normal N (s2.14) and the row l of the light (s2.23). A back face negates N.
+/// Intensity clamp(−N·l, 0, 1), u1.8, for the normal N (s2.14) and the row l of the light (s2.23). For a back face, N is negated.
 pub fn intensity(normal: [i16; 3], row: &[i32; 3], facing: Facing) -> u32 {
     let product = along(normal, row);
     let towards = match facing {
@@ -26,8 +26,8 @@ pub fn lit(colour: Rgb565, shares: [u32; 3]) -> Rgb565 {
     Rgb565(r << 11 | g << 5 | b)
 }
 
-/// The light L of a vertex (docs/formats/triangle.md, "Smooth shading"): red, green and blue after shading. Each is a fraction of
-/// the channel's range in u0.14, at most 63/64.
+/// The light L of a vertex (docs/formats/triangle.md, "Smooth shading"): red, green and blue after shading. Each channel is a fraction of
+/// its range in u0.14, at most 63/64.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lit(pub [u16; 3]);
 
@@ -49,7 +49,7 @@ impl Lit {
 }
 
 /// The light of a vertex, for front faces and for back faces.
-// Aligned to words, so that a copy moves words wherever it is on the stack.
+// Aligned to words, so that it is copied by words from any place on the stack.
 #[repr(align(4))]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Light {
@@ -83,7 +83,7 @@ impl Light {
         }
     }
 
-    /// Returns the light on the brighter side: a vertex lights at most one side, or both equally.
+    /// Returns the light of the brighter side: at most one side of a vertex is lit, or both are equal.
     pub fn visible(self) -> Lit {
         let (Lit(front), Lit(back)) = (self.front, self.back);
         Lit([0, 1, 2].map(|channel| front[channel].max(back[channel])))

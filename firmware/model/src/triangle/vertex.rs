@@ -7,10 +7,10 @@ use crate::triangle::reciprocal::Reciprocal;
 use crate::triangle::rounding::nearest;
 use crate::triangle::shade::Light;
 
-/// The guard band: 2047 pixels from the top left corner to every side, s12.8.
+/// Extent of the guard band: 2047 pixels from the top left corner in every direction, s12.8.
 pub const GUARD: i32 = 2047 << 8;
 
-/// A position saturates at 4096 pixels from the centre, 12 fraction bits.
+/// Positions saturate at this distance from the centre: 4096 pixels, 12 fraction bits.
 const LIMIT: i64 = 1 << 24;
 /// The largest depth code, u18.6.
 const LARGEST_DEPTH: u32 = ((1 << 18) - 1) * 64;
@@ -23,10 +23,10 @@ pub struct CameraVertex {
     pub x: i64,
     /// Coordinate Y along the down axis, in the format of `x`.
     pub y: i64,
-    /// Depth Z along the forward axis, in world units: s44 with 37 fraction bits. In orthographic projection it is counted from the
-    /// depth of the code 2^18.
+    /// Depth Z along the forward axis, in world units: s44 with 37 fraction bits. In orthographic projection it is relative to the depth
+    /// of the code 2^18.
     pub z: i64,
-    /// Light under smooth shading, otherwise black.
+    /// Light of the vertex under smooth shading, otherwise black.
     pub light: Light,
 }
 
@@ -48,8 +48,8 @@ pub enum Projected {
     Visible(ScreenVertex),
     /// Nearer than the near plane, or behind the eye.
     Behind,
-    /// Beyond the near plane, but outside the guard band. The position is saturated, so it only tells beyond which sides
-    /// of the picture the vertex lies.
+    /// Beyond the near plane, but outside the guard band. The position is saturated, so it only shows beyond which sides of the picture
+    /// the vertex is.
     BeyondGuard(ScreenVertex),
 }
 
@@ -71,8 +71,8 @@ impl Projected {
 /// Transforms a position to camera coordinates: steps 1 and 2 of the vertex stage (docs/formats/triangle.md).
 ///
 /// The position P with |P| ≤ 2·√3 is less than 2^15.8 in its units, and a row is shorter than 2^24.01 (2^23.01 for n), so
-/// each scalar product is below 2^39.9. A translation is at most 8 times the length of a row, 2^41.1. So |X|, |Y| <
-/// 2^41.7 and |Z| < 2^40.7.
+/// each scalar product is below 2^39.9. A translation is at most 8 times the length of a row, 2^41.1. Therefore |X|, |Y| < 2^41.7 and |Z|
+/// < 2^40.7.
 pub fn transform(frame: &MeshSetup, position: [i16; 3]) -> CameraVertex {
     let dot = |row: &[i32; 3]| -> i64 {
         core::iter::zip(position, row)
@@ -130,7 +130,7 @@ pub fn snap(frame: &MeshSetup, vertex: &CameraVertex) -> ScreenVertex {
     }
 }
 
-/// Projects a vertex to the screen in orthographic projection: X and Y are its place in pixels, and its depth code is linear.
+/// Projects a vertex to the screen in orthographic projection: X and Y are its position in pixels, and its depth code is linear in Z.
 ///
 /// Not inlined, so that the loop over vertices in perspective does not load this code into the instruction cache.
 #[inline(never)]

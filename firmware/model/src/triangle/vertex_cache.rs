@@ -1,12 +1,12 @@
-//! The engine's cache of vertices after the vertex stage: which vertices of a mesh the engine fetches.
+//! The engine's cache of processed vertices, which determines the vertices of a mesh that the engine fetches.
 
 use glint_core::mesh::Mesh;
 
 /// Number of vertices in the cache.
 pub const SLOTS: usize = 512;
 
-/// The tags of the cache. It is direct mapped: a vertex has its place in the slot of its index modulo [`SLOTS`], and replaces the
-/// vertex that is there.
+/// The tags of the cache. The cache is direct-mapped: the slot of a vertex is its index modulo [`SLOTS`], and a new vertex replaces the
+/// vertex in its slot.
 #[derive(Clone, Debug)]
 pub struct VertexCache {
     slots: [Option<u16>; SLOTS],
@@ -20,7 +20,7 @@ impl VertexCache {
         }
     }
 
-    /// Looks up a vertex by its index in the chunk; returns whether it has to be fetched. It is in the cache afterwards.
+    /// Looks up a vertex by its index in the chunk; returns whether it has to be fetched. Afterwards the vertex is in the cache.
     pub fn misses(&mut self, index: u16) -> bool {
         let slot = self.slots.get_mut(usize::from(index) % SLOTS);
         slot.is_none_or(|slot| slot.replace(index) != Some(index))

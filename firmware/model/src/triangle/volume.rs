@@ -30,7 +30,7 @@ pub enum Volume {
 }
 
 impl Volume {
-    /// The distances in half pixels from the middle of the picture, which has `size` pixels, to the two sides.
+    /// The distances in half pixels from the middle of the picture, `size` pixels wide or high, to its two sides.
     pub fn sides(self, size: u32) -> [i64; 2] {
         let size = i64::from(size);
         match self {

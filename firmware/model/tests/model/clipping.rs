@@ -1,5 +1,5 @@
-//! Clipping of triangles that cross the near plane or leave the guard band: what stays, and what neighbours have in common. The pixels of
-//! clipped triangles are compared with the exact ones in `glint-reference`.
+//! Tests of the clipping of triangles that cross the near plane or leave the guard band: remaining vertices, and vertices shared with
+//! neighbours. `glint-reference` compares the pixels of clipped triangles with exact results.
 
 use glint_model::triangle::clip::clip;
 use glint_model::triangle::vertex::{CameraVertex, project, transform};

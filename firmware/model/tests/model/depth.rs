@@ -44,7 +44,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
         let accumulator = (v0[2] << 8) + ((gx * dx + gy * dy) >> 8);
         let as_written = ((accumulator + (1 << 13)) >> 14).rem_euclid(1 << 18).max(1);
         assert_eq!(i128::from(code), as_written, "{vertices:?} at {i}, {j}");
-        // The exact depth less the stored code, in codes, times 64 times the doubled area of the triangle.
+        // Error in codes, exact depth minus stored code, times 64 times the doubled area of the triangle.
         let exact = (v0[2] - 64 * i128::from(code)) * area
             + (p1[2] * p2[1] - p2[2] * p1[1]) * dx
             + (p2[2] * p1[0] - p1[2] * p2[0]) * dy;
@@ -62,7 +62,7 @@ fn depth_error(vertices: [ScreenVertex; 3], size: (u32, u32)) -> f64 {
 #[test]
 fn depth_against_the_exact_plane() {
     let mut random = Random(6);
-    // Gives the vertices depths from the whole range of a frame, up to (2^18 − 4) codes.
+    // Sets random depths of the vertices, from the whole range of a frame, up to 2^18 − 4 codes.
     let mut steep = |mut triangle: [ScreenVertex; 3]| {
         for vertex in &mut triangle {
             vertex.w = match random.integer(0, 3) {
@@ -78,7 +78,7 @@ fn depth_against_the_exact_plane() {
     for _ in 0..4000 {
         worst = worst.max(depth_error(steep(random_triangle(&mut shapes)), SIZE));
     }
-    // Slivers with a ratio of sides of 1000:1 and more, in all directions.
+    // Makes slivers with an aspect ratio of 1000:1 and more, in all directions.
     let mut slivers: f64 = 0.0;
     for size in [SIZES[0], SIZES[2]] {
         for _ in 0..if size == SIZES[0] { 3000 } else { 150 } {

@@ -1,4 +1,4 @@
-//! Pictures from descriptors in memory, drawn band by band as the raster pass does, equal those of the triangles and lines.
+//! Pictures from descriptors in memory, drawn band by band as the raster pass does, equal the pictures of the triangles and lines.
 
 use glint_core::colour::{Rgb565, Shading};
 use glint_core::mesh::Mesh;
@@ -125,7 +125,7 @@ fn lines_keep_their_pixels() {
     }
 }
 
-/// The search for a triangle's pixels visits every row and group in which the triangle covers one.
+/// The search for a triangle's pixels visits every row and group with a covered pixel.
 #[test]
 fn every_covered_group_is_visited() {
     let mut random = Random(11);
@@ -152,7 +152,7 @@ fn every_covered_group_is_visited() {
     assert!(most > 100, "{most}");
 }
 
-/// Damaged descriptors draw within their band, or nothing.
+/// Damaged descriptors draw nothing outside of their band.
 #[test]
 fn random_descriptors_stay_in_their_band() {
     let mut random = Pcg64Mcg::new(9);
@@ -161,7 +161,7 @@ fn random_descriptors_stay_in_their_band() {
         let mut words: [u32; 24] = random.random();
         let groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..40));
         if number % 3 > 0 {
-            // Columns in the picture, or the mark of a piece.
+            // Columns in the picture, or the bit pattern that marks a piece.
             let [left, start, right] = match number % 3 {
                 1 => {
                     let mut groups = groups;

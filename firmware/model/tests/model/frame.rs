@@ -97,7 +97,7 @@ fn a_frame_beyond_the_limits_has_no_constants() {
     assert!(constants.mesh().is_none() && constants.field().is_none());
 }
 
-/// Every triangle is in the lists of exactly those bands that it has a row in.
+/// Every triangle is in the lists of exactly the bands that contain one of its rows.
 #[test]
 fn lists_name_the_triangles_of_their_bands() {
     const DESCRIPTORS: usize = 64;
@@ -111,7 +111,7 @@ fn lists_name_the_triangles_of_their_bands() {
             let mut lists = vec![0; list_words];
             let mut counts = ListCounts::EMPTY;
             let mut put = vec![];
-            // Several writers continue each other's lists.
+            // Several writers append to the same lists.
             for end in [DESCRIPTORS / 4, DESCRIPTORS / 2, DESCRIPTORS] {
                 let mut writer = ListWriter::new(
                     &mut descriptors,

@@ -61,8 +61,8 @@ fn shares_are_within_two_units_of_the_exact_sum() {
     assert!(worst <= 1.5);
 }
 
-/// Smooth triangles whose vertices have the normal and the colour of the triangle are lit as flat ones, for either rule of winding,
-/// on either side, and after clipping.
+/// Smooth triangles whose vertices have the normal and the colour of the triangle are lit like flat triangles, for both winding rules, on
+/// both sides, and after clipping.
 #[test]
 fn equal_vertices_are_lit_as_flat_triangles() {
     let mut random = Random(3);

@@ -1,4 +1,4 @@
-//! Lines with triangles, other lines and depths: what the exact pixels of single segments, in `glint-reference`, do not show.
+//! Tests of lines with triangles, other lines and depths; `glint-reference` tests the exact pixels of single segments.
 
 use std::collections::BTreeMap;
 
@@ -24,15 +24,15 @@ fn pixels(ends: [ScreenVertex; 2], rectangle: Bounds) -> Vec<LinePixel> {
     pixels.into_iter().flatten().collect()
 }
 
-/// A random position in or near the picture, on a grid that meets ties, or anywhere.
+/// A random position: in or near the picture, on a coarse grid that causes ties, or anywhere.
 fn place(random: &mut Random) -> [i64; 2] {
     let grid = [1, 64, 128, 256][random.integer(0, 3) as usize];
     [SIZE.0, SIZE.1]
         .map(|size| random.integer(-256 * 30, 256 * (i64::from(size) + 30)) / grid * grid)
 }
 
-/// Between its ends, a line covers the same pixels as the parallelogram about it that is one pixel high, or wide, drawn as two
-/// triangles: ties fall to the same side.
+/// Between its ends, a line covers the same pixels as two triangles that form a parallelogram about it, one pixel high or wide: ties are
+/// resolved equally.
 #[test]
 fn a_line_is_a_parallelogram_of_one_pixel() {
     let mut random = Random(1);
@@ -51,7 +51,7 @@ fn a_line_is_a_parallelogram_of_one_pixel() {
                 raster::draw(&setup, Rgb565::WHITE, &mut picture.target());
             }
         }
-        // Both end pixels are decided by diamonds, and left out here.
+        // The diamond rule determines both end pixels, so they are not compared.
         let axis = usize::from(!x_major);
         let (low, high) = (a[axis].min(b[axis]), a[axis].max(b[axis]));
         let between = |i: i64| 256 * i > low && 256 * i + 256 < high;
@@ -72,7 +72,7 @@ fn a_line_is_a_parallelogram_of_one_pixel() {
     assert!(compared > 50_000);
 }
 
-/// Segments that follow each other along the same major axis, in the same direction, have one pixel in each column or row.
+/// Consecutive segments with the same major axis and direction have one pixel in each column or row.
 #[test]
 fn a_polyline_has_its_joints_once() {
     let mut random = Random(2);
@@ -83,7 +83,7 @@ fn a_polyline_has_its_joints_once() {
             let ahead = random.integer(0, 256 * 6);
             let beside = random.integer(-ahead, ahead);
             let ahead = if backward { -ahead } else { ahead };
-            // Equal distances belong to the columns.
+            // At equal distances the major axis is horizontal.
             let [dx, dy] = if x_major {
                 [ahead, beside]
             } else {
@@ -113,7 +113,7 @@ fn a_polyline_has_its_joints_once() {
     }
 }
 
-/// A segment and the reversed one differ at most in one pixel at each end.
+/// A segment and its reverse differ by at most one pixel at each end.
 #[test]
 fn a_reversed_segment_differs_only_at_its_ends() {
     let mut random = Random(3);
@@ -150,7 +150,7 @@ fn a_reversed_segment_differs_only_at_its_ends() {
     }
 }
 
-/// The parts of a line in all bands of a picture are the line, with the same depths.
+/// The pieces of a line in all bands of a picture have the pixels and depths of the whole line.
 #[test]
 fn bands_leave_a_line_as_it_is() {
     let mut random = Random(4);
@@ -181,7 +181,7 @@ fn bands_leave_a_line_as_it_is() {
     }
 }
 
-/// Outside of the format of positions there is no line, and in its corners there are the longest ones.
+/// Positions outside of their format give no line; corners of the format give the longest lines.
 #[test]
 fn the_whole_range_of_positions_is_drawn() {
     let everywhere = Bounds {
@@ -197,7 +197,8 @@ fn the_whole_range_of_positions_is_drawn() {
     assert!(Line::new(&[at([0, low - 1]), at([0, 0])]).is_none());
 }
 
-/// A line over everything hides what comes later, except lines. A tested line is hidden by nearer pixels, and equal ones give way.
+/// A line without depth test hides later pixels, except lines. A tested line is hidden by nearer pixels, and replaces pixels of equal
+/// depth.
 #[test]
 fn lines_meet_depths() {
     let ends = [[10, 10], [20, 10]].map(|[x, y]| at([256 * x + 128, 256 * y + 128]));

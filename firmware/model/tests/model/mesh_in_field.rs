@@ -97,13 +97,11 @@ fn what_is_nearer_is_seen() {
     assert!(seen.iter().all(|&pixels| pixels > 500), "{seen:?}");
 }
 
-/// The constants shared by mesh and field are in the ranges of the constants of a mesh alone and of a field alone, for
-/// every half width.
+/// For every half width, the constants of a mesh and a field together are in the ranges for a single mesh and a single field.
 #[test]
 fn shared_constants_keep_their_ranges() {
     let mut random = Random(3);
-    // Tolerated relative error of the scale where a world unit is 40.5 field units or a power of two of them: then all 17
-    // bits of the scale are kept.
+    // Tolerated relative error of the scale: for a world unit of 40.5 field units or of a power of two, all 17 bits of the scale are kept.
     const EXACT: f64 = 1e-12;
     let fields = [
         ("menger:4", EXACT),

@@ -1,4 +1,4 @@
-//! Several objects in a frame: their model matrices, light, order and limits, compared with f64.
+//! Tests of several objects in a frame: model matrices, light, order and limits, compared with f64.
 
 use glint_core::camera::View;
 use glint_core::colour::{Rgb565, Shading, Winding};
@@ -24,7 +24,7 @@ fn number(x: f64) -> Q8_24 {
     Q8_24::from_num(x)
 }
 
-/// Rotations, scales of each axis between `scales`, of any sign, and a translation within `reach` of the origin.
+/// A random matrix: rotations, a scale of each axis within `scales` with either sign, and a translation within `reach` of the origin.
 fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) -> Matrix {
     loop {
         let mut factor = || {
@@ -43,7 +43,7 @@ fn random_matrix(random: &mut Random, scales: [f64; 2], same: bool, reach: f64) 
             .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::Z, c)))
             .and_then(|matrix| matrix.then(&Matrix::rotation(Axis::X, d)))
             .and_then(|matrix| matrix.then(&Matrix::translation(place)?));
-        // Matrices with very different scales may be refused as singular.
+        // Matrices with very different scales may be rejected as singular.
         if let Ok(matrix) = matrix {
             return matrix;
         }
@@ -56,7 +56,7 @@ fn applied(matrix: &Matrix, point: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| dot(rows[i], point) + place[i])
 }
 
-/// Positions and depth codes of the vertices of objects against f64, for sizes from 1/100 to 8.
+/// Compares positions and depth codes of the vertices of objects with f64, for sizes from 1/100 to 8.
 #[test]
 fn vertices_of_objects_against_f64() {
     let mut random = Random(30);
@@ -280,7 +280,8 @@ fn a_copy_with_turned_normals_gives_the_same_picture() {
     assert_eq!(mesh.copy_with_normals(&mut memory, &mut |x| x), None);
 }
 
-/// Two objects in one frame cover what each covers alone, the nearer one hides the other, and of equal depths the later object wins.
+/// Two objects in one frame cover the same pixels as in separate frames; the nearer object hides the other, and at equal depths the later
+/// object wins.
 #[test]
 fn objects_share_one_depth() {
     let bytes = Model::cube(8192).encoded();
@@ -295,7 +296,7 @@ fn objects_share_one_depth() {
     let near = object(at(0.25, -0.5), red);
     let far = object(at(-0.25, 0.5), blue);
     let pictures = [of(&[near, far], view), of(&[far, near], view)];
-    // The order does not matter for different depths.
+    // At different depths the order has no effect.
     assert!(pictures[0].colour == pictures[1].colour && pictures[0].depth == pictures[1].depth);
     let alone = [of(&[near], view).depth, of(&[far], view).depth];
     for (i, &colour) in pictures[0].colour.iter().enumerate() {
@@ -329,7 +330,7 @@ fn clipped_objects_are_drawn() {
         let matrix = Matrix::scale([number(size); 3]).unwrap().then(&place);
         object(mesh, matrix.unwrap())
     };
-    // The eye is inside of the second object and in the surface of the third.
+    // The eye is inside the second object and on the surface of the third.
     let objects = [at(0.0, 0.5), at(0.0, 4.0), at(2.0, 4.4)].map(|mut object| {
         object.subject.cull = false;
         object

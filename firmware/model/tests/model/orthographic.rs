@@ -54,14 +54,13 @@ fn projected(view: &View, point: [f64; 3], (width, height): (u32, u32)) -> [f64;
     ]
 }
 
-/// The depth code of a depth, from the definition: 2^18 − 4 at the nearest depth, and 2^(19 − ke) codes less for a world unit.
+/// The depth code of a depth, from the definition: 2^18 − 4 at the nearest depth, and 2^(19 − ke) codes less per world unit.
 fn code(frame: &MeshSetup, z: f64) -> f64 {
     let origin = frame.depth.origin.unwrap() as f64 * 0.5f64.powi(37);
     2f64.powi(18) - (z - origin) * 2f64.powi(19 - frame.depth.exponent)
 }
 
-/// Returns a random orthographic camera within 8 world units of the origin, with a point of a mesh within ±`reach` at a position on
-/// the screen.
+/// Returns a random orthographic camera within 8 world units of the origin, and a point of a mesh within ±`reach` that is on the screen.
 fn aimed(random: &mut Random, size: (u32, u32), half_width: f64, reach: f64) -> (View, [i16; 3]) {
     loop {
         let point = [0; 3]
@@ -84,7 +83,8 @@ fn aimed(random: &mut Random, size: (u32, u32), half_width: f64, reach: f64) -> 
     }
 }
 
-/// The bound of docs/formats/camera.md for the error of a position, in 1/256 pixel: the snap, and the rows for a point at `distance`.
+/// The bound of docs/formats/camera.md for the error of a position, in 1/256 pixel: from snapping, and from the rounded rows for a point
+/// at `distance`.
 fn bound(frame: &MeshSetup, distance: f64) -> f64 {
     0.54 + 256.0 * 3f64.sqrt() * 0.5f64.powi(frame.scale_shift as i32 + 1) * distance
 }
@@ -130,7 +130,7 @@ fn places_and_depths_against_f64() {
                 size.0, size.1
             );
             assert!(share <= 1.0 && depth <= 1.01);
-            // The bound of a mesh in the box of 1×1×1 world units.
+            // The bound for a mesh in a box of 1×1×1 world units.
             if index == 0 {
                 assert!(worst <= 1.0 && narrow <= 2.0);
             }
@@ -138,7 +138,7 @@ fn places_and_depths_against_f64() {
     }
 }
 
-/// The projection as its steps in docs/formats/camera.md, in 128 bits.
+/// The projection, following the steps in docs/formats/camera.md, with 128-bit numbers.
 #[test]
 fn steps_as_written() {
     let mut random = Random(51);
@@ -183,8 +183,8 @@ fn steps_as_written() {
     }
 }
 
-/// For meshes of all sizes and at all distances, the nearer of two vertices has the larger depth code, before its rounding, if they are
-/// more than 1/32 code apart.
+/// For meshes of all sizes and at all distances: of two vertices more than 1/32 code apart, the nearer has the larger depth code before
+/// rounding.
 #[test]
 fn nearer_vertices_have_larger_codes() {
     let mut random = Random(52);
@@ -216,7 +216,7 @@ fn nearer_vertices_have_larger_codes() {
             assert_eq!(nearer > farther, p.1 > q.1, "{a:?} and {b:?} in {view:?}");
         }
         if reach > 0.002 {
-            // The sphere of a mesh wholly beyond the near plane takes half of the codes or more.
+            // A mesh's bounding sphere wholly beyond the near plane uses half of the codes or more.
             let codes = f64::from(radius) / 16384.0 * 2.0 * 2f64.powi(19 - frame.depth.exponent);
             fewest = fewest.min(codes as u32);
         }
@@ -225,7 +225,7 @@ fn nearer_vertices_have_larger_codes() {
     assert!(fewest >= 131_000);
 }
 
-/// Positions and depths of objects with scales from 1/100 to 8 against f64.
+/// Compares positions and depths of objects with scales from 1/100 to 8 with f64.
 #[test]
 fn objects_against_f64() {
     let mut random = Random(53);
@@ -284,7 +284,7 @@ fn objects_against_f64() {
     assert!(count > 10_000 && halved > 100 && share <= 1.0 && depth <= 8.0);
 }
 
-/// A cube of side 1 covers the same square from every distance, and of two squares behind each other the nearer one is seen.
+/// A cube of side 1 covers the same square from every distance, and of two squares in line the nearer is visible.
 #[test]
 fn sizes_do_not_depend_on_the_distance() {
     let cube = Model::cube(8192);
@@ -337,7 +337,7 @@ fn refused_frames() {
             .map(|_| ());
         assert_eq!(refused, Err(RenderError::Orthographic));
     }
-    // The far plane is compared with the near plane, and not with the nearest depth of the mesh.
+    // The far plane must be beyond the near plane, not beyond the nearest depth of the mesh.
     let with_far = |far: f64| {
         let far = U8_28::from_num(far);
         let frame = MeshSetup::new(&view, 320, 180, mesh.radius()).unwrap();
@@ -345,7 +345,7 @@ fn refused_frames() {
     };
     assert_eq!(with_far(0.1), Err(RenderError::Far(U8_28::from_num(0.1))));
     assert_eq!(with_far(0.2), Ok(()));
-    // A picture too narrow for the number of its pixels and the size of an object.
+    // A view too narrow for the number of pixels and the size of an object is rejected.
     let large = object(mesh, Matrix::scale([number(16.0); 3]).unwrap());
     let setup = |width: U8_28| {
         let view = along_y(4.0, width.to_num());
@@ -359,7 +359,7 @@ fn refused_frames() {
     assert!(width < least && setup(least).is_ok(), "{least}");
 }
 
-/// Light is linear on the screen: its error at each pixel, in steps of a channel, against f64.
+/// Light is linear on the screen: compares the light of each pixel with f64, in steps of a channel.
 #[test]
 fn light_against_f64() {
     let mut random = Random(54);

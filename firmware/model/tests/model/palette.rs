@@ -1,4 +1,4 @@
-//! The colours of a field: fog, shadows, grey.
+//! Tests of the colours of a field: fog, occlusion, grey.
 
 use glint_core::camera::View;
 use glint_core::field::Field;

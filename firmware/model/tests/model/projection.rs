@@ -40,7 +40,7 @@ impl Worst {
 }
 
 /// Returns a random camera within 8 world units of the origin, a point of a mesh that appears in its guard band, and the
-/// depth of this point. The coordinates of the point are within ±`reach`.
+/// depth of this point. The coordinates of the point are in ±`reach`.
 fn aimed(
     random: &mut Random,
     (width, height): (u32, u32),
@@ -54,7 +54,7 @@ fn aimed(
         let eye = random.direction().map(|x| x * distance);
         let towards = [0, 1, 2].map(|i| world(point)[i] - eye[i]);
         let length = glint_vectors::math::dot(towards, towards).sqrt();
-        // Position in pixels, half of the time on the screen.
+        // Position in pixels; with probability 1/2 on the screen.
         let (x, y) = if random.coin() {
             (
                 random.real(0.0, width.into()),
@@ -97,7 +97,7 @@ fn places_against_f64() {
             let view = camera.rounded();
             let frame = MeshSetup::new(&view, width, height, RADII[index]).unwrap();
             for _ in 0..4 {
-                // Tests positions close to the point in space, which are close to it on the screen too.
+                // Tests positions close to the point, so that they are also close to it on the screen.
                 let spread = (z * half_width * 16384.0).min(20_000.0) as i64 + 1;
                 let position = point.map(|x| {
                     (i64::from(x) + random.integer(-spread, spread)).clamp(-32768, 32767) as i16
@@ -124,7 +124,7 @@ fn places_against_f64() {
     }
 }
 
-/// Horizontal fields of view from 1° to 179°, 150° among them, with the nearest near plane that each of them allows.
+/// Tests horizontal fields of view from 1° to 179°, including 150°, each with the nearest near plane that it allows.
 #[test]
 fn fields_of_view_against_f64() {
     let mut random = Random(6);
@@ -155,14 +155,14 @@ fn fields_of_view_against_f64() {
                 worst.count, worst.screen, worst.guard
             );
             assert!(worst.count > 1_000);
-            // The bound of docs/formats/triangle.md, with |D|/Z in a corner of the picture.
+            // The bound of docs/formats/triangle.md, with |D|/Z at a corner of the picture.
             let longest = (1.0 + 1.3164 * half_width * half_width).sqrt();
             let rows = 0.5f64.powi(shift as i32 + 1) + f64::from(width) * 0.5f64.powi(25);
             let bound = 0.75 + 256.0 * 3f64.sqrt() * longest * rows;
             assert!(worst.screen <= bound, "{} > {bound}", worst.screen);
         }
     }
-    // A near plane that is too near for a narrow picture of many pixels is refused.
+    // A near plane that is too near for a narrow picture of many pixels is rejected.
     let camera = |near| Camera::looking([4.0, 0.0, 0.0], [0.0; 3], 0.0088, near).rounded();
     let refused = MeshSetup::new(&camera(0.06), 1280, 720, RADII[0]).unwrap_err();
     assert_eq!(
@@ -173,8 +173,8 @@ fn fields_of_view_against_f64() {
     assert!(MeshSetup::new(&camera(0.016), 320, 180, RADII[0]).is_ok());
 }
 
-/// Compares the depth code w of a vertex with K/z, and the scale K with its definition: the nearest possible depth of the
-/// mesh must have the code 2^18 − 4, or a part of up to 2^−16 less.
+/// Compares the depth code w of a vertex with K/z, and the scale K with its definition: the nearest possible depth of the mesh must have
+/// the code 2^18 − 4, or less by a relative 2^−16 at most.
 #[test]
 fn depths_against_f64() {
     let mut random = Random(2);
@@ -208,7 +208,7 @@ fn depths_against_f64() {
     assert!(worst <= 4.5);
 }
 
-/// Tests the extremes of the accepted cameras: nothing overflows, and positions are correct.
+/// Tests extreme accepted cameras: nothing overflows, and positions are correct.
 #[test]
 fn extremes() {
     let mut random = Random(3);
@@ -300,7 +300,7 @@ fn steps_as_written() {
         let (width, height) = SIZES[round % 3];
         let half_width = random.logarithmic(HALF_WIDTHS[0], HALF_WIDTHS[1]);
         let (camera, point, _) = aimed(&mut random, (width, height), half_width, 2.0);
-        // The nearest near plane that every half width allows.
+        // The nearest near plane for each half width.
         let near = camera.near.max(0.0625);
         let view = Camera { near, ..camera }.rounded();
         let frame = MeshSetup::new(&view, width, height, RADII[1]).unwrap();

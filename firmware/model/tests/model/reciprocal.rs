@@ -1,4 +1,4 @@
-//! Test of the reciprocal with all mantissas.
+//! Tests the reciprocal of every mantissa.
 
 use glint_model::triangle::reciprocal::{Reciprocal, SEED, recip};
 
@@ -8,7 +8,7 @@ fn every_mantissa() {
     let (mut worst, mut worst_at, mut sum, mut last) = (0.0, 0, 0.0, u32::MAX);
     let [mut e0_range, mut e1_range] = [[i64::MAX, i64::MIN]; 2];
     for m in 1i64 << 23..1 << 24 {
-        // The steps of the reciprocal, as written in docs/formats/triangle.md.
+        // The reciprocal, following the steps in docs/formats/triangle.md.
         let y0 = i64::from(SEED[(m >> 15 & 0xFF) as usize]);
         let e0 = ((1 << 33) - m * y0) >> 8;
         let y1 = (y0 * (1 << 7) + ((y0 * e0) >> 18)).min((1 << 17) - 1);

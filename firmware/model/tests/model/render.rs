@@ -1,4 +1,4 @@
-//! Whole frames: order of drawing, facing, chunks, and errors.
+//! Tests of whole frames: drawing order, facing, chunks, and errors.
 
 use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
@@ -51,8 +51,8 @@ fn a_sphere_is_a_disc_without_holes() {
     }
 }
 
-/// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws
-/// the sphere turned inside out, with culling: it shows its far side.
+/// Draws a sphere with and without culling: the pictures are equal, because culling removes only hidden faces. Then draws the sphere
+/// turned inside out with culling, so that its far side is visible.
 #[test]
 fn culling_and_windings() {
     let sphere = Model::sphere(0.5, 12);
@@ -93,7 +93,7 @@ fn culling_and_windings() {
     );
 }
 
-/// At equal depths the triangle that is drawn later is shown.
+/// At equal depths the later triangle wins.
 #[test]
 fn ties_go_to_the_later() {
     let triangle = [[0, -8000, -8000], [0, 8000, -8000], [0, 0, 8000]];
@@ -115,7 +115,7 @@ fn ties_go_to_the_later() {
     }
 }
 
-/// Without equal depths the order of the triangles does not matter, and exceptions are drawn after all other triangles.
+/// At different depths the order of the triangles has no effect; exceptions are drawn after all other triangles.
 #[test]
 fn order() {
     let mut random = Random(1);
@@ -179,7 +179,7 @@ fn chunks() {
     assert!(clipped(0..21_000) && clipped(21_900..22_000));
 }
 
-/// The same camera and mesh give the same bits, whatever the scratch memory and the target contained before.
+/// Equal cameras and meshes give identical pictures, for any previous contents of the scratch memory and the target.
 #[test]
 fn frames_do_not_depend_on_what_was_before() {
     let bytes = Model::sphere(0.5, 9).encoded();

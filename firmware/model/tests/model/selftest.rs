@@ -1,4 +1,4 @@
-//! The checksums that the self-test compares with are those of the model's pictures.
+//! The self-test's stored checksums equal those of the model's pictures.
 
 use glint_core::mesh::Mesh;
 use glint_core::shape::MAX_BYTES;
@@ -47,7 +47,7 @@ fn the_stored_checksums_are_those_of_the_model() {
         };
         picture.describe(Some(mesh), &mut draw).unwrap();
     }
-    // Another picture each, so that none stands for another.
+    // All pictures differ, so that no two checksums are equal.
     let mut distinct = seen.clone();
     distinct.sort_unstable();
     distinct.dedup();

@@ -15,7 +15,7 @@ fn any_colour(random: &mut Random) -> Rgb565 {
     Rgb565(random.bits() as u16)
 }
 
-/// Equal light at all vertices gives exactly this colour in all pixels, at all depths and for triangles of every shape.
+/// Equal light at all vertices gives exactly the light's colour in all pixels, at all depths and for triangles of any shape.
 #[test]
 fn equal_light_is_a_flat_colour() {
     let mut random = Random(1);
@@ -61,7 +61,7 @@ fn quotients_of_anything() {
             colour(light, ((random.bits() & 0xFFFF_FFFF) >> shift) as u32);
         }
     }
-    // The largest light and a light slightly below 0, at the smallest and the largest depth.
+    // Tests the largest light and a light slightly below 0, at the smallest and the largest depth.
     for codes in [228u32, (1 << 18) - 4] {
         let depth = (codes << 14) + (1 << 13);
         let most = (u64::from(depth) * 63 / 64) as u32;
@@ -104,8 +104,8 @@ fn random_frame(random: &mut Random) -> MeshSetup {
     MeshSetup::new(&Camera::inside(random).rounded(), width, height, 56_756).unwrap()
 }
 
-/// The light at a cut is interpolated linearly between the lights of the edge's ends, and rounded. Both neighbours of
-/// the edge get the same light.
+/// The light at a cut vertex is interpolated linearly between the ends of the edge, and rounded. Both triangles at the edge get the same
+/// light.
 #[test]
 fn cut_edges_have_light_in_between() {
     let mut random = Random(4);

@@ -1,4 +1,4 @@
-//! Two eyes: their cameras compared with a projection in f64, and their pictures with pictures of one eye.
+//! Tests of two eyes: compares their cameras with a projection in f64, and their pictures with pictures of one eye.
 
 use glint_core::camera::{Projection, View};
 use glint_core::colour::Rgb565;
@@ -20,8 +20,8 @@ fn stereo(half_separation: f64, zero_parallax: f64) -> Stereo {
     }
 }
 
-/// The x of a position in pixels, on the picture of an eye that is `aside` to the right of the camera: the position is projected to the
-/// plane of zero parallax from this eye, and the plane is seen from the camera.
+/// The x coordinate in pixels of a position in the picture of an eye that is `aside` to the right of the camera: the position is projected
+/// from this eye to the plane of zero parallax, and the result from the camera to the picture.
 fn column(camera: &Camera, position: [f64; 3], aside: f64, zero: f64, width: u32) -> f64 {
     let d = [0, 1, 2].map(|i| position[i] - camera.eye[i]);
     let (along, z) = (dot(camera.u, d), dot(camera.n, d));
@@ -30,7 +30,7 @@ fn column(camera: &Camera, position: [f64; 3], aside: f64, zero: f64, width: u32
     half + on_plane / zero * half / camera.half_width
 }
 
-/// Positions in the pictures of both eyes are within 1/256 pixel of those in f64, and 2/256 in the largest picture, as with one eye.
+/// Positions in the pictures of both eyes are within 1/256 pixel of the f64 positions, or 2/256 in the largest picture, as with one eye.
 #[test]
 fn eyes_against_f64() {
     let mut random = Random(17);
@@ -66,7 +66,7 @@ fn eyes_against_f64() {
     }
 }
 
-/// Anaglyph colour of a pixel of each eye, by the formulas of docs/formats/camera.md in whole numbers.
+/// Anaglyph colour of a pixel of each eye, by the formulas of docs/formats/camera.md in integers.
 fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     let grey = |pixel: u16| {
         let [r, g, b] = Rgb565(pixel).to_rgb888().map(u32::from);
@@ -80,7 +80,8 @@ fn composed(tint: Tint, left: u16, right: u16) -> u16 {
     (left / 8 * 2048 + green / 4 * 32 + right / 8) as u16
 }
 
-/// With a shift of whole pixels each eye sees what one eye at its place sees, a number of columns aside, but for the rounding of positions.
+/// With a shift of whole pixels, the picture of each eye equals the picture of one eye at its position, moved by a number of columns,
+/// except for the rounding of positions.
 #[test]
 fn eyes_see_shifted_pictures_of_one_eye() {
     let bytes = Model::sphere(0.5, 12).encoded();
@@ -121,7 +122,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
         let expected = left.iter().zip(&right);
         let expected = expected.map(|(&left, &right)| composed(tint, left, right));
         let expected = words(&expected.collect::<Vec<_>>());
-        // Includes pictures that end within a cache line.
+        // Tests also pictures that end within a cache line.
         for pixels in [left.len(), 2 * 11] {
             let mut both = words(&left[..pixels]);
             let eyes = glint_model::Eyes { tint, ..eyes };
@@ -131,7 +132,7 @@ fn eyes_see_shifted_pictures_of_one_eye() {
     }
 }
 
-/// A picture of words of two pixels.
+/// Makes a picture from words of two pixels.
 fn words(pixels: &[u16]) -> Vec<u32> {
     let pairs = pixels.as_chunks().0.iter();
     pairs
@@ -139,7 +140,7 @@ fn words(pixels: &[u16]) -> Vec<u32> {
         .collect()
 }
 
-/// Two eyes at one place see the picture of one eye, in grey.
+/// Two eyes at one position give the picture of one eye, in grey.
 #[test]
 fn eyes_at_one_place() {
     let bytes = Model::cube(8192).encoded();
@@ -179,13 +180,13 @@ fn refused_eyes() {
     );
     let parallel = near_the_limit.with_projection(Projection::Orthographic);
     assert_eq!(refused(frame(mesh, parallel)), RenderError::Orthographic);
-    // The camera is within reach, but its eyes are not.
+    // The camera is within the permitted distance, but its eyes are not.
     let eyes = frame(mesh, near_the_limit).eyes().unwrap().unwrap();
     for eye in [eyes.left, eyes.right] {
         let error = eye.constants().map(|_| ()).unwrap_err();
         assert_eq!(error, RenderError::Eye(eye.view.eye()));
     }
-    // Such a frame is drawn as two.
+    // Such a frame must be drawn as two frames.
     let error = frame(mesh, near_the_limit).constants().map(|_| ());
     assert_eq!(error, Err(RenderError::Stereo));
 }

@@ -12,7 +12,7 @@ use glint_vectors::{Camera, Model, Picture, Random};
 /// Radius of a mesh that may have vertices at all positions of the mesh format, 14 fraction bits.
 const RADIUS: u32 = 56_756;
 
-/// A vertex in pixels from the middle of the picture, in perspective at distance 1, and depth in world units.
+/// A vertex: pixels from the middle of the picture (in perspective at distance 1), and depth in world units.
 type Point = [f64; 3];
 
 fn view_of(far: f64) -> Clip {
@@ -81,7 +81,7 @@ fn reference(frame: &MeshSetup, far: f64, triangle: [Point; 3]) -> Vec<Point> {
     polygon
 }
 
-/// Vertices of clipped polygons on the screen are within 1/256 pixel of those of a clipper in f64.
+/// On the screen, vertices of clipped polygons are within 1/256 pixel of the vertices of a clipper in f64.
 #[test]
 fn vertices_against_f64() {
     let mut random = Random(20);
@@ -96,7 +96,7 @@ fn vertices_against_f64() {
         let polygon = clip(&frame, triangle);
         let expected = reference(&frame, far, triangle.each_ref().map(|v| point(&frame, v)));
         most = most.max(polygon.vertices().len());
-        // A vertex at a plane, within the rounding of f64, may be inside for one clipper only.
+        // A vertex closer to a plane than the rounding of f64 may be inside for only one of the clippers.
         if polygon.vertices().len() != expected.len() {
             unlike += 1;
             continue;
@@ -127,9 +127,9 @@ fn vertices_against_f64() {
     assert!(worst <= 1.0, "{worst}");
 }
 
-/// Two triangles at an edge keep the same part of it, with the same vertices at its ends: no pixel on the edge is lost or drawn twice.
+/// Two triangles at an edge keep the same part of the edge, with the same end vertices: no pixel on the edge is lost or drawn twice.
 ///
-/// `GLINT_PAIRS` is the number of pairs.
+/// The environment variable `GLINT_PAIRS` sets the number of pairs.
 #[test]
 fn neighbours_have_no_cracks() {
     let pairs = std::env::var("GLINT_PAIRS").map_or(50_000, |text| text.parse().expect("a number"));
@@ -149,7 +149,7 @@ fn neighbours_have_no_cracks() {
             .map(|i| ends[i])
             .collect();
         let &[p, q] = distinct.as_slice() else {
-            // At most a point of the edge is inside.
+            // At most one point of the edge is inside.
             assert!(distinct.len() < 2);
             continue;
         };
@@ -228,7 +228,7 @@ fn picture_of(model: &Model, view: &View, clip: Clip) -> Picture {
     picture
 }
 
-/// The six planes and the guard band give the same picture, apart from pixels at edges that the picture's sides cut.
+/// Clipping to the six planes and to the guard band give the same picture, except for pixels at edges cut by the picture's sides.
 #[test]
 fn both_clips_draw_the_same_picture() {
     let mut random = Random(22);

@@ -1,4 +1,4 @@
-//! The winding of triangles by their position on the screen.
+//! Tests of the winding rule that uses positions on the screen.
 
 use glint_core::colour::{Shading, Winding};
 use glint_core::fixed::Q32_32;
@@ -9,7 +9,7 @@ use glint_model::triangle::setup::Oriented;
 use glint_model::{Frame, MeshSubject, ScreenVertex, Subject};
 use glint_vectors::{Camera, Picture, Random};
 
-/// The orders of three vertices.
+/// All orders of three vertices.
 const ORDERS: [[usize; 3]; 6] = [
     [0, 1, 2],
     [1, 2, 0],
@@ -23,7 +23,7 @@ const ORDERS: [[usize; 3]; 6] = [
 fn the_upper_left_vertex_is_first_and_the_others_follow_clockwise() {
     let mut random = Random(1);
     for _ in 0..20_000 {
-        // Small numbers, so that vertices are often equally high.
+        // Small coordinates, so that vertices are often equally high.
         let vertices = [0; 3].map(|_| ScreenVertex {
             x: random.integer(-4, 4) as i32,
             y: random.integer(-4, 4) as i32,
@@ -38,7 +38,7 @@ fn the_upper_left_vertex_is_first_and_the_others_follow_clockwise() {
     }
 }
 
-/// The picture does not depend on the order of the vertices in the mesh, nor on the side that a normal points to.
+/// The picture does not depend on the order of the vertices in the mesh, nor on the side to which a normal points.
 #[test]
 fn the_order_in_the_mesh_does_not_matter() {
     let mut random = Random(2);

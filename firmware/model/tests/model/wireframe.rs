@@ -9,7 +9,7 @@ use glint_model::wireframe::LINE_COLOUR;
 use glint_model::{Frame, FrameStats, Subject, WireframeStats, WireframeSubject};
 use glint_vectors::Picture;
 
-/// The window ±2 × ±1.125 at z = 2, seen from z = 4: 160 pixels a unit at the view plane of a picture 640 wide.
+/// The window ±2 × ±1.125 at z = 2, seen from z = 4: 160 pixels per world unit at the view plane of a picture 640 pixels wide.
 const HEAD: &str = "eye 0 0 4\nplane 2\nwindow -2 -1.125 2 1.125\n";
 
 fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {

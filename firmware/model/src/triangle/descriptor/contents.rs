@@ -13,11 +13,11 @@ use crate::triangle::setup::{Bounds, Edge, Plane, Setup};
 /// Primitive that a descriptor in memory represents.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contents {
-    /// A triangle, with its colour under flat shading. Left and right bounds are those of groups.
+    /// A triangle, with its colour under flat shading. The left and right bounds are rounded to groups.
     Triangle(Setup, Rgb565),
     /// A piece of a line.
     Piece(Piece),
-    /// A damaged triangle, whose groups are not in the picture: it is not drawn.
+    /// A damaged triangle, whose groups are not in the picture; it is not drawn.
     Stray,
 }
 
@@ -31,7 +31,7 @@ impl Descriptor {
         descriptor
     }
 
-    /// Unpacks the descriptor for a picture of this width. Any words have contents.
+    /// Unpacks the descriptor for a picture of this width. Never fails: any words are valid contents.
     pub fn contents(&self, width: u32) -> Contents {
         let words = &self.words;
         let colour = Rgb565(descriptor::COLOUR.get(words) as u16);
@@ -118,7 +118,7 @@ impl Descriptor {
 }
 
 impl Setup {
-    /// The part of the triangle in these rows of the picture; `None` if it has no row there.
+    /// The part of the triangle in these rows of the picture; `None` if it covers none of these rows.
     pub fn in_rows(&self, rows: Range<i32>) -> Option<Self> {
         let Bounds { top, bottom, .. } = self.bounds;
         let (first, end) = (top.max(rows.start), bottom.min(rows.end));
