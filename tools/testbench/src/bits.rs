@@ -1,8 +1,8 @@
-//! Values of a module's ports, as bits.
+//! Bit vectors for the values of a module's ports.
 
 use std::fmt;
 
-/// Number of 32-bit words that the widest port needs.
+/// Number of 32-bit words of the widest port.
 const WORDS: usize = 16;
 
 /// A value of up to 512 bits. The value of a narrower port is in the lowest bits.
@@ -10,7 +10,7 @@ const WORDS: usize = 16;
 pub struct Bits([u32; WORDS]);
 
 impl Bits {
-    /// Makes a value from 32-bit words, the lowest first; missing words are 0.
+    /// Makes a value from 32-bit words, lowest first; missing words are 0.
     ///
     /// # Panics
     /// The value has more than 512 bits.
@@ -24,7 +24,7 @@ impl Bits {
         bits
     }
 
-    /// Makes a value from at most 64 bytes, the lowest first; missing bytes are 0.
+    /// Makes a value from at most 64 bytes, lowest first; missing bytes are 0.
     #[must_use]
     pub fn from_bytes(bytes: &[u8]) -> Self {
         let mut bits = Self::default();
@@ -36,13 +36,13 @@ impl Bits {
         bits
     }
 
-    /// Returns the value as 32-bit words, the lowest first.
+    /// Returns the value as 32-bit words, lowest first.
     #[must_use]
     pub fn words(&self) -> &[u32; WORDS] {
         &self.0
     }
 
-    /// Whether all but the lowest `width` bits are 0.
+    /// Whether all bits above the lowest `width` bits are 0.
     #[must_use]
     pub(crate) fn fits(&self, width: usize) -> bool {
         let mut above = self.0.iter().skip(width / 32);
@@ -50,7 +50,7 @@ impl Bits {
         cut && above.all(|&word| word == 0)
     }
 
-    /// Returns the `width` bits from bit `low` on as a number; `width` is at most 64.
+    /// Returns the field of `width` bits from bit `low` up as a number; `width` is at most 64.
     ///
     /// # Panics
     /// When `width` is above 64, or the bits are not within the 512 bits.
@@ -63,7 +63,7 @@ impl Bits {
         (three >> (low % 32)) as u64 & ((1_u128 << width) - 1) as u64
     }
 
-    /// Returns the `width` bits from bit `low` on, moved to the lowest bits; `width` may be above 64.
+    /// Returns the field of `width` bits from bit `low` up, shifted to bit 0; `width` may be above 64.
     ///
     /// # Panics
     /// When the bits are not within the 512 bits.
@@ -72,7 +72,7 @@ impl Bits {
         Self::default().with_words(0, self, low, width)
     }
 
-    /// Replaces the `width` bits from bit `low` on by the `width` lowest bits of `bits`.
+    /// Replaces the field of `width` bits from bit `low` up by the lowest `width` bits of `bits`.
     ///
     /// # Panics
     /// When the bits are not within the 512 bits.
@@ -81,7 +81,7 @@ impl Bits {
         self.with_words(low, &bits, 0, width)
     }
 
-    /// Replaces the `width` bits from bit `low` on by the `width` bits of `source` from its bit `from` on.
+    /// Replaces the field of `width` bits from bit `low` up by the field of `source` from its bit `from` up.
     fn with_words(mut self, low: usize, source: &Self, from: usize, width: usize) -> Self {
         let mut done = 0;
         while done < width {
@@ -103,7 +103,7 @@ impl Bits {
         self.field(0, 64)
     }
 
-    /// Returns the field number `index` of a value that [`pack`](Self::pack) made from fields of `width` bits.
+    /// Returns field `index` of a value that [`pack`](Self::pack) made from fields of `width` bits.
     ///
     /// # Panics
     /// When the field is not within the 512 bits, or `width` is above 64.
@@ -112,7 +112,7 @@ impl Bits {
         self.field(width * index, width)
     }
 
-    /// Concatenates fields of the same `width`, the first in the lowest bits.
+    /// Concatenates fields of `width` bits each, the first in the lowest bits.
     ///
     /// # Panics
     /// When the fields have more than 512 bits, or one of `values` does not fit `width` bits.
@@ -125,7 +125,7 @@ impl Bits {
             })
     }
 
-    /// Returns the `width` bits from bit `low` on as a two's complement number.
+    /// Returns the field of `width` bits from bit `low` up as a two's complement number.
     ///
     /// # Panics
     /// As [`field`](Self::field), and when `width` is 0.
@@ -135,10 +135,10 @@ impl Bits {
         (self.field(low, width) << unused) as i64 >> unused
     }
 
-    /// Replaces the `width` bits from bit `low` on by `value`, in two's complement if `value` is negative.
+    /// Replaces the field of `width` bits from bit `low` up by `value`, in two's complement if `value` is negative.
     ///
     /// # Panics
-    /// When the bits are not within the 512 bits, or `value` does not fit `width` bits, neither signed nor unsigned.
+    /// When the bits are not within the 512 bits, or `value` fits `width` bits neither as a signed nor as an unsigned number.
     #[must_use]
     pub(crate) fn with(mut self, low: usize, width: usize, value: impl Into<i128>) -> Self {
         let value = value.into();

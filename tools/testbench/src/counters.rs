@@ -1,9 +1,8 @@
-//! Counters of a module's events. The module has an output port with a packed struct, whose members are the increments of
-//! the counters in the current clock.
+//! Counts of a module's events. The module's output port is a packed struct with the increments of the counters in the current clock.
 
 use crate::{Bits, Module, Port};
 
-/// The counters of a module: sums of the port's members over all sampled clocks, by the members' names.
+/// The counters of a module: for each member of the port, the sum over all sampled clocks.
 pub struct Counters {
     events: Port,
     /// For each member of the port: its name, its bits within the port, and its sum so far.

@@ -1,4 +1,4 @@
-//! Layout of packed types as resolved by Verilator: the bits of each member.
+//! Bit layout of packed types, as resolved by Verilator.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,13 +19,13 @@ pub struct Layout {
 enum Shape {
     Array {
         count: usize,
-        /// Lowest index; the element with this index is in the lowest bits.
+        /// Lowest index, the index of the element in the lowest bits.
         lowest: usize,
         element: Layout,
     },
     Structure {
         name: String,
-        /// Names and types of the members, the member in the highest bits first.
+        /// Names and types of the members, from the highest bits down.
         members: Vec<(String, Layout)>,
     },
     Enumeration {
@@ -53,7 +53,7 @@ impl From<Shape> for Layout {
     }
 }
 
-/// Part of a value of a packed type: the bits from `low` on, which have the type `layout`.
+/// Part of a value of a packed type: the bits from `low` up, of the type `layout`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Member<'a> {
     pub low: usize,
@@ -67,16 +67,15 @@ impl Layout {
         self.width
     }
 
-    /// Whether a value of this type is a two's complement number.
+    /// Whether the type is signed (two's complement).
     pub(crate) fn is_signed(&self) -> bool {
         matches!(*self.shape, Shape::Vector { signed: true, .. })
     }
 
-    /// Finds a part by its path: names of members, each after a `.`, and indices in `[]`, as in `place.line` or
-    /// `[1].half[2]`. The empty path is the whole type.
+    /// Finds a part by its path of member names and indices, such as `place.line` or `[1].half[2]`. The empty path names the whole value.
     ///
     /// # Errors
-    /// When the path names no part; the message lists the known names.
+    /// When the path names no part; the message lists the valid names.
     pub(crate) fn find(&self, path: &str) -> Result<Member<'_>, String> {
         let mut part = Member {
             low: 0,
@@ -91,7 +90,7 @@ impl Layout {
         Ok(part)
     }
 
-    /// Names of a structure's members, the member in the highest bits first; empty for any other type.
+    /// Names of a structure's members, from the highest bits down; empty for any other type.
     pub(crate) fn member_names(&self) -> Vec<String> {
         match &*self.shape {
             Shape::Structure { members, .. } => {

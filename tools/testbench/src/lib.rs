@@ -1,8 +1,8 @@
-//! Test benches for verilated designs: ports by name, and senders and receivers for streams.
+//! Test benches for verilated designs: access to ports by name, and sources and sinks for streams.
 //!
-//! A [`Module`] is one instance of one module, with ports by name and a clock. A [`Source`] sends items to an input stream
-//! of the module (valid/ready), a [`Sink`] takes items from an output stream; sources and sinks stall at random. A payload
-//! must not change while it is valid and not taken: the source obeys this rule, and the sink checks it.
+//! A [`Module`] is an instance of a module, with a clock and access to ports by name. A [`Source`] sends items to an input stream
+//! of the module (valid/ready), a [`Sink`] takes items from an output stream; sources and sinks stall at random. A valid payload
+//! must not change until it is taken: the source obeys this rule, and the sink checks it.
 //!
 //! `python gateware/tests/run.py --models` builds the modules; `cargo xtask test` builds them too.
 

@@ -20,7 +20,7 @@ const VERSION: u32 = 1;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// The file is missing, is not a library, or lacks a function that was looked up.
+    /// The file is missing or not a library, or a function is missing.
     #[error("{}: {source}", path.display())]
     Library {
         /// The file.
@@ -28,8 +28,8 @@ pub enum LoadError {
         /// The loader's message.
         source: libloading::Error,
     },
-    /// The library was built with another version of the harness, the code that contains its C interface.
-    #[error("{}: version {found} of the harness, expected {expected}", path.display())]
+    /// The library's harness, which implements the C interface, has another version.
+    #[error("{}: expected version {expected} of the harness, found {found}", path.display())]
     Version {
         /// The file.
         path: PathBuf,
@@ -39,7 +39,7 @@ pub enum LoadError {
         found: u32,
     },
     /// The library's description of its ports cannot be parsed.
-    #[error("{}: the description of the ports: {source}", path.display())]
+    #[error("{}: cannot parse the description of the ports: {source}", path.display())]
     Description {
         /// The file.
         path: PathBuf,
@@ -61,7 +61,7 @@ pub(crate) struct PortDescription {
 #[derive(Clone, Debug, Deserialize)]
 pub(crate) struct Description {
     pub ports: Vec<PortDescription>,
-    /// The types of all packages, by `package::type`.
+    /// The types of all packages, by their names `package::type`.
     pub types: BTreeMap<String, Layout>,
 }
 
@@ -79,7 +79,7 @@ impl Slot {
         let width = described.layout.width();
         Self {
             address,
-            // Verilator stores a port in the smallest integer type that holds it, or above 64 bits in whole 32-bit words.
+            // Verilator stores a port in the smallest integer type that fits, or above 64 bits in an array of 32-bit words.
             bytes: match width {
                 0..=8 => 1,
                 9..=16 => 2,
@@ -93,7 +93,7 @@ impl Slot {
     }
 }
 
-/// One instance of a verilated design, which gives access to its ports by number and evaluates it.
+/// One instance of a verilated design, with access to ports by number.
 pub struct Instance {
     handle: NonNull<c_void>,
     ports: Vec<Slot>,
@@ -101,7 +101,7 @@ pub struct Instance {
     free: unsafe extern "C" fn(*mut c_void),
     eval: unsafe extern "C" fn(*mut c_void),
     path: PathBuf,
-    // The last field, so that the library is unloaded after the other fields are dropped, which point into it.
+    // The last field: the library must be unloaded after the other fields, which point into it.
     library: Library,
 }
 
@@ -109,7 +109,7 @@ pub struct Instance {
 unsafe impl Send for Instance {}
 
 impl Instance {
-    /// Loads a library and creates an instance of its design, before the first evaluation.
+    /// Loads a library and creates an instance of its design without evaluating it.
     ///
     /// # Errors
     /// When the file is missing, or is not a library with this version of the C interface.
@@ -170,13 +170,13 @@ impl Instance {
         })
     }
 
-    /// The instance handle, for functions from [`symbol`](Self::symbol).
+    /// The instance handle, an argument of functions from [`symbol`](Self::symbol).
     #[must_use]
     pub fn handle(&self) -> *mut c_void {
         self.handle.as_ptr()
     }
 
-    /// Looks up a function of the library outside the common interface.
+    /// Looks up a function of the library that is not in the common interface.
     ///
     /// # Errors
     /// When the library has no function of that name.
@@ -238,7 +238,7 @@ impl Instance {
     pub fn set_value(&mut self, port: usize, value: u64) {
         let Slot { width, .. } = self.ports[port];
         self.check_input(port, width >= 64 || value >> width == 0, value);
-        // Fixed lengths: copying a variable length would be a function call.
+        // Fixed lengths, because a copy of variable length is a function call.
         let bytes = value.to_le_bytes();
         match self.bytes_mut(port) {
             [byte] => *byte = bytes[0],
@@ -277,17 +277,21 @@ impl Instance {
         let Slot { width, output, .. } = self.ports[port];
         let name = || &self.port(port).name;
         assert!(!output, "{} is an output", name());
-        assert!(fits, "{value:?} in the {width} bits of {}", name());
+        assert!(
+            fits,
+            "{value:?} does not fit the {width} bits of {}",
+            name()
+        );
     }
 
-    /// Evaluates the design for its current inputs, which include the clocks.
+    /// Evaluates the design for its current inputs, clocks included.
     pub fn eval(&mut self) {
         // SAFETY: the handle belongs to an instance.
         unsafe { (self.eval)(self.handle.as_ptr()) }
     }
 
-    /// Starts writing waveforms to a file; call it before the first evaluation. Returns `false` when nothing can be
-    /// written, as with a library that was built without waveforms.
+    /// Starts writing waveforms to a file; to be called before the first evaluation. Returns `false` if the library was built
+    /// without waveforms, or the file cannot be written.
     ///
     /// # Errors
     /// When the library lacks the function.
@@ -311,7 +315,7 @@ impl Instance {
         unsafe { slice::from_raw_parts(address.as_ptr(), bytes) }
     }
 
-    /// Returns the bytes of a port in the model, little-endian, to be changed.
+    /// Returns the mutable bytes of a port in the model, little-endian.
     fn bytes_mut(&mut self, port: usize) -> &mut [u8] {
         let Slot { address, bytes, .. } = self.ports[port];
         // SAFETY: as in `bytes`; `&mut self` excludes other access.

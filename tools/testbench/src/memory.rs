@@ -1,4 +1,4 @@
-//! Model of the memory behind LiteDRAM's native ports; addresses count words of 16 bytes.
+//! Model of the memory behind LiteDRAM's native ports, addressed in words of 16 bytes.
 
 use std::collections::VecDeque;
 
@@ -18,7 +18,7 @@ impl Memory {
         }
     }
 
-    /// Writes bytes from the start of the word number `address` on.
+    /// Writes bytes from the start of word `address` on.
     ///
     /// # Panics
     /// When the bytes do not end within the memory.
@@ -28,7 +28,7 @@ impl Memory {
         }
     }
 
-    /// Returns the word number `address`.
+    /// Returns word `address`.
     ///
     /// # Panics
     /// When the address is beyond the memory.
@@ -45,7 +45,7 @@ impl Memory {
         )
     }
 
-    /// Writes those bytes of `data` whose bit is set in `strobe` to the word number `address`.
+    /// Writes the bytes of `data` whose `strobe` bits are set to word `address`.
     ///
     /// # Panics
     /// When the address is beyond the memory.
@@ -57,7 +57,7 @@ impl Memory {
         }
     }
 
-    /// Returns entry number `index` of an array of 32-bit entries that starts at the word number `address`.
+    /// Returns entry `index` of an array of 32-bit entries that starts at word `address`.
     ///
     /// # Panics
     /// When the address is beyond the memory.
@@ -68,18 +68,18 @@ impl Memory {
     }
 }
 
-/// Default latency of a read port, in clocks from a command to its data.
+/// Default latency of a read port: clocks from a command to its data.
 const LATENCY: u64 = 12;
 
-/// The memory's side of a module's read port, which consists of the structs `NAME_read_request` and `NAME_read_answer`. The
-/// module must take each word in the clock in which the memory delivers it.
+/// The memory's side of a module's read port, the structs `NAME_read_request` and `NAME_read_answer`. The module must take each
+/// word in the clock in which the memory delivers it.
 pub struct ReadPort {
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// Words that were requested and not yet delivered: for each, the cycle from which it may be delivered, and its address.
+    /// Words requested and not yet delivered: the earliest cycle of delivery, and the address.
     queue: VecDeque<(u64, u32)>,
     stalls: Stalls,
-    /// Lowest number of clocks from a command to its data.
+    /// Minimum number of clocks from a command to its data.
     pub latency: u64,
     /// Number of words delivered so far.
     pub given: u64,
@@ -105,7 +105,7 @@ impl ReadPort {
         }
     }
 
-    /// Drives the port for the next clock: delivers a word if one is due, and is ready for a command or stalls.
+    /// Drives the port for the next clock: delivers a word if a word is due, and accepts or stalls commands.
     pub fn drive(&mut self, module: &mut Module, memory: &Memory) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -121,7 +121,7 @@ impl ReadPort {
         }
     }
 
-    /// Takes the command of this clock, if there is one.
+    /// Takes the command of this clock, if any.
     pub fn sample(&mut self, module: &Module) {
         if module.is_high(self.cmd[0]) && module.is_high(self.cmd[1]) {
             let address = module.value(self.cmd[2]) as u32;
@@ -131,12 +131,12 @@ impl ReadPort {
     }
 }
 
-/// The memory's side of a module's write port, which consists of the structs `NAME_write_request` and `NAME_write_answer`.
-/// The memory takes the data of a command in any later clock; the data must be valid in that clock.
+/// The memory's side of a module's write port, the structs `NAME_write_request` and `NAME_write_answer`. The memory takes a
+/// command's data in any later clock, in which the data must be valid.
 pub struct WritePort {
     cmd: [Port; 3],
     wdata: [Port; 4],
-    /// Addresses of the commands whose data have not been taken.
+    /// Addresses of the commands whose data were not taken yet.
     owed: VecDeque<u32>,
     takes: bool,
     stalls: Stalls,
@@ -169,7 +169,7 @@ impl WritePort {
         }
     }
 
-    /// Drives the port for the next clock: is ready for a command or stalls, and takes the data of an earlier command or stalls.
+    /// Drives the port for the next clock: accepts or stalls commands, and accepts or stalls the data of earlier commands.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         module.set(self.cmd[1], u64::from(!stalled));
@@ -177,8 +177,7 @@ impl WritePort {
         module.set(self.wdata[1], u64::from(self.takes));
     }
 
-    /// Takes the command of this clock, if there is one, and writes the data of this clock to `memory` if `drive` has
-    /// announced to take data.
+    /// Takes the command of this clock, if any, and writes its data to `memory` if `drive` accepted data for this clock.
     ///
     /// # Panics
     /// When the data of a command are missing, or the address is beyond the memory.

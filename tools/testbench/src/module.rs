@@ -11,21 +11,21 @@ pub struct Port {
     index: usize,
     pub(crate) low: usize,
     pub(crate) width: usize,
-    /// Whether this is the whole port, with no other bits below or above.
+    /// Whether the part is the whole port.
     whole: bool,
 }
 
 /// One instance of a module, with a clock `clk` and a reset `rst`.
 pub struct Module {
     instance: Instance,
-    /// The port `clk`; `None` for a module with other clocks, which the test bench drives itself.
+    /// The port `clk`; `None` for a module with other clocks, driven by the test bench.
     clock: Option<Port>,
     cycles: u64,
 }
 
 impl Module {
-    /// Loads the module `name`, or a variant of it, and resets it with all inputs low. Registers without a reset
-    /// start with noise from `seed`.
+    /// Loads the module `name`, or a variant of it, and resets it with all inputs low. Registers without a reset start with
+    /// random values from `seed`.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -42,8 +42,8 @@ impl Module {
         module
     }
 
-    /// Loads the module `name` with all inputs low, and does not evaluate it, for a test bench that drives clocks and
-    /// resets itself. The first [`settle`](Self::settle) evaluates the module.
+    /// Loads the module `name` with all inputs low and without evaluating it, for a test bench that drives clocks and resets. The
+    /// first [`settle`](Self::settle) evaluates the module.
     ///
     /// # Panics
     /// When the module has not been built.
@@ -55,7 +55,7 @@ impl Module {
         ));
         let mut instance = Instance::load(&folder.join(name).with_extension("so"), seed)
             .unwrap_or_else(|error| {
-                panic!("{error}; `.venv/bin/python gateware/tests/run.py --models` builds it")
+                panic!("{error}; run `.venv/bin/python gateware/tests/run.py --models` to build it")
             });
         for port in 0..instance.description().ports.len() {
             if !instance.port(port).output {
@@ -72,7 +72,7 @@ impl Module {
     /// Finds a port, or part of a port, by its path: `busy`, `status.busy`, `origins[2]`. See [`Record`] for paths.
     ///
     /// # Panics
-    /// When there is no such port or part; the message lists the known names.
+    /// When there is no such port or part; the message lists the valid names.
     #[must_use]
     pub fn port(&self, path: &str) -> Port {
         self.part(path).0
@@ -97,7 +97,7 @@ impl Module {
     /// Finds a type of a SystemVerilog package by its name, such as `raymarch_pkg::end_t`.
     ///
     /// # Panics
-    /// When there is no such type; the message lists the known names.
+    /// When there is no such type; the message lists the valid names.
     #[must_use]
     pub fn packed_type(&self, name: &str) -> &Layout {
         let types = &self.instance.description().types;
@@ -107,7 +107,7 @@ impl Module {
         })
     }
 
-    /// Makes a record, all zero, of the type of a port or of a part of a port.
+    /// Makes an all-zero record of the type of a port, or of a part of a port.
     ///
     /// # Panics
     /// When there is no such part.
@@ -124,7 +124,7 @@ impl Module {
         self.change(path, |record| record.set("", value));
     }
 
-    /// Drives an array with numbers, the lowest index first.
+    /// Drives an array with numbers in the order of its indices.
     ///
     /// # Panics
     /// When there is no such array, its length differs from the number of values, or a number does not fit.
@@ -178,7 +178,7 @@ impl Module {
             let name = &self.instance.port(index).name;
             assert!(
                 value.fits(width),
-                "{value:?} in {width} bits of {name} from bit {low}"
+                "{value:?} does not fit the {width} bits of {name} from bit {low}"
             );
             value = self.instance.bits(index).with_slice(low, width, value);
         }
@@ -219,18 +219,18 @@ impl Module {
         self.instance.bits(port.index).field(port.low, port.width)
     }
 
-    /// Whether a port of one bit is high.
+    /// Whether a one-bit port is high.
     #[must_use]
     pub fn is_high(&self, port: Port) -> bool {
         self.value(port) != 0
     }
 
-    /// Evaluates the module for its inputs, without a clock edge.
+    /// Evaluates the module for its current inputs, without a clock edge.
     pub fn settle(&mut self) {
         self.eval_with_clock(0);
     }
 
-    /// Advances by one clock: the rising edge takes the current inputs, and the outputs follow.
+    /// Advances by one clock: the rising edge samples the current inputs, and the outputs are updated.
     pub fn clock(&mut self) {
         self.eval_with_clock(0);
         self.eval_with_clock(1);

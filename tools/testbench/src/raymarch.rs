@@ -1,4 +1,4 @@
-//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, ends of rays, and pixels.
+//! Packs and unpacks values on the ports of the raymarcher's modules: frame constants, rays, results of rays, and pixels.
 
 use crate::{Bits, Layout, Module, Record};
 use glint_core::field::{Solid, Surface};
@@ -6,21 +6,21 @@ use glint_model::raymarch::{
     Cone, FieldSetup, Lights, Palette, Ray, RayResult, State, paint, rgb565,
 };
 
-/// Place of a pixel, as in the member `place` of a ray.
+/// Position of a pixel, as in the member `place` of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RayPlace {
-    /// Whether the number of the pixel's band is odd.
+    /// Whether the index of the pixel's band is odd.
     pub odd: bool,
-    /// Line in the band.
+    /// Line within the band.
     pub line: u32,
     /// Column in the picture.
     pub column: u32,
-    /// Eye: 0 is the left eye or the only one, 1 the right eye.
+    /// Eye: 0 for the left or only eye, 1 for the right eye.
     pub eye: usize,
 }
 
 impl RayPlace {
-    /// Returns the place that stands for a cone: its line and column hold the cone's number.
+    /// Returns the place of a cone: its line and column hold the cone's number.
     pub fn of_cone(eye: usize, number: u32) -> Self {
         Self {
             odd: false,
@@ -67,7 +67,7 @@ fn ray_record(layout: &Layout, place: RayPlace, ray: &Ray) -> Record {
     record
 }
 
-/// State in which a ray ends. `NAMES` has the names of these states in the SystemVerilog type `state_t`.
+/// Final state of a ray. `NAMES` has the states' names in the SystemVerilog type `state_t`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// The ray reached the far limit.
@@ -75,7 +75,7 @@ pub enum Kind {
     Miss,
     /// The ray reached a surface.
     Hit,
-    /// The ray reached the limit of steps.
+    /// The ray reached the step limit.
     Undecided,
 }
 
@@ -98,19 +98,19 @@ impl Kind {
     }
 }
 
-/// End of a ray or cone: the result that a lane returns. Members without a meaning are 0: `surface` and `slope` if nothing
-/// was hit, `t` of an undecided ray, `face` if a pure sphere was hit, `direction` if no sphere was hit.
+/// End of a ray or cone: the result from a lane. Unused members are 0: `surface` and `slope` if nothing was hit, `t` of an
+/// undecided ray, `face` if a pure sphere was hit, `direction` if no sphere was hit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct End {
     /// Whether the ray missed, hit or stayed undecided.
     pub state: Kind,
     /// Whether the surface is a sphere.
     pub round: bool,
-    /// Number of the sphere if `round`, else axis and sign of the flat face.
+    /// Index of the sphere if `round`, else axis and sign of the flat face.
     pub surface: u64,
     /// On a fillet, which joins a sphere and a flat face: axis and sign of this face.
     pub face: u64,
-    /// Weight of the sphere in the surface, u0.8: 0 for a face alone, 255 for a sphere alone, between them on a fillet.
+    /// Weight of the sphere in the surface, u0.8: 0 on a face, 255 on a sphere, between 0 and 255 on a fillet.
     pub share: u64,
     /// Distance along the ray, u11.12; after a miss, the sine of the direction's angle above the horizon in 8 bits.
     pub t: u64,
@@ -127,7 +127,7 @@ pub struct End {
 }
 
 impl End {
-    /// Converts the result of one ray in the model to the end that the module must produce.
+    /// Converts the model's result of a ray to the expected end.
     #[must_use]
     pub fn expected(ray: &Ray, outcome: &RayResult) -> Self {
         let (state, surface, t) = match outcome.state {
@@ -156,8 +156,8 @@ impl End {
         }
     }
 
-    /// Converts the model's result of a cone, distance `t` and number of evaluations, to the end that the module must
-    /// produce. The other members, except the length, are 0.
+    /// Converts the model's result of a cone, distance `t` and number of evaluations, to the expected end. All other members
+    /// except the length are 0.
     pub fn expected_of_cone(cone: &Cone, (t, steps): (u32, u32)) -> Self {
         Self {
             t: t.into(),
@@ -179,7 +179,7 @@ impl End {
         (RayPlace::of(record), end)
     }
 
-    /// Unpacks the place and the end of a ray from an `end_t`, with 0 in members without a meaning.
+    /// Unpacks the place and the end of a ray from an `end_t`; sets unused members to 0.
     #[must_use]
     pub fn of(record: &Record) -> (RayPlace, Self) {
         let state = Kind::of(record);
@@ -275,7 +275,7 @@ pub fn set_lights(module: &mut Module, setup: &FieldSetup, lights: &Lights) {
     set_spheres(module, setup, lights);
 }
 
-/// Drives a port with three numbers per eye, the left eye first.
+/// Drives a port with three numbers per eye, left eye first.
 fn drive_eyes(module: &mut Module, name: &str, [left, right]: [[impl Into<i128>; 3]; 2]) {
     module.drive_all(&format!("{name}[0]"), left);
     module.drive_all(&format!("{name}[1]"), right);
@@ -310,7 +310,7 @@ pub fn set_generator(module: &mut Module, setup: &FieldSetup, band_lines: u32) {
     set_rays(module, setup);
 }
 
-/// Drives the frame constants that the starts of the rays depend on.
+/// Drives the frame constants for the starts of the rays.
 pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     let eyes = setup.eyes;
     module.drive("stereo", setup.stereo.is_some());
@@ -322,8 +322,8 @@ pub fn set_rays(module: &mut Module, setup: &FieldSetup) {
     drive_eyes(module, "origins", eyes.map(|eye| eye.origin));
 }
 
-/// Drives the constants of cones, of which each stands for a block of pixels: on the port `offset`, the change of the ray
-/// direction from a block's first pixel to its middle; on the port `spread`, its largest change from the middle to a pixel.
+/// Drives the constants of cones, one cone per block of pixels. Port `offset`: change of the ray direction from a block's first
+/// pixel to its middle; port `spread`: largest change of the direction from the middle to a pixel.
 pub fn set_blocks(module: &mut Module, setup: &FieldSetup, offset: &str, spread: &str) {
     let cones = setup.cones.map(|cones| (cones.offset, cones.spread));
     let (middle, widest) = cones.unwrap_or_default();
@@ -378,27 +378,27 @@ pub fn set_paint(module: &mut Module, setup: &FieldSetup, palette: &Palette) {
     module.set(write, 0);
 }
 
-/// A pixel in the form that the band buffer takes: a group of eight pixels in which only this pixel is drawn.
+/// A pixel as the band buffer accepts it: a group of eight pixels in which only this pixel is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pixel {
-    /// Eye: 0 is the left eye or the only one, 1 the right eye.
+    /// Eye: 0 for the left or only eye, 1 for the right eye.
     pub eye: u64,
     /// Row (address) of the group in the band buffer.
     pub row: u64,
-    /// Line in the band.
+    /// Line within the band.
     pub line: u64,
     /// Column of the group, in units of eight pixels.
     pub column: u64,
     /// Mask of the group's eight pixels; only the bit of this pixel is set.
     pub mask: u64,
-    /// Depth code of the pixel; a larger one is nearer.
+    /// Depth code of the pixel; a larger code is nearer.
     pub code: u64,
-    /// RGB565 colour; with two eyes, the luminance in both bytes.
+    /// RGB565 colour; in stereo, the luminance in both bytes.
     pub colour: u64,
 }
 
 impl Pixel {
-    /// Names of the payload's ports in a stream of pixels, in the order of the numbers that [`from`](Self::from) takes.
+    /// Names of the payload's ports in a stream of pixels, in the order of the items of [`from`](Self::from).
     pub const PAYLOAD: [&str; 7] = ["eye", "row", "line", "column", "mask", "code", "colour"];
 }
 
@@ -416,7 +416,7 @@ impl From<[u64; 7]> for Pixel {
     }
 }
 
-/// Computes, from the model's result of one ray, the pixel that the paint module must produce.
+/// Computes the pixel expected from the paint module for the model's result of a ray.
 pub fn pixel(
     setup: &FieldSetup,
     palette: &Palette,

@@ -1,4 +1,4 @@
-//! Values of packed types, with access to single members.
+//! Values of packed types, with access to their members.
 
 use std::fmt;
 
@@ -6,9 +6,9 @@ use crate::Bits;
 use crate::bits::holds;
 use crate::layout::{Layout, Member};
 
-/// A value of a packed type. A path names a part of it: for example `place.line`, `half[2]`, `[1][0]`, or `""` for the whole.
+/// A value of a packed type. A path names a part of the value, such as `place.line`, `half[2]` or `[1][0]`; `""` names the whole value.
 ///
-/// Every method that takes a path panics when the type has no such part; the message lists the known names.
+/// Every method with a path panics when the type has no such part; the message lists the valid names.
 #[derive(Clone)]
 pub struct Record {
     layout: Layout,
@@ -16,7 +16,7 @@ pub struct Record {
 }
 
 impl Layout {
-    /// Makes a record of this type, all zero.
+    /// Makes an all-zero record of this type.
     #[must_use]
     pub fn record(&self) -> Record {
         self.record_of(Bits::default())
@@ -54,7 +54,7 @@ impl Record {
         self.bits
     }
 
-    /// Returns the record with a part set to a number, in two's complement or unsigned.
+    /// Returns the record with a part set to a signed or unsigned number.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -64,7 +64,7 @@ impl Record {
         self
     }
 
-    /// Returns the record with an array set to numbers, the lowest index first.
+    /// Returns the record with an array set to numbers in the order of its indices.
     ///
     /// # Panics
     /// When there is no such array, its length differs from the number of values, or a number does not fit.
@@ -74,7 +74,7 @@ impl Record {
         self
     }
 
-    /// Sets a part to a number, in two's complement or unsigned.
+    /// Sets a part to a signed or unsigned number.
     ///
     /// # Panics
     /// When there is no such part, or the number does not fit.
@@ -83,7 +83,7 @@ impl Record {
         self.bits = with_number(self.bits, path, low, layout, value.into());
     }
 
-    /// Sets an array to numbers, the lowest index first.
+    /// Sets an array to numbers in the order of its indices.
     ///
     /// # Panics
     /// When there is no such array, its length differs from the number of values, or a number does not fit.
@@ -104,7 +104,7 @@ impl Record {
         self.bits = bits;
     }
 
-    /// Sets an enumeration to a value by its name.
+    /// Sets an enumeration to its value of this name.
     ///
     /// # Panics
     /// When there is no such part, or its type has no value of that name.
@@ -158,7 +158,7 @@ impl Record {
         self.bits.signed(part.low, part.layout.width())
     }
 
-    /// Whether a part of one bit is set.
+    /// Whether a one-bit part is set.
     ///
     /// # Panics
     /// When there is no such part, or it has more than one bit.
@@ -202,7 +202,7 @@ impl Record {
     }
 }
 
-/// Returns `bits` with `value` in the part that starts at bit `low` and has the type `layout`. `path` is for errors only.
+/// Returns `bits` with `value` in the part of the type `layout` from bit `low` up. `path` is used in errors only.
 fn with_number(bits: Bits, path: &str, low: usize, layout: &Layout, value: i128) -> Bits {
     let width = layout.width();
     let fits = fits(value, width, layout.is_signed());
@@ -210,7 +210,7 @@ fn with_number(bits: Bits, path: &str, low: usize, layout: &Layout, value: i128)
     bits.with(low, width, value)
 }
 
-/// Whether a part of `width` bits can hold a number. A part that is not declared signed accepts signed and unsigned numbers.
+/// Whether a number fits a part of `width` bits. A part that is not declared signed accepts signed and unsigned numbers.
 fn fits(value: i128, width: usize, signed: bool) -> bool {
     holds(width, value) && !(signed && value >= 1 << (width - 1).min(126))
 }

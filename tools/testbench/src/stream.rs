@@ -1,7 +1,8 @@
-//! The test bench's ends of a module's streams. A stream has the ports `valid`, `ready`, and those of its payload.
+//! The test bench's ends of a module's streams: sources and sinks. A stream has the ports `valid` and `ready`, and the ports of
+//! its payload.
 //!
-//! In every cycle, a test bench does these steps: `drive` all ends, [`Module::settle`], `sample` all ends,
-//! [`Module::clock`]. [`step`] does them for a module that has no ports except those of streams.
+//! Steps of a test bench in each cycle: `drive` all ends, [`Module::settle`], `sample` all ends, [`Module::clock`]. [`step`] does
+//! these steps for a module that has only streams as ports.
 
 use std::collections::VecDeque;
 
@@ -16,7 +17,7 @@ pub fn step(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut 
     module.clock();
 }
 
-/// Drives the ends of streams, lets the module's outputs settle, and samples the ends; the caller does the clock edge.
+/// Drives the ends of streams, settles the module's outputs, and samples the ends; the clock edge is left to the caller.
 pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&mut Sink]) {
     sources.iter_mut().for_each(|source| source.drive(module));
     sinks.iter_mut().for_each(|sink| sink.drive(module));
@@ -25,20 +26,20 @@ pub fn exchange(module: &mut Module, sources: &mut [&mut Source], sinks: &mut [&
     sinks.iter_mut().for_each(|sink| sink.sample(module));
 }
 
-/// Random stalls of one end of a stream: a given share of the cycles stalls, in runs of random length.
+/// Random stalls of one end of a stream: runs of random length that make up a given share of the cycles.
 pub struct Stalls {
     random: Pcg64Mcg,
     share: f64,
-    /// Number of cycles until the next random decision between stall and no stall.
+    /// Number of cycles until the next random choice between stall and no stall.
     left: u32,
     stalled: bool,
 }
 
 impl Stalls {
-    /// Largest number of cycles between two random decisions.
+    /// Largest number of cycles between two random choices.
     const RUN: u32 = 8;
 
-    /// Creates stalls in the share `share` of the cycles: never for 0, always for 1.
+    /// Creates stalls in a `share` of the cycles, from 0 (never) to 1 (always).
     #[must_use]
     pub fn new(seed: u64, share: f64) -> Self {
         Self {
@@ -49,7 +50,7 @@ impl Stalls {
         }
     }
 
-    /// Advances by one cycle; returns whether that cycle stalls.
+    /// Advances by one cycle; returns whether the cycle stalls.
     pub fn next_stalled(&mut self) -> bool {
         if self.left == 0 {
             self.left = self.random.random_range(1..=Self::RUN);
@@ -89,7 +90,7 @@ pub struct Source {
     ports: Ports,
     items: VecDeque<Vec<Bits>>,
     stalls: Stalls,
-    /// Whether the first of `items` is valid on the ports; it then stays valid until it is taken.
+    /// Whether the first of `items` is on the ports, where it stays valid until it is taken.
     shown: bool,
 }
 
@@ -105,19 +106,19 @@ impl Source {
         }
     }
 
-    /// Appends an item to the queue of items to be sent.
+    /// Queues an item.
     pub fn push(&mut self, item: Vec<Bits>) {
         assert_eq!(item.len(), self.ports.payload.len(), "{}", self.ports.name);
         self.items.push_back(item);
     }
 
-    /// Drops all items that were not taken, even one that is valid on the ports, as a reset of the sender does.
+    /// Drops all items not yet taken, even a valid item on the ports, as a reset of the sender does.
     pub fn clear(&mut self) {
         self.items.clear();
         self.shown = false;
     }
 
-    /// Number of items that were not taken yet.
+    /// Number of items not yet taken.
     #[must_use]
     pub fn len(&self) -> usize {
         self.items.len()
@@ -129,7 +130,7 @@ impl Source {
         self.items.is_empty()
     }
 
-    /// Drives the next item, or zeros if there is none.
+    /// Drives the next item, or zeros if the queue is empty or stalls.
     pub fn drive(&mut self, module: &mut Module) {
         let stalled = self.stalls.next_stalled();
         self.shown |= !stalled && !self.items.is_empty();
@@ -156,7 +157,7 @@ pub struct Sink {
     ports: Ports,
     items: Vec<Vec<Bits>>,
     stalls: Stalls,
-    /// Payload that was valid and not taken in the last cycle; it must not change.
+    /// Payload that was valid but not taken in the last cycle, and must not change.
     waiting: Option<Vec<Bits>>,
 }
 
@@ -183,7 +184,7 @@ impl Sink {
         std::mem::take(&mut self.items)
     }
 
-    /// Replaces the stalls, and returns the previous ones.
+    /// Replaces the stalls, and returns the previous stalls.
     pub fn set_stalls(&mut self, stalls: Stalls) -> Stalls {
         std::mem::replace(&mut self.stalls, stalls)
     }
@@ -197,7 +198,7 @@ impl Sink {
     /// Takes the item on the ports if it is valid and the sink is ready in this cycle.
     ///
     /// # Panics
-    /// When a payload that was valid and not taken has changed, or is no longer valid.
+    /// When a valid payload changed or disappeared before it was taken.
     pub fn sample(&mut self, module: &Module) {
         let valid = module.is_high(self.ports.valid);
         let found: Vec<Bits> = self
@@ -208,8 +209,14 @@ impl Sink {
             .collect();
         if let Some(waiting) = &self.waiting {
             let (name, cycle) = (&self.ports.name, module.cycles());
-            assert!(valid, "{name}: gone in cycle {cycle} without being taken");
-            assert_eq!(&found, waiting, "{name}: changed in cycle {cycle}");
+            assert!(
+                valid,
+                "{name}: payload withdrawn in cycle {cycle} before it was taken"
+            );
+            assert_eq!(
+                &found, waiting,
+                "{name}: payload changed in cycle {cycle} before it was taken"
+            );
         }
         self.waiting = None;
         if self.ports.moves(module) {
@@ -224,14 +231,14 @@ impl Sink {
 pub struct Pipe {
     /// The module.
     pub module: Module,
-    /// The sender to its input stream.
+    /// The source of its input stream.
     pub source: Source,
-    /// The receiver of its output stream.
+    /// The sink of its output stream.
     pub sink: Sink,
 }
 
 impl Pipe {
-    /// Loads a module, with the names and payloads of its streams. `shares` are those of the source's and the sink's stalls.
+    /// Loads a module, given the names and payloads of its two streams. `shares` are the shares of stalls of source and sink.
     #[must_use]
     pub fn new(
         name: &str,
@@ -250,7 +257,7 @@ impl Pipe {
         }
     }
 
-    /// Runs until `done`, which is asked in each clock between the outputs and the clock edge. Returns the number of clocks.
+    /// Runs until `done`, evaluated in each clock after the outputs settle and before the clock edge. Returns the number of clocks.
     ///
     /// # Panics
     /// When `done` is still false after `limit` clocks.
@@ -271,13 +278,12 @@ impl Pipe {
         }
     }
 
-    /// Runs until the source has sent all items and the output `idle` is high, and calls `each` in each clock. Returns the number of
-    /// clocks.
+    /// Runs until all items are sent and the output `idle` is high, and calls `each` in each clock. Returns the number of clocks.
     ///
     /// # Panics
     /// When the module is not idle after `limit` clocks.
     pub fn drain(&mut self, limit: u64, idle: Port, mut each: impl FnMut(&Self)) -> u64 {
-        // An item that is sent in this clock has no effect on the output yet.
+        // An item sent in this clock affects `idle` only after the clock edge.
         let mut is_sent = self.source.is_empty();
         self.run(limit, |pipe| {
             each(pipe);

@@ -2,7 +2,7 @@
 
 use glint_testbench::{Bits, Pipe};
 
-/// Sends numbers through a buffer with stalls on both sides, and expects all of them in order. Returns the number of clocks.
+/// Sends numbers through a buffer with stalls on both sides, and expects all numbers in order. Returns the number of clocks.
 fn passes_all_in_order(name: &str, stalls: [f64; 2]) -> u64 {
     const COUNT: u64 = 500;
     let mut pipe = Pipe::new(name, 1, ("in", &["data"]), ("out", &["data"]), stalls);
@@ -41,7 +41,7 @@ fn the_fifo_keeps_order_and_passes_an_item_a_clock() {
     }
 }
 
-/// Returns the number of items that a buffer accepts while its output is blocked.
+/// Returns the number of items accepted by a buffer with a blocked output.
 fn capacity(name: &str) -> usize {
     const MORE_THAN_FITS: usize = 50;
     let mut pipe = Pipe::new(name, 1, ("in", &["data"]), ("out", &["data"]), [0.0, 1.0]);

@@ -7,9 +7,9 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use virtual_flash::{Flash, MAX_BYTES, Pins};
 
-/// Number of clocks of a word: of eight half bytes of two clocks each, and of its request and its end.
+/// Clocks of a word: eight half bytes of two clocks each, its request and its end.
 const WORD: u64 = 2 * 8 + 2;
-/// Number of clocks of a command before its first word: eight without a command, 32 bits and eight clocks before the data.
+/// Clocks of a command before its first word: eight idle clocks, 32 bits and eight dummy clocks.
 const COMMAND: u64 = 2 * (8 + 32 + 8);
 
 struct Bench {
@@ -18,12 +18,12 @@ struct Bench {
     rst: Port,
     request: [Port; 2],
     answer: [Port; 2],
-    /// CS#, clock, level of line 0, whether it is driven, and the lines.
+    /// CS#, clock, level of line 0, output enable of line 0, and the input lines.
     pins: [Port; 5],
-    /// What the flash drives, on its way to the reader.
+    /// Levels driven by the flash, delayed on the way to the reader.
     way: Option<u8>,
     rng: Pcg64Mcg,
-    /// Rising edges of the flash's clock while it is not selected, since it was selected.
+    /// Rising edges of the flash's clock since it was deselected.
     idle_clocks: u32,
 }
 
@@ -53,8 +53,7 @@ impl Bench {
         self.module.set(self.rst, 0);
     }
 
-    /// Advances by one clock. Levels take almost a clock from the reader to the flash, and almost one back; the lines are unknown
-    /// while nothing drives them.
+    /// Advances by one clock. Levels take almost a clock in each direction; undriven lines have unknown levels.
     fn clock(&mut self) {
         let [cs_n, clk, command, sending, lines] = self.pins;
         let is_high = |port| self.module.is_high(port);
@@ -73,7 +72,10 @@ impl Bench {
         let rises = !clk && self.module.is_high(self.pins[1]);
         if !self.module.is_high(self.pins[0]) {
             if cs_n {
-                assert!(self.idle_clocks >= 3, "STARTUPE2 leaves out three clocks");
+                assert!(
+                    self.idle_clocks >= 3,
+                    "STARTUPE2 drops the first three clocks"
+                );
                 assert!(!clk && !rises, "the clock moves with CS#");
             }
             self.idle_clocks = 0;
@@ -81,7 +83,7 @@ impl Bench {
         self.idle_clocks += u32::from(rises);
     }
 
-    /// Reads the word with this number, and returns the clocks that it took.
+    /// Reads the word with this number, and returns the clocks of the access.
     fn read(&mut self, number: u32) -> u64 {
         let start = self.module.cycles();
         self.module.set(self.request[0], 1);
@@ -101,7 +103,7 @@ impl Bench {
         self.module.cycles() - start
     }
 
-    /// Lets a random number of clocks pass.
+    /// Advances by a random number of clocks.
     fn wait(&mut self, clocks: Range<u32>) {
         for _ in 0..self.rng.random_range(clocks) {
             self.clock();
@@ -123,7 +125,7 @@ fn words_at_random_addresses_and_in_runs() {
     let mut follower = None;
     for _ in 0..300 {
         let first = bench.rng.random_range(0..words);
-        // Some runs continue where the last one ended.
+        // Some runs continue at the end of the last run.
         let first = follower.filter(|_| bench.rng.random()).unwrap_or(first);
         let back_to_back: bool = bench.rng.random();
         for number in first..(first + bench.rng.random_range(1..20)).min(words) {

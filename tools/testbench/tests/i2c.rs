@@ -1,4 +1,4 @@
-//! Tests of the I2C engine, with a virtual MPU-6050 on its wires or with wires that the test drives.
+//! Tests of the I2C engine with a virtual MPU-6050 on the bus, or with SCL and SDA driven by the test.
 
 use glint_testbench::{Bits, Module, Port};
 use virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, Wires};
@@ -50,7 +50,7 @@ struct Bench {
     module: Module,
     device: Wires,
     ports: Ports,
-    /// Whether the test bench takes the received bytes.
+    /// Whether the test bench reads the received bytes.
     listens: bool,
     answers: Vec<u8>,
     ended: u32,
@@ -103,7 +103,7 @@ impl Bench {
         bench
     }
 
-    /// Resets the engine. The reset is long enough that the wires are high when the engine samples them again.
+    /// Resets the engine. The reset lasts until SCL and SDA are high again.
     fn reset(&mut self) {
         self.module.set(self.ports.rst, 1);
         for _ in 0..10 {
@@ -112,7 +112,7 @@ impl Bench {
         self.module.set(self.ports.rst, 0);
     }
 
-    /// Advances by one clock. A wire is high if both the engine and the device release it.
+    /// Advances by one clock. SCL and SDA are high if both the engine and the device release them.
     fn clock(&mut self) {
         let [scl_in, scl_out, sda_in, sda_out] = self.ports.wires;
         let now = self.module.cycles() * 160 / 13;
@@ -131,7 +131,7 @@ impl Bench {
         self.ended += u32::from(self.module.is_high(self.ports.ended));
     }
 
-    /// Queues commands one by one, and waits while the queue is full.
+    /// Queues commands one by one; waits while the queue is full.
     fn push(&mut self, commands: &[u32]) {
         let [valid, ready, data] = self.ports.command;
         for &command in commands {
@@ -172,7 +172,7 @@ impl Bench {
         all.into_iter().find(|&failure| failure as u64 == error)
     }
 
-    /// Runs a transfer to its end; returns its failure, if any.
+    /// Runs a transfer to its end; returns its error, if any.
     fn run(&mut self, commands: &[u32]) -> Option<Failure> {
         let ended = self.ended;
         self.push(commands);
@@ -181,8 +181,8 @@ impl Bench {
         self.failure()
     }
 
-    /// Makes the I2C engine run the transaction `commands` every `period` clocks. Each run is a round; the output `ended`
-    /// pulses once per `batch` rounds.
+    /// Makes the I2C engine repeat the transaction `commands` every `period` clocks. Each repetition is a round; the output
+    /// `ended` pulses once per `batch` rounds.
     fn repeat(&mut self, commands: &[u32], period: u64, batch: u64) {
         let [repeats, clocks, rounds] = self.ports.rounds;
         self.module.set(clocks, period - 1);
@@ -191,7 +191,7 @@ impl Bench {
         self.push(commands);
     }
 
-    /// Runs for `clocks` clocks; returns the clocks at which start conditions occur.
+    /// Runs for `clocks` clocks; returns the times of start conditions, in clocks.
     fn starts(&mut self, clocks: u64) -> Vec<u64> {
         let [_, scl_out, _, sda_out] = self.ports.wires;
         let mut starts = Vec::new();
@@ -234,7 +234,7 @@ fn a_burst_takes_the_time_that_is_stated() {
     let stated = phases * PHASE + filter;
     assert!(
         (stated..stated + 50).contains(&took),
-        "{took} clocks, {stated} are stated"
+        "{took} clocks, expected {stated}"
     );
     assert_eq!(bench.answers.len(), 15);
 }
@@ -246,7 +246,7 @@ fn rounds_begin_at_their_times() {
     let begin = bench.module.cycles();
     bench.repeat(&transfer(&[0x3a], 15), PERIOD, 3);
     let starts = bench.starts(10 * PERIOD);
-    // Every second start is the repeated start within a round, which is left out.
+    // Skip every second start condition, the repeated start within a round.
     let first: Vec<u64> = starts.iter().map(|at| at - begin).step_by(2).collect();
     assert_eq!(first.len(), 9, "{starts:?}");
     assert!(
@@ -263,7 +263,7 @@ fn rounds_begin_at_their_times() {
     assert_eq!(bench.log().matches(round).count(), 9, "{}", bench.log());
     let violations = &bench.device.violations;
     assert!(violations.is_empty(), "{violations:#?}");
-    // A reset clears the queue, which holds the commands of the rounds.
+    // A reset clears the queue, which still holds the commands of the rounds.
     bench.module.set(bench.ports.rounds[0], 0);
     bench.reset();
     bench.answers.clear();
@@ -273,13 +273,13 @@ fn rounds_begin_at_their_times() {
 
 #[test]
 fn a_round_that_is_not_over_in_time_is_an_error() {
-    // The transfer takes 34,883 clocks, more than the period.
+    // The transfer takes 34,883 clocks, longer than the period.
     let mut bench = Bench::new(None);
     bench.repeat(&transfer(&[0x3a], 15), 34_000, 1);
     bench.starts(3 * 34_000);
     assert_eq!((bench.failure(), bench.ended), (Some(Failure::Late), 1));
-    // The test bench takes no received byte. Nine rounds receive 15 bytes each, but the queue of received bytes has room for
-    // only 129, so the ninth round does not end in time.
+    // The test bench reads no received byte. Nine rounds receive 15 bytes each, but the receive queue holds only 129 bytes, so
+    // the ninth round is late.
     let mut bench = Bench::new(None);
     bench.listens = false;
     bench.repeat(&transfer(&[0x3a], 15), 39_000, 1);
@@ -317,7 +317,7 @@ fn reads_in_a_row_are_one_and_wait_for_room() {
         stop,
     ]);
     bench.push(&commands);
-    // The queue holds 129 received bytes. When it is full, SCL stays low until there is room, without a time-out.
+    // The receive queue holds 129 bytes. While it is full, SCL stays low, without a time-out.
     for _ in 0..3 * PATIENCE {
         bench.clock();
     }
@@ -357,7 +357,7 @@ fn what_is_not_acknowledged_ends_the_transaction() {
     ];
     assert_eq!(bench.run(&other), Some(Failure::Address));
     assert_eq!(bench.log(), "S d2- P");
-    // No command runs before the error is cleared.
+    // Commands wait until the error is cleared.
     bench.push(&transfer(&[0x19], 0));
     for _ in 0..20 * PHASE {
         bench.clock();
@@ -387,7 +387,7 @@ fn a_clock_may_be_stretched_for_a_while() {
         (PATIENCE..PATIENCE + 50 * PHASE).contains(&took),
         "{took} clocks"
     );
-    // The error is the same if SCL is low from the beginning of a transfer.
+    // SCL low from the beginning of a transfer causes the same error.
     bench.reset();
     assert_eq!(bench.run(&transfer(&[0x19], 0)), Some(Failure::Clock));
     bench.device.set_fault(None);
@@ -410,8 +410,8 @@ fn a_stuck_device_is_clocked_free() {
 
 #[test]
 fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
-    // Resets the engine in the middle of a transfer, after 100 clocks, 197 clocks and so on. The transfers are a read of
-    // bytes with the value 0, and a write.
+    // Resets the engine during a transfer, after 100 clocks, 197 clocks and so on. The transfers are a read of 0 bytes, which
+    // keep SDA low, and a write.
     for commands in [transfer(&[0x00], 3), transfer(&[0x19, 0x00], 0)] {
         let mut length = 0;
         for clocks in (100..).step_by(97) {

@@ -1,4 +1,4 @@
-//! Test bench of the band buffer, with sources of groups of pixels and of ends of bands, and a memory.
+//! Test bench of the band buffer: sources of pixel groups and of band ends, and a memory.
 
 use glint_testbench::{Bits, Counters, Module, Port, Sink, Source, Stalls};
 use std::collections::VecDeque;
@@ -10,7 +10,7 @@ pub struct Bench {
     pub group_source: Source,
     pub band_source: Source,
     pub words: Sink,
-    /// Words (address and data) that the module has written to memory.
+    /// Words (address and data) written to memory by the module.
     pub written: Vec<Word>,
     pub groups: VecDeque<Group>,
     pub bands: VecDeque<Band>,
@@ -18,20 +18,20 @@ pub struct Bench {
     pub restart: Port,
     pub clearing: Port,
     pub flushed: Port,
-    /// Whether `band_valid` was high in the previous clock, so that no group may be taken.
+    /// Whether `band_valid` was high in the previous clock: then no group may be taken.
     pub closed: bool,
     pub drawn: Pixels,
     pub left: Left,
-    /// The band whose flush began last.
+    /// The band of the last started flush.
     pub flushed_last: Option<Band>,
     pub expected: Vec<Word>,
-    /// Number of rows of the band buffer per line of the picture; a row is a group of eight pixels.
+    /// Number of rows of the band buffer per picture line; a row holds a group of eight pixels.
     pub stride: usize,
     pub counters: Counters,
 }
 
 impl Bench {
-    /// Creates a bench with the module variant `name` after reset, while the band buffer still clears its banks.
+    /// Creates a bench with the module variant `name` right after reset, before the band buffer has cleared its banks.
     pub fn new(name: &str, seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         let mut module = Module::new(name, seed as u32);
         let restart = module.port("restart");
@@ -86,7 +86,7 @@ impl Bench {
         }
     }
 
-    /// Creates a bench with the band buffer after it has cleared its banks.
+    /// Creates a bench whose band buffer has cleared its banks.
     pub fn ready(seed: u64, group_stalls: f64, memory_stalls: f64) -> Self {
         Self::of("band_buffer", seed, group_stalls, memory_stalls)
     }
@@ -119,8 +119,8 @@ impl Bench {
         self.groups.push_back(group);
     }
 
-    /// Queues the end of a band, which starts its flush. If the frame buffer's content in the band's lines is unknown, the
-    /// flush has to write all words of the band.
+    /// Queues the end of a band, which starts its flush. If the frame buffer's content in the band's lines is unknown, the flush
+    /// must write all words of the band.
     pub fn push_band(&mut self, mut band: Band) {
         assert_eq!(band.stride, self.stride);
         let waiting = self.bands.iter().filter(|other| other.slot == band.slot);
@@ -190,7 +190,7 @@ impl Bench {
         panic!("not done after {limit} clocks");
     }
 
-    /// Queues groups and the end of their band, and waits until all groups are taken.
+    /// Queues groups and the end of their band, and runs until all groups are taken.
     pub fn draw(&mut self, groups: impl IntoIterator<Item = Group>, band: Band) {
         for group in groups {
             self.push_group(group);
@@ -200,7 +200,7 @@ impl Bench {
         self.push_band(band);
     }
 
-    /// Waits until all words are in memory and compares them with the expected ones.
+    /// Runs until all words are in memory, and compares them with the expected words.
     pub fn finish(&mut self) {
         self.run_until(200 * 4 * ROWS_OF_A_BANK, |bench| {
             bench.bands.is_empty() && bench.is(bench.flushed)
@@ -219,12 +219,12 @@ impl Bench {
 }
 
 impl Bench {
-    /// Restarts the band buffer while memory takes no words, and checks that the buffer nevertheless clears its banks.
-    /// Then memory takes words again, and no more words may follow than the buffer's FIFO holds.
+    /// Restarts the band buffer while memory takes no words, and checks that the banks are cleared nevertheless. Then memory
+    /// takes words again: at most the words in the buffer's FIFO may follow.
     pub fn restart_with_dead_memory(&mut self) {
         let alive = self.words.set_stalls(Stalls::new(1, 1.0));
 
-        // With the restart, the senders drop the groups and bands that were not taken.
+        // At the restart, the sources drop all groups and bands not yet taken.
         self.module.set(self.restart, 1_u64);
         self.clock();
         self.module.set(self.restart, 0_u64);

@@ -1,5 +1,4 @@
-//! Tests of the band buffer: its pixels equal those of a plain depth test, and each flush writes every changed word of the
-//! band, in order.
+//! Tests of the band buffer: its pixels equal the pixels of a plain depth test, and each flush writes the band's changed words in order.
 
 mod bench;
 mod pixels;
@@ -10,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 use crate::bench::Bench;
 use crate::pixels::{Band, Group, LANES, PICTURE_LINES};
 
-/// Makes a random group in one of `rows` rows, with few different depths, so that groups often overlap.
+/// Makes a random group in one of `rows` rows at one of a few depths, for frequent overlaps and ties.
 fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     Group {
         row: random.random_range(0..rows),
@@ -30,7 +29,7 @@ fn random_group(random: &mut Pcg64Mcg, rows: usize) -> Group {
     }
 }
 
-/// Makes a random band at one of three positions of the picture, so that most bands repeat a position.
+/// Makes a random band at one of three positions of the picture, most of them a repeated position.
 fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     Band {
         base: random.random_range(0..1 << 22),
@@ -46,7 +45,7 @@ fn random_band(random: &mut Pcg64Mcg, [lines, stride]: [usize; 2]) -> Band {
     }
 }
 
-/// Makes a group whose eight pixels are all drawn.
+/// Makes a group with all eight pixels drawn.
 fn full_group(row: usize, code: u32) -> Group {
     Group {
         row,
@@ -80,12 +79,12 @@ fn random_groups_in_many_bands_with_stalls() {
         println!("seed {seed}, stalls {group_stalls} and {memory_stalls}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, group_stalls, memory_stalls);
-        // All groups of this test are for both eyes (`halves` is 3), so the groups of the next band may follow the end of a
-        // band at once. A group that is taken just before the end of a band belongs to that band.
+        // All groups are for both eyes (`halves` is 3), so groups of the next band may immediately follow the end of a band. A
+        // group taken just before the end of a band belongs to this band.
         let shape @ [lines, stride] = [random.random_range(1..20), random.random_range(1..6)];
         bench.stride = stride;
         for _ in 0..60 {
-            // Often there are few groups, so that lines are empty and the drawn columns differ from line to line.
+            // Few groups in most bands: some lines are empty, and the drawn columns differ from line to line.
             let most = [4, 20, 200][random.random_range(0..3)];
             let groups: Vec<_> = (0..random.random_range(0..most))
                 .map(|_| random_group(&mut random, lines * stride))
@@ -97,8 +96,7 @@ fn random_groups_in_many_bands_with_stalls() {
     }
 }
 
-/// Draws a random sequence of two kinds of bands: some have groups for one eye each, in any order, the other bands have
-/// groups for both eyes.
+/// Draws a random sequence of two kinds of bands: with groups for one eye each in any order, and with groups for both eyes.
 #[test]
 fn luminances_of_two_eyes_are_composed() {
     for (seed, stalls) in [(1, 0.0), (2, 0.4)] {
@@ -113,7 +111,7 @@ fn luminances_of_two_eyes_are_composed() {
                 .map(|_| random_group(&mut random, lines * stride))
                 .collect();
             if band.compose != 0 {
-                // Replaces each group by one for the left and one for the right eye.
+                // Replaces each group by a group for the left eye and a group for the right eye.
                 groups = groups
                     .into_iter()
                     .flat_map(|group| {
@@ -127,7 +125,7 @@ fn luminances_of_two_eyes_are_composed() {
                 groups.sort_by_cached_key(|_| order(&mut random));
             }
             bench.draw(groups, band);
-            // Waits for the end of the band, as the next band may have groups of the other kind (for both eyes or for one).
+            // Waits for the end of the band, because groups for one eye and for both eyes must not be in flight together.
             bench.run_until(100_000, |bench| bench.bands.is_empty());
         }
         bench.finish();
@@ -143,7 +141,7 @@ fn whole_bands_leave_nothing_to_the_next() {
         bench.draw(groups, plain_band(shape));
     }
     bench.stride = 160;
-    // Flushes bands without a group: the words written show whether each bank was cleared after its last band.
+    // Flushes bands without groups: the written words show whether each bank was cleared after its last band.
     for clear in [1, 2, 3] {
         let band = Band {
             clear,
@@ -155,8 +153,8 @@ fn whole_bands_leave_nothing_to_the_next() {
     bench.finish();
 }
 
-/// Draws groups at all four corners of the largest bands, at the top and at the bottom of the picture. In each line, a flush
-/// must write only the words from the first to the last group that was drawn for this flush or for the line's previous one.
+/// Draws groups at all four corners of the largest bands, at the top and at the bottom of the picture. In each line, a flush must
+/// write only the words from the first to the last group drawn for this flush or the line's previous flush.
 #[test]
 fn only_pixels_drawn_now_or_last_are_flushed() {
     let mut bench = Bench::ready(11, 0.0, 0.1);
@@ -174,8 +172,8 @@ fn only_pixels_drawn_now_or_last_are_flushed() {
             bench.draw([], *band);
         }
         let last = lines * stride - 1;
-        // For each case, the addresses of two groups of pixels in the band buffer, which has `stride` groups per line. Most are
-        // at the ends of the band's first and last line. Frame buffer 0 gets both groups, frame buffer 1 only the first one.
+        // For each case, the addresses of two pixel groups in the band buffer, which has `stride` groups per line. Most groups are
+        // at the ends of the band's first and last line. Frame buffer 0 gets both groups, frame buffer 1 only the first group.
         for rows in [
             [0, last],
             [stride - 1, last + 1 - stride],
@@ -222,7 +220,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
     const COUNT: usize = 1920;
     let mut bench = Bench::ready(7, 0.0, 0.0);
     let rows = (0..COUNT).map(|i| full_group(i, 1));
-    // Pairs of groups as two neighbouring triangles make them: in the same row, with different lanes (pixels of the row).
+    // Pairs of groups as from two adjacent triangles: in the same row, with different lanes (pixels of the row).
     let lanes = (0..COUNT).map(|i| Group {
         mask: 0x0f << (i % 2 * 4),
         ..full_group(i / 2, 2)
@@ -238,8 +236,7 @@ fn one_group_a_clock_where_rows_or_lanes_differ() {
 
 #[test]
 fn a_group_waits_for_the_lanes_it_shares() {
-    // Per case: the number of groups between two groups in the same row, and the clocks for which the second of these two
-    // is held back.
+    // Per case: the number of groups between the two groups of a row, and the clocks for which the second group is delayed.
     for (between, held) in [(0, 3), (1, 2), (2, 1), (3, 0)] {
         let mut bench = Bench::ready(8, 0.0, 0.0);
         let others = (0..between).map(|i| full_group(100 + i, 5));
@@ -270,7 +267,7 @@ fn the_flush_keeps_up_with_memory_and_overlaps_with_drawing() {
         let clocks = bench.module.cycles() - start;
         assert!(clocks <= words + 16, "{clocks} clocks for {words} words");
     }
-    // Draws six bands, each with as many groups as words to flush, so that drawing a band and flushing the one before overlap.
+    // Draws six bands, each with as many groups as words to flush: drawing overlaps with the flush of the previous band.
     let start = bench.module.cycles();
     for _ in 0..6 {
         let band = Band {
@@ -299,8 +296,8 @@ fn a_line_takes_a_clock_for_each_word_and_one_at_least() {
     };
     bench.draw([], band);
     bench.finish();
-    // Per case: the number of drawn words in every n-th line, the number n, and the clocks of the flush, without its start
-    // and end, if the same words were drawn in the previous frame.
+    // Per case: the number of drawn words in every n-th line, n, and the clocks of the flush without start and end, if the
+    // previous frame drew the same words.
     for (words, every, clocks) in [(1, 1, 45), (2, 1, 90), (5, 3, 75), (1, 3, 45), (1, 45, 45)] {
         for same in [false, true] {
             let rows = (0..45)
@@ -336,13 +333,13 @@ fn a_restart_ends_whatever_goes_on() {
         println!("seed {seed}");
         let mut random = Pcg64Mcg::new(u128::from(seed));
         let mut bench = Bench::ready(seed, 0.2, 0.3);
-        // The restart comes while one band is flushed and the next is drawn. With few rows, the clearing after the
-        // restart soon reaches the rows that were drawn last.
+        // The restart comes during the flush of a band and the drawing of the next band. With few rows, the clearing after the
+        // restart soon reaches the last drawn rows.
         let lines = random.random_range(if seed % 2 == 0 { 1..4 } else { 10..40 });
         let stride = random.random_range(1..10);
         let (shape, rows) = ([lines, stride], lines * stride);
         bench.stride = stride;
-        // These lines are outside of the band that the restart interrupts, so the module still knows what was drawn there.
+        // These lines are outside the interrupted band, so the module still has their drawn ranges.
         bench.draw(
             (0..rows / 2).map(|row| full_group(row, 9)),
             Band {

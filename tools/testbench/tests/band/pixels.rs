@@ -1,11 +1,11 @@
-//! Model of the band buffer: groups of pixels, bands, and the words that the flush of a band must write.
+//! Model of the band buffer: pixel groups, bands, and the words to be written by the flush of a band.
 
 use glint_core::stereo::Tint;
 use std::ops::Range;
 
 pub const LANES: usize = 8;
 pub const ROWS_OF_A_BANK: u64 = 2048;
-/// Largest number of words on their way to memory at the same time: the number of places in the band buffer's FIFO.
+/// Largest number of words in flight to memory: the depth of the band buffer's FIFO.
 pub const WORDS: usize = 16;
 pub const PICTURE_LINES: usize = 720;
 
@@ -30,8 +30,7 @@ pub struct Band {
     pub whole: bool,
     pub with_depth: bool,
     pub clear: u16,
-    /// Whether the flush composes a colour from the luminances of the two eyes: 0 does not, 1 does with the tint red and
-    /// blue, 2 with the tint red and cyan.
+    /// Composition of colours from the luminances of two eyes: 0 for none, 1 with the tint red and blue, 2 with the tint red and cyan.
     pub compose: u8,
 }
 
@@ -44,11 +43,10 @@ impl Band {
 
 pub type Word = (u32, [u32; 4]);
 
-/// For each frame buffer and each line of the picture: the range from the first to the last column of groups that had
-/// drawn pixels when the line was last flushed; `None` if unknown.
+/// For each frame buffer and each line of the picture: the range of drawn group columns at the line's last flush; `None` if unknown.
 pub type Left = [Vec<Option<Range<usize>>>; 2];
 
-/// Depth and colour of the drawn pixels of a band, by row of the band buffer.
+/// Depth and colour of a band's drawn pixels, by row of the band buffer.
 pub struct Pixels(pub Vec<[Option<(u32, u16)>; LANES]>);
 
 impl Pixels {
@@ -72,7 +70,7 @@ impl Pixels {
         }
     }
 
-    /// Returns the words that the flush of a band must write, in order, and updates `left`.
+    /// Returns the expected words of the flush of a band, in order, and updates `left`.
     pub fn words(&self, band: &Band, left: &mut Left) -> Vec<Word> {
         let mut words = Vec::new();
         for (line, picture_line) in band.picture_lines().enumerate() {
@@ -86,7 +84,7 @@ impl Pixels {
             let both = if band.whole || band.with_depth {
                 0..band.stride
             } else {
-                match before.expect("a line of which nothing is known is flushed whole") {
+                match before.expect("a line of unknown content is flushed whole") {
                     before if before.is_empty() => now,
                     before if now.is_empty() => before,
                     before => now.start.min(before.start)..now.end.max(before.end),

@@ -1,4 +1,4 @@
-//! The engine with two clocks, an image sensor on its pins, and the model beside it.
+//! Test bench of the gesture engine: two clocks, an image sensor on its pins, and the model for comparison.
 
 use glint_core::gesture::{Region, Window};
 use glint_model::gesture::{Channel, Engine, Pins, Polarity, Settings};
@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::camera::{Camera, End, Picture};
 
-/// Periods of both clocks in one unit of time; that of the sensor's clock is even.
+/// Periods of both clocks in a common unit of time; the sensor's period is even.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocks {
     pub sys: u64,
@@ -16,23 +16,23 @@ pub struct Clocks {
 }
 
 impl Clocks {
-    /// The system clock of the Urbana, and an image sensor that sends 640x480 pixels 60 times a second, in ps.
+    /// Periods in ps of the Urbana's system clock and of an image sensor that sends 640x480 pixels 60 times a second.
     pub const URBANA: Self = Self {
         sys: 12_308,
         camera: 20_400,
     };
 
-    /// An image sensor that is twice as fast as the engine, which makes a pixel in each clock of the engine.
+    /// An image sensor at twice the engine's clock: a pixel in each clock of the engine.
     pub const TWICE: Self = Self {
         sys: 10_000,
         camera: 5_000,
     };
 }
 
-/// The build with quick time-outs and sums of products.
+/// The build with short time-outs and with sums of products.
 pub const HASTY: &str = "gesture_engine_hasty";
 
-/// Settings that mark every pixel of a frame of this size.
+/// Settings by which every pixel of a frame of this size is marked as a hand's.
 pub const fn settings(size: [u16; 2]) -> Settings {
     const ALL: Window = window(0, 255);
     Settings {
@@ -46,7 +46,7 @@ pub const fn settings(size: [u16; 2]) -> Settings {
     }
 }
 
-/// A window of the values from `lower` to `upper`.
+/// A window of channel values from `lower` to `upper`.
 pub const fn window(lower: u8, upper: u8) -> Window {
     Window { lower, upper }
 }
@@ -71,14 +71,14 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Makes a bench of the build with quick time-outs and sums of products, whose pins have the usual polarity, in the middle of a frame.
+    /// Makes a bench of the build [`HASTY`] with the default polarity of the pins, in the middle of a frame.
     pub fn usual(clocks: Clocks, settings: Settings, seed: u64) -> Self {
         let mut bench = Self::new(HASTY, clocks, Polarity::default(), false, settings, seed);
         bench.begin();
         bench
     }
 
-    /// Makes a bench of the build `name`. The engine is enabled, and VSYNC has not come yet.
+    /// Makes a bench of the build `name`. The engine is enabled before the first VSYNC.
     pub fn new(
         name: &str,
         clocks: Clocks,
@@ -90,7 +90,7 @@ impl Bench {
         let mut bench = Self::stopped(name, clocks, polarity, settings, seed);
         bench.falling = falling;
         bench.module.drive("pins.falling", falling);
-        // The registers without a reset start with noise, which the FIFO may hold too. A VSYNC ends it.
+        // Registers without a reset start with random values, and so may the FIFO. A VSYNC discards these values.
         bench.idle(3000);
         bench.begin();
         bench.twin = Engine::new(polarity, settings, bench.camera.pins(false, false, 0));
@@ -101,7 +101,7 @@ impl Bench {
         bench
     }
 
-    /// Makes a bench after the reset, whose camera has not begun.
+    /// Makes a bench after the reset, before the camera starts.
     fn stopped(
         name: &str,
         clocks: Clocks,
@@ -110,7 +110,7 @@ impl Bench {
         seed: u64,
     ) -> Self {
         let module = Module::load(name, seed as u32);
-        // The end of a line or frame keeps the engine busy for 16 clocks, and settings are taken some 40 clocks after VSYNC.
+        // The engine is busy for 16 clocks at the end of a line or frame, and latches settings about 40 clocks after VSYNC.
         let clocks_of = |count: u64| (count * clocks.sys).div_ceil(clocks.camera) as usize;
         let camera = Camera {
             polarity,
@@ -148,7 +148,7 @@ impl Bench {
         bench
     }
 
-    /// Makes a bench whose camera sends nothing, not even its clock, and enables the engine.
+    /// Makes a bench whose camera sends nothing, not even a clock, and enables the engine.
     pub fn silent(name: &str) -> Self {
         let mut bench = Self::stopped(
             name,
@@ -162,7 +162,7 @@ impl Bench {
         bench
     }
 
-    /// Asks for other settings, which the next frame takes.
+    /// Requests new settings, which are latched at the next frame.
     pub fn set(&mut self, settings: Settings) {
         self.twin.settings = settings;
         let Region { first, last } = settings.region;
@@ -193,14 +193,14 @@ impl Bench {
         self.compare();
     }
 
-    /// Sends a VSYNC: the frame that follows is the first one that the engine takes.
+    /// Sends a VSYNC, after which the engine accepts frames.
     pub fn begin(&mut self) {
         let picture = Picture::default();
         let pins = self.camera.send(&mut self.random, &picture, End::Vsync);
         self.send(&pins);
     }
 
-    /// Plays states of the pins, one for each period of the sensor's clock.
+    /// Drives a sequence of pin states, one per period of the sensor's clock.
     pub fn send(&mut self, sent: &[Pins]) {
         for &pins in sent {
             self.twin.clock(pins);
@@ -216,21 +216,21 @@ impl Bench {
         }
     }
 
-    /// Lets the image sensor send nothing for `count` clocks of the engine.
+    /// Keeps the image sensor's pins idle for `count` clocks of the engine.
     pub fn idle(&mut self, count: u64) {
         let count = (count * self.clocks.sys).div_ceil(self.clocks.camera);
         let pins = self.camera.pins(false, false, 0);
         self.send(&vec![pins; count as usize]);
     }
 
-    /// Stops the sensor's clock for `count` clocks of the engine, which is long enough to be noticed.
+    /// Stops the sensor's clock for `count` clocks of the engine, which must exceed the engine's time-out.
     pub fn stop(&mut self, count: u64) {
         self.twin.stop();
         self.pass(count * self.clocks.sys);
         assert_eq!(self.module.read("status.running"), 0);
     }
 
-    /// Lets time pass for the engine's clock.
+    /// Advances the engine's clock by `time`.
     fn pass(&mut self, time: u64) {
         self.now += time;
         while self.next_sys <= self.now {
@@ -244,7 +244,7 @@ impl Bench {
         }
     }
 
-    /// Compares everything that software can read with the model.
+    /// Compares all values that software can read with the model's.
     pub fn compare(&mut self) {
         self.idle(60);
         let twin = &self.twin;
@@ -295,7 +295,7 @@ impl Bench {
         }
     }
 
-    /// Requests a small picture.
+    /// Requests a small picture (snapshot).
     pub fn request_snapshot(&mut self, step: u8, is_colour: bool) {
         self.twin.request_snapshot(step, is_colour);
         self.module.drive("snapshot_request.step", step);
@@ -303,7 +303,7 @@ impl Bench {
         self.pulse("snapshot_request.start");
     }
 
-    /// Compares the small picture, or that there is none yet.
+    /// Compares the small picture, or its absence, with the model's.
     pub fn compare_snapshot(&mut self) {
         let is_ready = self.module.read("snapshot_state.ready") != 0;
         let expected = self.twin.snapshot().cloned();
@@ -316,7 +316,7 @@ impl Bench {
         self.module.drive("snapshot_request.place", 0);
         self.pulse("snapshot_request.set");
         for (place, word) in expected.words().iter().enumerate() {
-            // The sensor's clock runs meanwhile, since it must not count as stopped.
+            // The sensor's clock must run, or it counts as stopped.
             self.idle(2);
             assert_eq!(
                 self.module.read("snapshot_state.word"),

@@ -1,17 +1,17 @@
-//! An image sensor: pictures, and the states of its pins while it sends them, with faults.
+//! Model of an image sensor: pictures, and its pin states for each picture, with and without faults.
 
 use glint_model::gesture::{Pins, Polarity};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// The lines of a frame as bytes, the high byte of a pixel first.
+/// The lines of a frame as bytes; a pixel's high byte comes first.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
     pub lines: Vec<Vec<u8>>,
 }
 
 impl Picture {
-    /// Makes a picture of `columns` times `lines` pixels by their coordinates.
+    /// Makes a picture of `columns` times `lines` pixels from a function of their coordinates.
     pub fn new([columns, lines]: [u16; 2], mut pixel: impl FnMut(u16, u16) -> u16) -> Self {
         let line = |y| {
             (0..columns)
@@ -27,19 +27,19 @@ impl Picture {
 /// The end of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// VSYNC comes after the last line.
+    /// VSYNC follows the last line.
     Vsync,
-    /// VSYNC does not come: the next frame follows.
+    /// VSYNC is missing: the next frame follows immediately.
     Lost,
-    /// VSYNC comes inside the last line.
+    /// VSYNC begins within the last line.
     Cut,
 }
 
-/// How the image sensor sends its frames.
+/// Timing and polarity of an image sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Camera {
     pub polarity: Polarity,
-    /// Number of clocks between two lines, and of VSYNC.
+    /// Number of clocks between two lines; also the length of VSYNC.
     pub blank: usize,
     pub between: usize,
     /// Whether HREF changes at random during VSYNC.
@@ -47,8 +47,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// Returns the states of the pins for a frame, from the first line to the start of the next frame. Data are random where they
-    /// have no meaning.
+    /// Returns the pin states of a frame, from its first line to the start of the next frame. Data outside of lines are random.
     pub fn send(&self, random: &mut Pcg64Mcg, picture: &Picture, end: End) -> Vec<Pins> {
         let mut sent = Vec::new();
         let mut blank = |sent: &mut Vec<Pins>, count, is_between: bool| {
@@ -78,14 +77,14 @@ impl Camera {
             }
         }
         if end != End::Lost {
-            // HREF may stay high, as it does when VSYNC cuts a line.
+            // HREF may stay high, as when VSYNC cuts a line.
             blank(&mut sent, self.between, true);
         }
         blank(&mut sent, self.blank, false);
         sent
     }
 
-    /// Returns the state of the pins.
+    /// Returns a pin state in the sensor's polarity.
     pub fn pins(&self, is_between: bool, is_in_line: bool, data: u8) -> Pins {
         Pins {
             vsync: is_between != self.polarity.vsync_low,

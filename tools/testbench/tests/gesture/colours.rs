@@ -1,13 +1,13 @@
-//! The colour conversion, over all colours.
+//! Tests of the colour conversion with all colours.
 
 use glint_core::colour::Rgb565;
 use glint_model::gesture::{Channel, channels};
 use glint_testbench::Module;
 
-/// Number of clocks from a pixel to the comparison with its windows.
+/// Number of clocks from a pixel to the result of its comparison with the windows.
 const LATENCY: u32 = 4;
 
-/// The window of each colour holds just the model's value, so the mark says that the engine has the same one.
+/// The window of each colour contains only the model's value, so a marked pixel has this value.
 #[test]
 fn every_channel_of_every_colour_is_that_of_the_model() {
     let mut module = Module::load("colour_window", 1);
@@ -39,7 +39,7 @@ fn every_channel_of_every_colour_is_that_of_the_model() {
     }
 }
 
-/// The conversion is that of ITU-R BT.601 to within a rounding and the length of its factors.
+/// The conversion equals ITU-R BT.601 up to rounding and the precision of its factors.
 #[test]
 fn channels_are_near_their_real_values() {
     let mut greatest = 0.0_f64;

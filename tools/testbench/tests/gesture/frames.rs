@@ -1,4 +1,4 @@
-//! Random frames, polarities, settings and faults, and the frame rates that the engine has to take.
+//! Tests with random frames, polarities, settings and faults, and at the frame rates that the engine must support.
 
 use glint_core::gesture::Region;
 use glint_model::gesture::{Channel, Polarity, Settings};
@@ -49,7 +49,7 @@ fn random_settings(random: &mut Pcg64Mcg, size: [u16; 2]) -> Settings {
     }
 }
 
-/// A picture of patches of random colours with noise.
+/// A picture of noisy patches in random colours.
 fn picture(random: &mut Pcg64Mcg, size: [u16; 2]) -> Picture {
     let (patch, colours) = (
         random.random_range(1..24),
@@ -88,15 +88,14 @@ fn spoil(random: &mut Pcg64Mcg, picture: &mut Picture) -> End {
             line.push(7);
         }
     }
-    // A line without a byte does not exist on the pins.
+    // An empty line has no pin states.
     picture.lines.retain(|line| !line.is_empty());
     End::Vsync
 }
 
 #[test]
 fn random_frames_polarities_and_faults() {
-    // Periods: an image sensor slower than the engine, some alike, and one twice as fast, which makes a pixel in each clock of the
-    // engine.
+    // Periods of the image sensor: slower than the engine, similar, and half the engine's, with a pixel in each clock of the engine.
     let clocks = [
         (12_308, 41_600),
         (12_308, 20_400),
@@ -129,7 +128,7 @@ fn random_frames_polarities_and_faults() {
             if random.random_range(0..4) == 0 {
                 bench.request_snapshot(random.random_range(0..4), random.random());
             }
-            // The settings that are requested now are taken by the next frame.
+            // Settings requested now are latched at the next frame.
             size = [random.random_range(1..100), random.random_range(1..14)];
             let next = random_settings(&mut random, size);
             let pins = bench.camera.send(&mut random, &sent, end);
@@ -145,7 +144,7 @@ fn random_frames_polarities_and_faults() {
             bench.compare();
             bench.compare_snapshot();
             if end == End::Lost {
-                // The model has not taken the settings, so the next frame is one with a fault, whatever its size.
+                // The settings are not latched yet, so the next frame would count as faulty whatever its size.
                 bench.begin();
             }
         }
@@ -158,7 +157,7 @@ fn random_frames_polarities_and_faults() {
     }
 }
 
-/// Sends two whole frames of `size` at the clock rates, and expects none to be lost.
+/// Sends two complete frames of `size` at these clocks, and expects both to be counted.
 fn takes(clocks: Clocks, size: [u16; 2]) {
     let mut asked = settings(size);
     asked.windows[0] = (Channel::Cr, window(100, 180));
@@ -171,7 +170,7 @@ fn takes(clocks: Clocks, size: [u16; 2]) {
     assert_eq!((bench.twin.counts.frames, bench.twin.fault), (2, None));
 }
 
-/// 640x480 pixels 60 times a second: 784 x 510 pixel times of two clocks in 1/60 s. On the ULX3S the engine has 40 MHz.
+/// 640x480 pixels 60 times a second: 784 x 510 pixel periods of two clocks in 1/60 s. The ULX3S clocks the engine with 40 MHz.
 #[test]
 fn vga_at_60_frames_a_second() {
     takes(Clocks::URBANA, [640, 480]);
@@ -182,14 +181,13 @@ fn vga_at_60_frames_a_second() {
     takes(slow, [640, 480]);
 }
 
-/// 320x240 pixels 120 times a second take less than half of that clock, and a quarter with half of the blanking; they are sent
-/// faster here.
+/// 320x240 pixels 120 times a second need less than half of the VGA pixel clock, used here.
 #[test]
 fn qvga_at_120_frames_a_second() {
     takes(Clocks::URBANA, [320, 240]);
 }
 
-/// The largest frame, every pixel marked: no sum is cut.
+/// The largest frame with every pixel marked: no sum overflows.
 #[test]
 fn sums_of_the_largest_frame_fit() {
     let size = Settings::MAX_SIZE;
@@ -212,7 +210,7 @@ fn sums_of_the_largest_frame_fit() {
     );
 }
 
-/// A small picture of a frame of 640x480 is a mask of 160x120, or 40x30 colours; larger ones end with the memory.
+/// A small picture of a frame of 640x480 is a mask of 160x120, or 40x30 colours; a larger picture is cut at the end of its memory.
 #[test]
 fn small_pictures() {
     let size = [640, 480];
@@ -230,7 +228,7 @@ fn small_pictures() {
         bench.request_snapshot(step, is_colour);
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
-        // The frame under way at the request does not count, the next one does.
+        // The snapshot is of the frame after the request, not of the frame in progress.
         bench.frame(&picture(&mut random, size), End::Vsync);
         bench.compare_snapshot();
         assert_eq!(

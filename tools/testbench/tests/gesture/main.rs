@@ -1,6 +1,6 @@
-//! Compares the gesture engine with glint-model, from the pins of the image sensor to the results, with two clocks of any ratio.
+//! Compares the gesture engine, from the image sensor's pins to the results, with glint-model, at any ratio of the two clocks.
 //!
-//! In the build `gesture_engine_hasty`, the sensor's clock counts as stopped after 64 clocks, and the sums of products are built.
+//! The build `gesture_engine_hasty` has the sums of products, and regards the sensor's clock as stopped after 64 clocks.
 
 mod bench;
 mod camera;

@@ -1,4 +1,4 @@
-//! The stiff cases: each row of the table in docs/gesture.md has a function here that computes its outcome.
+//! The stiff cases: a function for each row of the table in docs/gesture.md computes the row's outcome.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ const SIZE: [u16; 2] = [64, 48];
 const SKIN: [u8; 3] = [200, 140, 110];
 const RADIUS: i32 = 10;
 
-/// A case: its row in the table, and what computes the outcome.
+/// A case: its name in the table, and the function that computes its outcome.
 type Case = (&'static str, fn() -> String);
 
 const CASES: [Case; 23] = [
@@ -92,7 +92,7 @@ const CASES: [Case; 23] = [
             camera: 2_000,
         };
         let size = [400, 4];
-        // The model has no clocks, so it is not compared.
+        // No comparison with the model, which has no clocks.
         let mut bench = Bench::usual(clocks, settings(size), 1);
         let picture = Picture::new(size, |x, _| x);
         let pins = bench.camera.send(&mut bench.random, &picture, End::Vsync);
@@ -120,7 +120,7 @@ fn is_in([x, y]: [i32; 2], column: u16, line: u16) -> bool {
     (i32::from(column) - x).pow(2) + (i32::from(line) - y).pow(2) <= RADIUS * RADIUS
 }
 
-/// A picture of discs of the hand's colour. The light is divided by `dark`.
+/// A picture with discs of the hand's colour. All channels are divided by `dark`.
 fn hands(places: &[[i32; 2]], dark: u8) -> Picture {
     Picture::new(SIZE, |x, y| {
         let is_hand = places.iter().any(|&place| is_in(place, x, y));
@@ -143,7 +143,7 @@ fn bench(asked: Settings, polarity: Polarity) -> Bench {
     bench
 }
 
-/// What the registers say of the last frame.
+/// Describes the result of the last frame from the registers.
 fn told(bench: &mut Bench) -> String {
     const FAULTS: [&str; 7] = ["none", "pixels", "byte", "lines", "cut", "lost", "stopped"];
     let fault = bench.module.read("status.fault") as usize;
@@ -163,7 +163,7 @@ fn told(bench: &mut Bench) -> String {
     )
 }
 
-/// Sends pictures, one frame each, and tells the results.
+/// Sends pictures, one frame each, and describes the results.
 fn send(asked: Settings, pictures: &[Picture]) -> String {
     let mut bench = bench(asked, Polarity::default());
     let told = pictures.iter().map(|picture| {
@@ -185,7 +185,7 @@ fn picture(pixel: impl Fn(u16, u16) -> [u8; 3]) -> String {
     send(asked(), &[Picture::new(SIZE, |x, y| colour(pixel(x, y)))])
 }
 
-/// Sends a frame with a fault after a complete one, and then frames without a fault until one of them is complete.
+/// Sends a correct frame, a faulty frame, and then correct frames until a frame is complete.
 fn spoilt(spoil: impl Fn(&mut Picture) -> End) -> String {
     let mut bench = bench(asked(), Polarity::default());
     let hand = hands(&[[20, 24]], 1);
@@ -211,7 +211,7 @@ fn spoilt_lines(spoil: fn(&mut Vec<Vec<u8>>)) -> String {
     })
 }
 
-/// Sends frames to an engine that expects other pins than the image sensor has.
+/// Sends frames to an engine that expects another polarity or byte order than the image sensor's.
 fn wrong(change: fn(&mut Polarity)) -> String {
     let mut expected = Polarity::default();
     change(&mut expected);
@@ -224,7 +224,7 @@ fn wrong(change: fn(&mut Polarity)) -> String {
     told(&mut bench)
 }
 
-/// The rows of the table without its header: case and outcome.
+/// The table's rows without its header: case and outcome.
 fn rows() -> BTreeMap<&'static str, &'static str> {
     let rows = PAGE
         .lines()

@@ -1,4 +1,4 @@
-//! Compares the modules of the line engine with glint-model: the set-up by its pieces, the raster by its pixels.
+//! Compares the modules of the line engine with glint-model: the pieces from the set-up, and the pixels from the raster.
 
 mod raster;
 mod segments;

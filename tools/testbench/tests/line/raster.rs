@@ -1,4 +1,4 @@
-//! The raster of lines: every pixel of every piece, band by band.
+//! Tests of the line raster: every pixel of every piece, band by band.
 
 use glint_model::SIZES;
 use glint_model::line::Segment;
@@ -9,7 +9,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::segments::{bands, piece, pixels};
 
-/// Number of columns of a group.
+/// Number of pixel columns of a group.
 const LANES: u32 = 8;
 
 struct Bench {
@@ -31,7 +31,7 @@ impl Bench {
         }
     }
 
-    /// Draws the pieces of segments in a band, and compares the groups with the model's pixels. Returns the clocks and the pixels.
+    /// Draws a band's pieces of segments, and compares the groups with the model's pixels. Returns the numbers of clocks and pixels.
     fn band(&mut self, size: usize, band: &Bounds, segments: &[Segment]) -> [u64; 2] {
         let stride = SIZES[size].0 / LANES;
         self.pipe.module.drive("first_row", band.top);
@@ -101,7 +101,7 @@ fn difficult_segments() {
     }
 }
 
-/// A pixel a clock, in pieces of any length, besides the latency of each band.
+/// Pieces of any length take one clock a pixel, plus the latency of each band.
 #[test]
 fn a_pixel_a_clock() {
     for size in 0..3 {

@@ -1,4 +1,4 @@
-//! The pieces into which the bands of a picture cut lines.
+//! Pieces of lines, cut at the bands of a picture.
 
 use glint_core::picture::Size;
 use glint_model::ScreenVertex;
@@ -15,7 +15,7 @@ pub fn bands(size: usize) -> Vec<Bounds> {
         .collect()
 }
 
-/// The end points of a segment as the set-up gets them, and the bias of their depths.
+/// The set-up's input for a segment: its end points, and the bias of their depths.
 pub fn placed(segment: &Segment) -> ([ScreenVertex; 2], u16) {
     match segment.depth {
         LineDepth::Over => (
@@ -39,7 +39,7 @@ pub fn piece(segment: &Segment, layout: &Layout, size: usize, band: &Bounds) -> 
     pieces.next().map(|piece| packed(&piece, layout))
 }
 
-/// The pieces of a line in the order in which it meets the bands.
+/// The pieces of a line, in the order of the bands along the line.
 pub fn pieces(segment: &Segment, layout: &Layout, size: usize) -> Vec<Bits> {
     let pieces = segment.pieces(Size::ALL[size]);
     pieces.map(|piece| packed(&piece, layout)).collect()

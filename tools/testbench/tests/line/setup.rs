@@ -1,4 +1,4 @@
-//! The set-up of segments: every field of every piece.
+//! Tests of the set-up of segments: every field of every piece.
 
 use glint_core::colour::Rgb565;
 use glint_core::picture::Size;
@@ -10,7 +10,7 @@ use rand_pcg::Pcg64Mcg;
 
 use crate::segments::{pieces, placed};
 
-/// Sends segments to the set-up, and compares its pieces with those of the model. Returns the clocks.
+/// Sends segments to the set-up, and compares its pieces with the model's. Returns the clocks.
 fn check(seed: u32, stalls: [f64; 2], size: usize, segments: &[Segment]) -> u64 {
     let (input, output) = (("in", &["segment"][..]), ("out", &["piece"][..]));
     let mut pipe = Pipe::new("line_setup", seed, input, output, stalls);
@@ -66,7 +66,7 @@ fn difficult_segments() {
     }
 }
 
-/// 10,000 segments of 50 pixels have 135 clocks each in a frame, at 60 frames per second and 81.25 MHz.
+/// At 60 frames per second and 81.25 MHz, a frame of 10,000 segments leaves 135 clocks for each.
 #[test]
 fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     for size in 0..3 {
@@ -87,7 +87,7 @@ fn segments_of_50_pixels_take_less_than_a_frame_allows() {
     }
 }
 
-/// 31 clocks, or 59 with a depth step, one for each of 10 pixels, one for the piece, and one for each band above.
+/// A segment takes 31 clocks, or 59 with a depth step, plus one for each of its 10 pixels, for its piece, and for each band above.
 #[test]
 fn clocks_of_a_segment() {
     let above = u64::from(100 / Size::W640.band_lines());

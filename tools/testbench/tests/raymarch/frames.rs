@@ -1,4 +1,4 @@
-//! Tests of whole frames of the raymarcher: every pixel comes once, equal to the model's, while `band_open` is high for its band.
+//! Tests of whole frames of the raymarcher: every pixel is output once, equal to the model's, while `band_open` is high for its band.
 
 use glint_model::SIZES;
 use glint_model::raymarch::{FieldSetup, FieldStats, Palette, Rays, State};
@@ -31,7 +31,7 @@ struct Bench {
     counted: [u64; 8],
 }
 
-/// Cost of a frame: counters of the module, statistics of the model.
+/// Cost of a frame: the module's counters and the model's statistics.
 struct Taken {
     counters: [u64; 8],
     stats: FieldStats,
@@ -95,8 +95,8 @@ impl Bench {
         self.port("size", u64::from(setup.width / 640));
     }
 
-    /// Draws a frame and compares its pixels with the model's. With `hurry`, `band_open` rises at once for each band, and the
-    /// output stream does not stall; else both wait for random times.
+    /// Draws a frame and compares its pixels with the model's. With `hurry`, `band_open` rises immediately for each band, and the
+    /// output never stalls; otherwise both are delayed at random.
     fn draw(
         &mut self,
         random: &mut Random,
@@ -137,7 +137,7 @@ impl Bench {
                 }
             }
             if !hurry {
-                // On the board, the triangles of a band are drawn first; the wait stands for their time.
+                // On the board, the triangles of a band are drawn first; the delay simulates their drawing time.
                 self.clocks(random.integer(0, 3000) as u32);
             }
             self.port("band_open", 1);
@@ -159,9 +159,9 @@ impl Bench {
                 let found = Pixel::from(std::array::from_fn(|i| item[i].number()));
                 let column = 8 * found.column + u64::from(found.mask.trailing_zeros());
                 let place = (found.eye, found.line, column);
-                let wanted = expected
-                    .remove(&place)
-                    .unwrap_or_else(|| panic!("{found:?} came twice, or is of another band"));
+                let wanted = expected.remove(&place).unwrap_or_else(|| {
+                    panic!("{found:?} was output twice, or belongs to another band")
+                });
                 assert_eq!(found, wanted, "in band {band} of {setup:?}");
             }
             assert!(expected.is_empty(), "band {band} ended early");
@@ -171,7 +171,7 @@ impl Bench {
         stats.evaluations += rays.evaluations();
         let busy = self.module.port("busy");
         assert!(!self.module.is_high(busy), "busy after the last band");
-        // The last events (increments of counters) come up to four clocks after the last pixel; then all are 0.
+        // Counters count up to four clocks after the last pixel, and then stop.
         self.clocks(4);
         let events = self.module.port("events");
         assert_eq!(
@@ -209,12 +209,12 @@ fn frames_of_all_fields_with_stalls() {
     for text in further_kinds() {
         draw_in_short(&mut bench, &mut random, &[text]);
     }
-    // Pixels that are not taken hold up the ends of rays, and these the rays.
+    // Pixels not taken block the ends of rays, and these block the rays.
     assert!(bench.counters.get("cycles_stalled") > 0);
 }
 
-/// Draws a frame of a random field in `fields` with a low limit of steps, since an undecided ray, which takes all steps,
-/// costs as much as 20 decided rays.
+/// Draws a frame of a random field of `fields` with a low step limit, because an undecided ray, which takes all steps, costs as
+/// much as 20 decided rays.
 fn draw_in_short(bench: &mut Bench, random: &mut Random, fields: &[&str]) {
     let mut setup = setup(random, fields);
     setup.tuning.cap = setup.tuning.cap.min(40);
@@ -249,7 +249,7 @@ fn frames_of_round_fields_in_all_lights() {
     }
 }
 
-/// Draws a sphere with one light and with four lights: each further light may take one clock more for each pixel of the sphere.
+/// Draws a sphere with one light and with four lights: each further light may take one more clock for each pixel of the sphere.
 #[test]
 fn round_pixels_take_a_clock_a_light() {
     let mut random = Random(13);
@@ -280,7 +280,7 @@ fn sponges_keep_the_lanes_busy() {
         let setup = setup(&mut random, &SPONGES);
         let taken = bench.draw(&mut random, &setup, &Palette::default(), true);
         println!("frame {frame}: {}", taken.busy(&bench));
-        // With fewer than 8 evaluations per ray the ray generator limits the speed, not the lanes.
+        // Below 8 evaluations per ray the ray generator limits the speed instead of the lanes.
         let share = taken.stats.evaluations as f64 / (taken.counters[0] * bench.lanes) as f64;
         assert!(share >= 0.98 || taken.stats.evaluations < 8 * u64::from(taken.stats.rays));
     }

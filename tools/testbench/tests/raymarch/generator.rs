@@ -1,4 +1,4 @@
-//! Tests of the ray generator: its rays equal the model's rays of the frame, in order.
+//! Tests of the ray generator: its rays equal the model's rays of a frame, in order.
 
 use glint_model::raymarch::FieldSetup;
 use glint_model::triangle::descriptor::band_rows;
@@ -8,7 +8,7 @@ use crate::scenes::{FIELDS, ROUND, every_field, setup, setup_with};
 use glint_testbench::raymarch::{RayPlace, cone, ray, set_blocks, set_generator};
 use glint_vectors::Random;
 
-/// Name of the module variant with all fields and with cones.
+/// Name of the module variant with all fields and cones.
 const GENERATOR: &str = "ray_generator_all";
 
 /// Returns the type of a ray at the module's output.
@@ -70,7 +70,7 @@ fn check(module: &mut Module, setup: &FieldSetup, lines: u32, stalls: Stalls) ->
     clocks
 }
 
-/// Starts the generator and compares its rays with `expected` until all have come; returns the number of clocks.
+/// Starts the generator and compares its rays with all of `expected`; returns the number of clocks.
 fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stalls) -> u64 {
     let mut sink = Sink::new(module, "out", &["ray"], stalls);
     let start = module.port("start");
@@ -92,11 +92,11 @@ fn run(module: &mut Module, setup: &FieldSetup, expected: &[Bits], stalls: Stall
     clocks
 }
 
-/// Ends a frame: after a whole frame, checks that the generator is idle; after a part of a frame, resets the generator.
+/// Ends a frame: checks that the generator is idle after a whole frame, resets it after a part of a frame.
 fn end(module: &mut Module, whole: bool) {
     let [rst, busy] = ["rst", "busy"].map(|name| module.port(name));
     if whole {
-        // The output `busy` falls two clocks after the last ray.
+        // `busy` falls two clocks after the last ray.
         module.clock();
         module.clock();
         module.settle();

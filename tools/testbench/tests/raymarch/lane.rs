@@ -1,4 +1,4 @@
-//! Tests of a single lane of the raymarcher: every ray comes out once, with the model's result, under any back-pressure.
+//! Tests of a single lane of the raymarcher: every ray ends once, with the model's result, under any back-pressure.
 
 use std::collections::HashMap;
 
@@ -13,7 +13,7 @@ use glint_vectors::Random;
 /// Number of rays or cones in a frame.
 const RAYS: usize = 2_000;
 
-/// A ray or cone as sent, its expected end, and the number of evaluations of the field that it needs.
+/// A sent ray or cone, its expected end, and its number of evaluations of the field.
 struct Sent {
     item: Bits,
     end: End,
@@ -24,7 +24,7 @@ struct Sent {
 fn some_rays(random: &mut Random, layout: &Layout, setup: &FieldSetup) -> HashMap<RayPlace, Sent> {
     let eyes = if setup.stereo.is_some() { 2 } else { 1 };
     let mut all = HashMap::new();
-    // A place has the band's number modulo 2 only, so rays of different bands can have the same position; one of them is kept.
+    // A place has only the parity of the band, so rays of different bands can have equal places; one ray per place is kept.
     while all.len() < RAYS {
         let x = random.integer(0, i64::from(setup.width) - 1) as u32;
         let y = random.integer(0, i64::from(setup.height) - 1) as u32;
@@ -86,7 +86,7 @@ impl Bench {
         self.0.module.packed_type("raymarch_pkg::ray_t").clone()
     }
 
-    /// Sends rays or cones of a frame through the lane and compares their ends with the expected ones.
+    /// Sends rays or cones of a frame through the lane, and compares their ends with the expected ends.
     fn check(&mut self, setup: &FieldSetup, cones: bool, mut expected: HashMap<RayPlace, Sent>) {
         let Self(pipe) = self;
         set_lane(&mut pipe.module, setup);
@@ -109,18 +109,18 @@ impl Bench {
             };
             let sent = expected
                 .remove(&place)
-                .unwrap_or_else(|| panic!("{place:?} came twice, or was never sent: {setup:?}"));
+                .unwrap_or_else(|| panic!("{place:?} ended twice, or was never sent: {setup:?}"));
             assert_eq!(found, sent.end, "{place:?}, {:?} in {setup:?}", sent.item);
         }
     }
 }
 
-/// Number of rays per test: 150,000, or the value of `GLINT_RTL_RAYS` in the environment.
+/// Number of rays per test: the environment variable `GLINT_RTL_RAYS`, by default 150,000.
 fn rays() -> usize {
     std::env::var("GLINT_RTL_RAYS").map_or(150_000, |text| text.parse().unwrap())
 }
 
-/// Creates benches of the module `name` with different shares of stalls.
+/// Creates benches of the module `name`, each with another share of stalls.
 fn benches(name: &str) -> Vec<Bench> {
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.9, 0.0]];
     let numbered = (1..).zip(shares);
@@ -139,7 +139,7 @@ fn random_rays(name: &str, fields: &[impl AsRef<str>]) {
     }
 }
 
-/// Sends frames with cones and frames with rays in turn.
+/// Sends frames of cones and frames of rays alternately.
 #[test]
 fn random_cones_and_rays_in_all_fields() {
     let mut random = Random(4);

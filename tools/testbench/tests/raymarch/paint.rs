@@ -24,7 +24,7 @@ fn palette(random: &mut Random) -> Palette {
     palette
 }
 
-/// Makes a result of the ray `start`: the model's, or a random one with `t` above 0, even if no ray of the scene can have it.
+/// Makes a result of the ray `start`: the model's, or a random result with `t` above 0, even if no ray of the scene can produce it.
 fn ending(random: &mut Random, setup: &FieldSetup, start: &Ray) -> RayResult {
     if random.coin() {
         return setup.march(start);

@@ -1,4 +1,4 @@
-//! Test scenes: fields and cameras, typical ones and extreme ones.
+//! Test scenes: typical and extreme fields and cameras.
 
 use glint_core::camera::View;
 use glint_core::field::{Field, Primitive};
@@ -34,7 +34,7 @@ pub const UNIONS: [&str; 7] = [
     "smooth:0.01,menger:1+moving:1,0.5,30",
 ];
 
-/// Fields with flat faces, of every kind.
+/// Every kind of field with flat faces.
 pub const FIELDS: [&str; 12] = [
     "menger:4",
     "menger:6",
@@ -50,7 +50,7 @@ pub const FIELDS: [&str; 12] = [
     "planes:0.01",
 ];
 
-/// Returns one example of each kind of field that occurs neither in `FIELDS` nor in `ROUND`.
+/// Returns an example of each kind of field that is neither in `FIELDS` nor in `ROUND`.
 pub fn further_kinds() -> Vec<&'static str> {
     let listed = [&FIELDS[..], &ROUND].concat();
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
@@ -58,8 +58,8 @@ pub fn further_kinds() -> Vec<&'static str> {
     Primitive::EXAMPLES.into_iter().filter(is_new).collect()
 }
 
-/// Returns fields of all kinds: those of `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each kind, and random
-/// fields, some of which have values at the ends of their ranges.
+/// Returns fields of all kinds: `FIELDS`, `ROUND` and `UNIONS`, unions with a box, an example of each further kind, and random
+/// fields, some with values at the ends of their ranges.
 pub fn every_field() -> Vec<String> {
     let boxes = [
         "union:box:1,0.5,0.25+moving:0.25,1",
@@ -82,7 +82,7 @@ pub fn camera(random: &mut Random) -> View {
     let eye = random.direction().map(|x| x * distance);
     let towards = match random.bits() % 4 {
         0 => random.direction(),
-        // A direction that is nearly along an axis.
+        // A direction nearly along an axis.
         1 => {
             let axis = (random.bits() % 3) as usize;
             let little = random.logarithmic(1e-7, 1e-1);

@@ -1,4 +1,4 @@
-//! Test bench of the scan-out module, with two clocks, a memory, software that changes the settings, and a monitor.
+//! Test bench of the scan-out module: two clocks, a memory, software that changes the settings, and a monitor.
 
 use glint_testbench::{Module, Port};
 use rand::{RngExt, SeedableRng};
@@ -31,7 +31,7 @@ struct Ports {
 }
 
 impl Ports {
-    /// Names of the outputs that are compared in every cycle of `sys_clk`.
+    /// Names of the outputs compared in every cycle of `sys_clk`.
     const REGISTERS: [&str; 8] = [
         "enabled",
         "scale_current",
@@ -65,7 +65,7 @@ pub struct Bench {
     pub monitor: Monitor,
     /// Settings requested by software; they drive the inputs from the next edge of `sys_clk` on.
     pub asked: Settings,
-    /// Function that is called in each cycle of `sys_clk` and may change the requested settings.
+    /// Callback in each cycle of `sys_clk`, which may change the requested settings.
     pub software: Option<fn(&mut Pcg64Mcg, &mut Settings)>,
     ports: Ports,
     raster: Raster,
@@ -78,15 +78,15 @@ pub struct Bench {
     driven: Settings,
     /// Settings that the module latched at the last vertical blanking.
     in_force: Settings,
-    /// Settings of the frame of which the module is fetching a line, or fetched one last.
+    /// Settings of the frame of the current or last fetched line.
     fetched_from: Settings,
     was_fetching: bool,
     counted: Counted,
-    /// The values a clock earlier, which the counters of memory's signals have.
+    /// Counter values of the previous clock: the counters of memory's signals lag by a clock.
     counted_before: Counted,
     expected_error: u64,
     late_before: u64,
-    /// Time of the last pixel of the picture; `None` after the module has reported the vertical blanking that follows.
+    /// Time of the last pixel of the picture; `None` once the module has reported the following vertical blanking.
     active_end: Option<u64>,
 }
 
@@ -104,8 +104,8 @@ impl Bench {
             software: None,
             raster,
             clocks,
-            // The unit of time is chosen such that a period of sys_clk is `clocks.pix` units and one of pix_clk is
-            // `clocks.sys` units; each clock starts at a random phase.
+            // In units of time in which a period of sys_clk is `clocks.pix` and a period of pix_clk is `clocks.sys`; each clock
+            // has a random phase.
             next_sys: 1 + random.random_range(0..clocks.pix),
             next_pix: 1 + random.random_range(0..clocks.sys),
             random,
@@ -146,7 +146,7 @@ impl Bench {
         }
     }
 
-    /// Runs for as long as the video output takes for `count` lines.
+    /// Runs for the time of `count` lines of the video output.
     pub fn run_lines(&mut self, count: u64) {
         self.run_cycles(self.clocks.sys_cycles(count * self.raster.h_total()));
     }
@@ -170,7 +170,7 @@ impl Bench {
     /// Asserts or releases the reset of the side in the domain of `sys_clk` (memory and registers).
     pub fn reset_sys(&mut self, on: bool) {
         self.module.set_value(self.ports.sys_rst, u64::from(on));
-        // A vertical blanking during the reset is reported only after the reset, so its time is not checked.
+        // A vertical blanking during the reset is reported after the reset, so its time is not checked.
         self.active_end = None;
         if on {
             self.asked = Settings::RESET;
@@ -283,7 +283,7 @@ impl Bench {
             let limit = (self.raster.h_front + 8) * self.clocks.sys + 4 * self.clocks.pix;
             assert!(
                 self.now - end <= limit,
-                "vblank comes {} pixels after the last pixel",
+                "vblank {} pixels after the last pixel",
                 (self.now - end) / self.clocks.sys
             );
         }
@@ -302,7 +302,10 @@ impl Bench {
         };
         self.late_before = late;
         let counted = self.module.value(self.ports.underflows);
-        assert_eq!(counted, late, "underflows, and late lines of the picture");
+        assert_eq!(
+            counted, late,
+            "numbers of underflows and of late picture lines"
+        );
     }
 
     fn after_sys_edge(&mut self) {

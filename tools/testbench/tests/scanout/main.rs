@@ -1,8 +1,7 @@
-//! Tests of scan-out with two clocks, a memory of any timing and a monitor; the test bench checks every cycle and every pixel.
+//! Tests of scan-out with two clocks, memories of various timings and a monitor; the test bench checks every cycle and every pixel.
 //!
-//! The module `scanout` has the video timing of the SoC, CEA-861 1280×720. The module `scanout_small` has frames of a few
-//! thousand clocks, so that thousands of frames fit in a test; in the active part of a line, a memory word lasts as many
-//! pixel clocks as in `scanout`.
+//! The module `scanout` has the video timing of the SoC, CEA-861 1280×720. The module `scanout_small` has frames of a few thousand clocks,
+//! for thousands of frames in a test; in the active part of a line, a memory word lasts as many pixel clocks as in `scanout`.
 
 mod bench;
 mod memory;
@@ -20,7 +19,7 @@ use settings::{Settings, error};
 
 const SMALL: Raster = Raster::SMALL;
 
-/// Changes the settings at random times, several times per frame, as software could.
+/// Changes the settings at random times, several times per frame, as software may do.
 fn restless(random: &mut Pcg64Mcg, asked: &mut Settings) {
     if random.random_range(0..1500) == 0 {
         *asked = Settings::random(random);
@@ -32,12 +31,12 @@ fn all_scales_are_pixel_exact(clocks: Clocks) {
     bench.memory.manners = Manners::BUSY;
     for scale in [4, 2, 1] {
         bench.asked = Settings::shown(scale, 0x12_3456 * scale);
-        // The module takes over the settings at the vertical blanking.
+        // The module latches the settings at the vertical blanking.
         bench.run_to_vblank();
     }
     bench.run_to_vblank();
     assert_eq!((bench.monitor.late, bench.monitor.frames), (0, 3));
-    // The source lines and the memory words of the three frames, each read once.
+    // The source lines and the memory words of three frames, each read once.
     assert_eq!(bench.module.read("items_out"), 180 + 360 + 720);
     let words = 180 * 40 + 360 * 80 + 720 * 160;
     assert_eq!(bench.module.read("items_in"), words);
@@ -89,7 +88,7 @@ fn a_late_line_is_replaced_by_the_one_before() {
         bench.asked = Settings::shown(scale, 0x100);
         bench.run_frames(2);
         bench.monitor.may_be_late = true;
-        // Stops memory in the middle of the picture, for twice the time of a source line.
+        // Pauses memory in the middle of the picture, for twice the time of a source line.
         bench.run_lines(SMALL.lines_to_picture());
         bench.memory.stopped = true;
         bench.run_lines(2 * scale);
@@ -97,7 +96,7 @@ fn a_late_line_is_replaced_by_the_one_before() {
         bench.run_to_vblank();
         let late = bench.monitor.late;
         assert!((1..=3).contains(&late), "scale {scale}: {late} late lines");
-        // At scale 4, a source line has four output lines, and a late one still appears in the last of them.
+        // At scale 4, a source line has four output lines; a late source line still appears in the last of them.
         assert!(scale < 4 || bench.monitor.late_again >= 1);
         assert_eq!(bench.module.read("error"), error::UNDERFLOW);
         bench.monitor.may_be_late = false;
@@ -113,7 +112,7 @@ fn starved_memory_never_disturbs_the_raster() {
         let clocks = [Clocks::FAST, Clocks::SLOW][seed as usize & 1];
         let mut bench = Bench::small(clocks, seed);
         bench.monitor.may_be_late = true;
-        // Memory pauses at random, from the time of some lines to that of whole frames.
+        // Memory pauses at random, for a few lines up to whole frames.
         bench.memory.manners = Manners {
             ready: 0.6,
             deliver: 0.6,
@@ -141,14 +140,14 @@ fn dead_memory_shows_black_and_comes_back() {
     bench.monitor.may_be_late = true;
     bench.run_frames(3);
     assert_eq!(bench.monitor.late, 3 * SMALL.v_active / 2);
-    // The first words that memory delivers now were requested three frames ago, for another base address.
+    // The first delivered words were requested three frames ago, for another base address.
     bench.asked.base = 0x8000;
     bench.run_to_vblank();
     bench.memory.stopped = false;
     bench.monitor.may_be_late = false;
     let late = bench.monitor.late;
     bench.run_frames(2);
-    assert_eq!(bench.monitor.late, late, "memory came back in the blanking");
+    assert_eq!(bench.monitor.late, late, "memory resumed in the blanking");
 }
 
 #[test]
@@ -175,7 +174,7 @@ fn either_side_may_be_reset_alone() {
         bench.run_frames(2);
         let cycles = bench.random.random_range(0..frame);
         bench.run_cycles(cycles);
-        // The video timing continues while only the side of `sys_clk` is reset, so the monitor keeps its position.
+        // While only the `sys_clk` domain is reset, the video timing continues and the monitor keeps its position.
         if round % 2 == 0 {
             bench.reset_sys(true);
         }
@@ -186,7 +185,7 @@ fn either_side_may_be_reset_alone() {
         bench.run_cycles(cycles);
         bench.reset_sys(false);
         bench.reset_pix(false);
-        // The reset must reach both clock domains before the first access. 20 cycles suffice, and a processor takes longer.
+        // The reset must reach both clock domains before the first access. 20 cycles suffice; a processor takes longer.
         bench.run_cycles(20);
     }
     bench.asked.enable = true;
@@ -208,7 +207,7 @@ fn a_fetch_may_outlive_its_request() {
     bench.run_cycles(20);
     bench.reset_pix(false);
     bench.run_to_vblank();
-    // Line 0 of the next frame is requested while the fetch of a line from before the reset is still under way.
+    // Line 0 of the next frame is requested during the fetch of a line requested before the reset.
     bench.run_lines(2);
     bench.memory.stopped = false;
     bench.run_frames(2);

@@ -12,14 +12,14 @@ use crate::settings::Settings;
 /// Bytes per memory word.
 pub const WORD: u64 = 16;
 
-/// Timing of the memory: the shares of cycles in which it takes a command (`ready`) and delivers a due word (`deliver`),
-/// and the lowest and highest latency in cycles.
+/// Timing of the memory: the shares of cycles in which it accepts a command (`ready`) and delivers a due word (`deliver`), and
+/// its minimum and maximum latency in cycles.
 #[derive(Clone, Copy, Debug)]
 pub struct Manners {
     pub ready: f64,
     pub deliver: f64,
     pub latency: [u64; 2],
-    /// Probability, in each cycle, that a pause begins; `pause_cycles` is its longest length in cycles.
+    /// Probability per cycle that a pause begins; `pause_cycles` is the maximum length of a pause in cycles.
     pub pause: f64,
     pub pause_cycles: u64,
 }
@@ -33,14 +33,14 @@ impl Manners {
         pause: 0.0,
         pause_cycles: 0,
     };
-    /// A memory that is shared with mostly idle masters.
+    /// A memory shared with mostly idle masters.
     pub const SHARED: Self = Self {
         ready: 0.8,
         deliver: 0.9,
         latency: [2, 20],
         ..Self::PROMPT
     };
-    /// A memory that is shared with busy masters.
+    /// A memory shared with busy masters.
     pub const BUSY: Self = Self {
         ready: 0.5,
         deliver: 0.7,
@@ -57,13 +57,13 @@ pub fn chance(random: &mut Pcg64Mcg, share: f64) -> bool {
 /// Model of the memory at the module's read port.
 pub struct Memory {
     pub manners: Manners,
-    /// Whether the memory takes no commands and delivers no words.
+    /// Whether the memory is paused: takes no commands and delivers no words.
     pub stopped: bool,
     cmd: [Port; 3],
     rdata: [Port; 2],
-    /// For each command whose word was not delivered: the word address, and the cycle from which the word is due.
+    /// For each command whose word was not delivered yet: the word address, and the cycle from which the word is due.
     commands: VecDeque<(u64, u64)>,
-    /// Word address of a command that is valid but was not taken yet.
+    /// Word address of a valid command that was not taken yet.
     held: Option<u64>,
     paused_until: u64,
 }
@@ -81,21 +81,21 @@ impl Memory {
         }
     }
 
-    /// Drops all commands, because the module was reset.
+    /// Drops all commands, for a reset of the module.
     pub fn reset(&mut self, module: &mut Module) {
         self.commands.clear();
         self.held = None;
         self.rest(module);
     }
 
-    /// Drives the port so that the memory takes no command and delivers no word.
+    /// Drives the port to take no command and deliver no word.
     pub fn rest(&self, module: &mut Module) {
         module.set_value(self.rdata[0], 0);
         module.set_value(self.cmd[1], 0);
     }
 
-    /// Takes the command of this cycle, if the memory is ready, and checks that the address is in the frame with the
-    /// settings `from`. Returns whether a command waits because the memory is not ready.
+    /// Takes the command of this cycle if the memory is ready, and checks that its address is in a frame with the settings
+    /// `from`. Returns whether a command waits because the memory is not ready.
     pub fn sample(
         &mut self,
         module: &Module,
@@ -127,7 +127,7 @@ impl Memory {
         );
         assert!(
             (self.commands.len() as u64) < raster.h_active / 8,
-            "more commands under way than a line has words"
+            "more commands in flight than a line has words"
         );
         let [least, most] = self.manners.latency;
         let due = cycle + random.random_range(least..=most);
@@ -142,7 +142,7 @@ impl Memory {
         module.is_high(self.rdata[0])
     }
 
-    /// Drives the port: decides whether to be ready for a command, and delivers a due word, or noise that is not valid.
+    /// Drives the port: chooses `ready` at random, and delivers a due word, or invalid random data.
     pub fn drive(&mut self, module: &mut Module, random: &mut Pcg64Mcg, cycle: u64) {
         let manners = self.manners;
         if cycle >= self.paused_until && chance(random, manners.pause) {

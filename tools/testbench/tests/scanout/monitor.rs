@@ -1,8 +1,8 @@
-//! Model of a monitor, which checks video timing and picture from the module's outputs alone.
+//! Model of a monitor, which checks video timing and picture by the module's outputs alone.
 //!
-//! At each pixel clock, the monitor compares hsync and vsync with those expected at its position in the frame, which it
-//! counts from the first edge of vsync on. At the end of each line, it checks that the line is the expected one, or the
-//! previous one if memory was late.
+//! At each pixel clock, the monitor compares hsync and vsync with the values expected at its position in the frame, counted from the first
+//! edge of vsync. At the end of each line, it checks that the line shows the expected source line, or the previous source line if memory
+//! was late.
 
 use glint_testbench::{Module, Port};
 
@@ -16,21 +16,21 @@ pub struct Monitor {
     vsync: Port,
     de: Port,
     rgb: [Port; 3],
-    /// Pixel clocks since the leading edge of vsync; `None` before the first one.
+    /// Pixel clocks since the leading edge of vsync; `None` before the first vsync.
     position: Option<u64>,
     vsync_before: bool,
     line: Vec<u32>,
-    /// Whether the current line is not checked, because a reset disturbed it.
+    /// Whether to skip the check of the current line, disturbed by a reset.
     pub line_unchecked: bool,
-    /// Source line (line of the frame in memory) that was shown last in this video frame.
+    /// Last source line (line of the frame in memory) shown in this video frame.
     pub line_shown: Option<u64>,
     /// Whether late source lines are accepted.
     pub may_be_late: bool,
-    /// Number of frames that were shown up to their last line.
+    /// Number of frames shown up to their last line.
     pub frames: u64,
-    /// Number of late source lines: those that the first of their output lines does not show.
+    /// Number of late source lines, which are missing in their first output line.
     pub late: u64,
-    /// Number of late source lines that still appeared in one of their later output lines (a source line has `scale` of them).
+    /// Number of late source lines that appeared in a later one of their `scale` output lines.
     pub late_again: u64,
 }
 
@@ -54,14 +54,14 @@ impl Monitor {
         }
     }
 
-    /// Makes the monitor wait for the next vsync.
+    /// Loses synchronisation until the next vsync.
     pub fn reset(&mut self) {
         self.position = None;
         self.line.clear();
         self.vsync_before = true;
     }
 
-    /// Checks the outputs of one pixel clock; returns whether its pixel was the last one of a frame.
+    /// Checks the outputs of one pixel clock; returns whether its pixel was the last pixel of a frame.
     pub fn watch(&mut self, module: &Module, in_force: &Settings) -> bool {
         let vsync = module.is_high(self.vsync);
         let position = match self.position {
@@ -73,7 +73,7 @@ impl Monitor {
             Some(position) => (position + 1) % self.raster.frame(),
         };
         self.position = Some(position);
-        // A line begins with the leading edge of hsync, a frame with that of vsync.
+        // Lines begin with the leading edge of hsync, frames with the leading edge of vsync.
         let raster = &self.raster;
         let (x, y) = (position % raster.h_total(), position / raster.h_total());
         let (left, top) = (raster.h_sync + raster.h_back, raster.v_sync + raster.v_back);
@@ -146,7 +146,7 @@ impl Monitor {
         };
         assert!(
             before,
-            "line {y} shows neither source line {needed} nor the line before it"
+            "line {y} shows neither source line {needed} nor the previous source line"
         );
     }
 }

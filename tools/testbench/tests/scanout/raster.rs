@@ -1,6 +1,6 @@
 //! Video timings, clocks, and the picture in memory.
 
-/// A video timing: active part, front porch, sync and back porch of a line in pixels, and of a frame in lines.
+/// A video timing: active part, front porch, sync and back porch, of lines in pixels and of frames in lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
     pub h_active: u64,
@@ -11,7 +11,7 @@ pub struct Raster {
     pub v_front: u64,
     pub v_sync: u64,
     pub v_back: u64,
-    /// Number of visible black lines above and below the picture, which are part of back and front porch.
+    /// Number of visible black lines above and below the picture, which count as part of the porches.
     pub border: u64,
 }
 
@@ -29,8 +29,8 @@ impl Raster {
         border: 0,
     };
 
-    /// The timing of the module `scanout_small`: a frame takes about 1/200 of the time of one of `scanout`, but in the active
-    /// part of a line a memory word lasts as many pixel clocks.
+    /// The timing of the module `scanout_small`: frames 200 times as short as those of `scanout`, but as many pixel clocks per
+    /// memory word in the active part of a line.
     pub const SMALL: Self = Self {
         h_active: 160,
         h_front: 8,
@@ -72,7 +72,7 @@ impl Raster {
     }
 }
 
-/// Frequencies of `sys_clk` and `pix_clk` in a common unit; only ratio and phase matter.
+/// Frequencies of `sys_clk` and `pix_clk` in a common unit; only their ratio matters.
 #[derive(Clone, Copy, Debug)]
 pub struct Clocks {
     pub sys: u64,
@@ -91,13 +91,13 @@ impl Clocks {
         pix: 7425,
     };
 
-    /// Cycles of `sys_clk` in `pixels` cycles of `pix_clk`.
+    /// Number of `sys_clk` cycles in `pixels` cycles of `pix_clk`.
     pub const fn sys_cycles(&self, pixels: u64) -> u64 {
         pixels * self.sys / self.pix
     }
 }
 
-/// The RGB565 pixel at a byte address of memory: a hash of the address, so that all lines of all frames differ.
+/// The RGB565 pixel at a byte address of memory: a hash of the address, which makes all lines of all frames differ.
 pub fn pixel_at(address: u64) -> u16 {
     let z = address
         .wrapping_mul(0x9E37_79B9_7F4A_7C15)

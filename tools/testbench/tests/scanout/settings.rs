@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Settings of scan-out, as software requests them or as the module has latched them.
+/// Settings of scan-out, requested by software or latched by the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     pub enable: bool,
@@ -13,14 +13,14 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The settings after a reset.
+    /// The settings at reset.
     pub const RESET: Self = Self {
         enable: false,
         scale: 4,
         base: 0,
     };
 
-    /// Settings that show the frame at `base` with a scale.
+    /// Settings that show the frame at `base` at a scale.
     pub const fn shown(scale: u64, base: u64) -> Self {
         Self {
             enable: true,
@@ -39,7 +39,7 @@ impl Settings {
     }
 }
 
-/// Values of the module's output `error`, which reports on the last frame.
+/// Values of the module's output `error`, the result of the last frame.
 pub mod error {
     pub const NONE: u64 = 0;
     pub const SCALE: u64 = 1;

@@ -1,5 +1,5 @@
-//! Tests of the module `triangle_control`, through which software asks the triangle engine for passes and gets their results.
-//! A simple model stands for the engine.
+//! Tests of the module `triangle_control`, by which software starts passes of the triangle engine and reads their results. A
+//! simple model replaces the engine.
 
 mod bench;
 mod passes;
@@ -13,8 +13,8 @@ use crate::control::passes::{
     NAMES, NONE, Pass, RASTER, SIZE, TRIANGLES,
 };
 
-/// Puts each memory region of a pass at valid and at invalid addresses, and asks for this pass alone and for both passes. The
-/// pass is refused if the region is not wholly in memory or does not begin at a multiple of 16 bytes.
+/// Places each memory region of a pass at valid and at invalid addresses, and requests this pass alone and both passes. The pass
+/// is refused if the region is not entirely in memory, or its address is not a multiple of 16 bytes.
 #[test]
 fn regions_are_wholly_in_memory() {
     let mut bench = Bench::new(1);
@@ -22,7 +22,7 @@ fn regions_are_wholly_in_memory() {
     for which in [GEOMETRY, RASTER] {
         for size in 0..3 {
             bench.passes = Pass::good();
-            // With these switches, the raster pass uses all its regions.
+            // These switches make the raster pass use all its regions.
             let flags = &mut bench.passes[which].flags;
             flags.size = size;
             flags.choose(&["cull", "first", "second", "depth", "slot", "whole"]);
@@ -64,7 +64,7 @@ fn regions_are_wholly_in_memory() {
     println!("{cases} cases");
 }
 
-/// A build for 32 MB of memory and two sizes refuses what lies beyond.
+/// A build for 32 MB of memory and two sizes refuses regions and sizes beyond.
 #[test]
 fn a_build_has_less_memory_and_fewer_sizes() {
     const MEMORY: u64 = 32 << 20;
@@ -106,7 +106,7 @@ fn a_build_has_less_memory_and_fewer_sizes() {
     }
 }
 
-/// A build without lines refuses each geometry pass of lines, and a build with lines starts it as any other.
+/// A build without lines refuses every geometry pass of lines; a build with lines starts it like any other pass.
 #[test]
 fn a_build_without_lines_refuses_them() {
     let mut random = Pcg64Mcg::new(9);
@@ -127,7 +127,7 @@ fn a_build_without_lines_refuses_them() {
             assert_eq!(error == LINES, of_lines && !lines);
             errors[error as usize] += 1;
         }
-        println!("{name}: {errors:?} geometry passes by error");
+        println!("{name}: numbers of geometry passes by error: {errors:?}");
         assert!(
             [NONE, SIZE, ADDRESS]
                 .map(|error| errors[error as usize])
@@ -137,8 +137,8 @@ fn a_build_without_lines_refuses_them() {
     }
 }
 
-/// A build without triangles refuses each geometry pass and each raster pass with lists. Of other raster passes it checks the
-/// size and the regions.
+/// A build without triangles refuses every geometry pass and every raster pass with lists. For other raster passes it checks size
+/// and regions.
 #[test]
 fn a_build_without_triangles_refuses_meshes() {
     let mut random = Pcg64Mcg::new(8);
@@ -159,13 +159,13 @@ fn a_build_without_triangles_refuses_meshes() {
         assert_eq!(bench.counts.map(|counts| counts[1]), expected);
         errors[raster as usize] += 1;
     }
-    println!("{errors:?} raster passes by error");
+    println!("numbers of raster passes by error: {errors:?}");
     for error in [NONE, SIZE, ADDRESS, TRIANGLES] {
         assert!(errors[error as usize] > 10, "error {error}");
     }
 }
 
-/// For counts and lengths from the lowest to the highest: a region may end where memory ends, but not one word farther.
+/// For counts and lengths from minimum to maximum: a region may end at the end of memory, but not one word beyond.
 #[test]
 fn lengths_are_counted_to_the_last_word() {
     let mut bench = Bench::new(2);
@@ -205,7 +205,7 @@ fn lengths_are_counted_to_the_last_word() {
             "a mesh of {bytes:#x}"
         );
     }
-    // Tries every value of `list_shift`, which sets the length of the lists, with every size of the picture.
+    // Tests every value of `list_shift`, which sets the length of the lists, with every picture size.
     for size in 0..4 {
         for shift in 0..32 {
             bench.passes = Pass::good();
@@ -229,7 +229,7 @@ fn lengths_are_counted_to_the_last_word() {
     }
 }
 
-/// The address of a region that a pass does not use may have any value.
+/// The address of a region unused by a pass may have any value.
 #[test]
 fn unused_regions_are_not_checked() {
     let mut bench = Bench::new(3);
@@ -258,7 +258,7 @@ fn unused_regions_are_not_checked() {
     }
 }
 
-/// A single pass starts at most `LATENCY` clocks after it was requested, and ends with the engine's result.
+/// A single pass starts at most `LATENCY` clocks after its request, and ends with the engine's result.
 #[test]
 fn passes_end_as_the_engine_says() {
     let mut bench = Bench::new(4);
@@ -294,7 +294,7 @@ fn passes_end_as_the_engine_says() {
     }
 }
 
-/// A pass whose parameters load waits for them, and ends at once when it is cancelled meanwhile.
+/// A pass waits until its parameters are loaded, and ends immediately if it is cancelled while waiting.
 #[test]
 fn passes_wait_for_their_parameters() {
     let mut bench = Bench::new(9);
@@ -313,7 +313,7 @@ fn passes_wait_for_their_parameters() {
     }
 }
 
-/// Asks for a pass again while its parameters are checked, or while it starts, runs or ends: the second request is refused, and
+/// Requests a pass again while its parameters are checked, or while it starts, runs or ends: the second request is refused, and
 /// the pass continues and ends once.
 #[test]
 fn asks_in_between_are_refused() {
@@ -355,7 +355,7 @@ fn asks_in_between_are_refused() {
     }
 }
 
-/// Cancels one pass or both passes at any time, and asks for both again, before and after the engine is ready again.
+/// Cancels one or both passes at any time, and requests both again, before and after the engine is ready again.
 #[test]
 fn asks_after_a_cancel_wait_for_the_engine() {
     let mut bench = Bench::new(6);
@@ -385,7 +385,7 @@ fn asks_after_a_cancel_wait_for_the_engine() {
     }
 }
 
-/// Asks for passes and cancels them at random in every clock.
+/// Requests and cancels passes at random in every clock.
 #[test]
 fn random_sequences() {
     let mut random = Pcg64Mcg::new(7);
@@ -416,7 +416,7 @@ fn random_sequences() {
             bench.clock(events);
         }
         bench.finish();
-        println!("{:?} asks, starts and ends", bench.counts);
+        println!("requests, starts and ends: {:?}", bench.counts);
         assert!(bench.counts.iter().flatten().all(|&count| count > 20));
     }
 }

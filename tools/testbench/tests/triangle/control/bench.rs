@@ -1,4 +1,4 @@
-//! Test bench of `triangle_control`, with software on one side and a simple engine on the other.
+//! Test bench of `triangle_control`, between software and a simple model of the engine.
 
 use glint_testbench::{Module, Port};
 
@@ -11,21 +11,20 @@ use crate::control::passes::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
     Idle,
-    /// Asked for: the clock of the request, and the error with which the request must be refused, if any.
+    /// Requested: the clock of the request, and the error of the expected refusal, if any.
     Asked(u64, u64),
-    /// Started: the pass runs for this many more clocks.
+    /// Started: the remaining clocks of the pass.
     Runs(u64),
 }
 
-/// Whether the engine can start a pass: it can from the clock in `Since` on; with `Waits` it cannot, until the engine is
-/// ready again after a cancel.
+/// Whether the engine can start a pass: from the clock in `Since` on; not with `Waits`, until it is ready again after a cancel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Recovery {
     Since(u64),
     Waits,
 }
 
-/// The module with an engine behind it, and the expected behaviour of the module.
+/// The module with the model of the engine, and the module's expected state.
 pub struct Bench {
     pub module: Module,
     /// Bytes per descriptor.
@@ -40,11 +39,11 @@ pub struct Bench {
     pub recovery: Recovery,
     /// Number of clocks until the engine is ready again.
     pub ready_in: u64,
-    /// Length in clocks of each pass in the engine; `ends` has the result of each pass.
+    /// Run time of each pass in clocks; `ends` has the result of each pass.
     pub runs: [u64; 2],
     pub ends: [u64; 2],
-    /// Clocks for which the parameters of each pass load after an accepted request; `loading` has the clocks that are left. The
-    /// addresses of the regions are wrong meanwhile.
+    /// Load time of each pass's parameters after an accepted request, in clocks; `loading` has the remaining clocks. The
+    /// addresses of the regions are wrong while they load.
     pub loads: [u64; 2],
     pub loading: [u64; 2],
     /// Numbers of accepted requests, starts and ends of each pass.
@@ -62,7 +61,7 @@ pub struct Events {
 }
 
 impl Events {
-    /// Software asks for passes.
+    /// Software requests passes.
     pub fn ask(ask: [bool; 2]) -> Self {
         Self {
             ask,
@@ -70,7 +69,7 @@ impl Events {
         }
     }
 
-    /// Software cancels passes, and the engine is ready again after some clocks.
+    /// Software cancels passes; the engine is ready again after some clocks.
     pub fn cancel(recovers: u64) -> Self {
         Self {
             cancel: true,
@@ -114,13 +113,13 @@ impl Bench {
             counts: [[0; 3]; 2],
             clocks: 0,
         };
-        // Runs one clock in which the engine is ready: no pass can start before such a clock.
+        // Runs one clock with the engine ready, before which no pass can start.
         bench.clock(Events::default());
         bench
     }
 
-    /// Asks for the pass `which` with several values of the port `count`, in units of `item` bytes. The region whose address
-    /// is on the port `region` must be accepted if it ends where memory ends, and refused if it lies one word farther.
+    /// Requests the pass `which` with several values of the port `count`, in units of `item` bytes. The region at the address on
+    /// the port `region` must be accepted if it ends at the end of memory, and refused one word beyond.
     pub fn lengths(&mut self, which: usize, count: &str, region: &str, item: u64) {
         const MOST: u64 = (1 << 20) - 1;
         let counts: &[u64] = if item == 1 {
@@ -189,7 +188,7 @@ impl Bench {
         }
     }
 
-    /// Starts to load the parameters of a pass.
+    /// Starts loading the parameters of a pass.
     fn load(&mut self, which: usize) {
         self.loading[which] = self.loads[which];
         if self.loads[which] > 0 {
@@ -205,7 +204,7 @@ impl Bench {
         refusal(which, pass, shift, self.descriptor, self.limits)
     }
 
-    /// The regions of memory of a pass: for each, the port with its address, and its length in bytes.
+    /// The memory regions of a pass: the port of the address, and the length in bytes.
     pub fn regions(&self, which: usize) -> Vec<(&'static str, u64)> {
         regions(which, &self.passes[which], self.list_shift, self.descriptor)
     }
@@ -261,17 +260,20 @@ impl Bench {
                         self.states[which] = State::Idle;
                         expects_end = true;
                     }
-                    assert!(!started, "{name} starts though cancelled");
+                    assert!(!started, "{name} starts after it was cancelled");
                 }
                 State::Asked(since, _) if now < since => {
                     assert!(!started, "{name} starts without its parameters");
                 }
                 State::Asked(since, refusal) => {
-                    // Both passes may be requested in one clock, so the limit is twice the latency of a pass. It counts from
-                    // when the engine became ready, if that was after the request.
+                    // Both passes may be requested in one clock, so the limit is twice a pass's latency. The limit counts from
+                    // the request, or from `ready` of the engine if that is later.
                     if let Recovery::Since(ready) = self.recovery {
                         let waited = now - since.max(ready);
-                        assert!(waited <= 2 * LATENCY, "{name}: nothing for {waited} clocks");
+                        assert!(
+                            waited <= 2 * LATENCY,
+                            "{name}: neither start nor refusal for {waited} clocks"
+                        );
                     }
                     if refusal != NONE {
                         assert!(!started, "{name} starts, expected error {refusal}");
@@ -338,7 +340,7 @@ impl Bench {
             let name = NAMES[which];
             self.module.drive(&format!("engine.{name}_busy"), busy);
             self.module.drive(&format!("engine.{name}_done"), done);
-            // Results are valid only with `done`; without it, they are noise.
+            // Results are valid only with `done`, otherwise random.
             let noise = self.clocks.is_multiple_of(3);
             let says = |error| {
                 u64::from(if done {
@@ -361,7 +363,7 @@ impl Bench {
         self.module.settle();
     }
 
-    /// Asks for passes and waits for their ends; returns the errors of both passes.
+    /// Requests passes and waits for their ends; returns the errors of both passes.
     pub fn ask(&mut self, ask: [bool; 2]) -> [u64; 2] {
         self.configure();
         self.clock(Events::ask(ask));

@@ -1,4 +1,4 @@
-//! The two passes of the triangle engine: their parameters, their regions of memory, and the errors with which they are refused.
+//! The two passes of the triangle engine: parameters, memory regions, and errors of refused requests.
 
 pub const BASE: u64 = 0x4000_0000;
 pub const MEMORY: u64 = 128 << 20;
@@ -22,7 +22,7 @@ pub const GEOMETRY: usize = 0;
 pub const RASTER: usize = 1;
 pub const NAMES: [&str; 2] = ["geometry", "raster"];
 
-/// Flags of a pass: size of the picture, and the switches by name.
+/// Flags of a pass: picture size, and the switches by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Flags {
     pub size: u64,
@@ -48,7 +48,7 @@ impl Flags {
         }
     }
 
-    /// Returns the path and the value of each member of the port `port` that carries these flags.
+    /// Returns path and value of each member of the port `port` for these flags.
     pub fn members(&self, port: &str) -> Vec<(String, u64)> {
         let others = self.others.iter().map(|&(name, set)| (name, set.into()));
         let all = [("size", self.size)].into_iter().chain(others);
@@ -131,8 +131,7 @@ impl Pass {
     }
 }
 
-/// Returns the regions of memory that the module checks for a pass: for each, the port with its address, and its length in
-/// bytes.
+/// Returns the memory regions that the module checks for a pass: the port of the address, and the length in bytes.
 pub fn regions(
     which: usize,
     pass: &Pass,
@@ -142,7 +141,7 @@ pub fn regions(
     let size = pass.size();
     let bands = [4, 15, 60, 60][size];
     let lists = match list_shift {
-        // The region has a table of lengths, and then the lists with gaps between them.
+        // The region has a table of lengths, followed by the lists with gaps between them.
         0..=17 => 16 * (16 + (bands << list_shift) + 128 * bands),
         _ => 1 << 60,
     };
@@ -196,7 +195,7 @@ pub struct Limits {
     pub lines: bool,
 }
 
-/// Returns the error code with which a request for a pass must be refused, or `NONE`.
+/// Returns the error code of the expected refusal of a pass, or `NONE`.
 pub fn refusal(which: usize, pass: &Pass, list_shift: u64, descriptor: u64, limits: Limits) -> u64 {
     let misplaced = |&(port, bytes): &(&str, u64)| {
         let first = pass.get(port);
