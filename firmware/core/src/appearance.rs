@@ -1,4 +1,4 @@
-//! The appearance of a distance field, and lighting and background of meshes.
+//! Appearance of distance fields, and lighting and background of meshes.
 
 use heapless::Vec;
 
@@ -7,7 +7,7 @@ use crate::fixed::U4_28;
 use crate::light::{Background, Light, Lighting, MAX_LIGHTS, Material, MeshLighting, Rgb};
 
 /// Appearance of a distance field: material, lights, background and fog. By default each face has a colour that depends on its
-/// normal, and the background is white. Meshes have its lights and background.
+/// normal, and the background is white. Its lights and background also apply to meshes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Appearance {
     /// Material.
@@ -18,17 +18,17 @@ pub struct Appearance {
     pub ambient: Option<Rgb>,
     /// Background; `None` selects white for a field and black for meshes.
     pub background: Option<Background>,
-    /// Density of the fog per world unit: of the light from a point at the distance d, the part exp(−d · density) reaches the
-    /// eye. 0 means no fog.
+    /// Density of the fog per world unit: over a distance d, the fog transmits the fraction exp(−d · density) of the light. 0
+    /// means no fog.
     pub fog: U4_28,
     /// Whether ambient occlusion is on.
     pub occlusion: bool,
-    /// Whether undecided rays are magenta, to be seen, and not of the colour of the horizon.
+    /// Whether rays that end at the step limit are magenta instead of the colour of the horizon.
     pub undecided: bool,
 }
 
 impl Appearance {
-    /// Returns the ambient light and the lights to draw with: those of this appearance, or the defaults where it states none.
+    /// Returns the ambient light and the lights of this appearance, with defaults for unset values.
     pub fn lighting(&self) -> Lighting {
         let lighting = if self.lights.is_empty() {
             self.material.light()
@@ -44,8 +44,8 @@ impl Appearance {
         }
     }
 
-    /// Returns the lighting of meshes: the first light, or white light at the camera if the list is empty. The default ambient light
-    /// is that of fields with a light, and black without one.
+    /// Returns the lighting of meshes: the first light, or white light at the camera if the list is empty. The default ambient
+    /// light is [`Lighting::AMBIENT`] with a light in the list, and black for an empty list.
     pub fn mesh_lighting(&self) -> MeshLighting {
         let lighting = match self.lights.first() {
             Some(&light) => MeshLighting {
@@ -65,7 +65,7 @@ impl Appearance {
         self.background.unwrap_or(Background::White)
     }
 
-    /// The background of meshes, which has one colour.
+    /// The background of meshes: a single colour.
     pub fn mesh_background(&self) -> Rgb565 {
         self.background.map_or(Rgb565(0), |background| {
             let [_, horizon] = background.colours();

@@ -1,6 +1,6 @@
-//! Fields of records that are not whole bytes.
+//! Bit fields of records in 32-bit words.
 
-/// A field of a record in 32-bit words: elements of `width` bits, which begin `every` bits apart.
+/// A bit field of a record: an array of elements of `width` bits, whose first bits are `every` bits apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bits {
     at: usize,
@@ -9,12 +9,12 @@ pub struct Bits {
 }
 
 impl Bits {
-    /// The field whose first element begins at bit `at` of the record. Only fields of 1 to 34 bits are numbers.
+    /// The field whose first element begins at bit `at` of the record. A field that is read or set as a number has 1 to 34 bits.
     pub const fn new(at: usize, width: usize, every: usize) -> Self {
         Self { at, width, every }
     }
 
-    /// The field in a record that begins at bit `start`.
+    /// This field in a record that begins at bit `start`.
     #[must_use]
     pub const fn from(self, start: usize) -> Self {
         Self {
@@ -23,7 +23,7 @@ impl Bits {
         }
     }
 
-    /// The element with this number.
+    /// The element of the array with the index `number`.
     #[must_use]
     pub const fn element(self, number: usize) -> Self {
         self.from(self.every * number)
@@ -34,32 +34,32 @@ impl Bits {
         self.at / 32
     }
 
-    /// The number in the field. Missing words are 0.
+    /// Reads the field as an unsigned number. Bits beyond the end of `words` are 0.
     #[inline]
     pub fn get(self, words: &[u32]) -> u64 {
         let word = |number| u64::from(words.get(number).copied().unwrap_or(0));
         let (first, shift) = (self.at / 32, self.at % 32);
         let low = word(first) | word(first + 1) << 32;
-        // A field of 34 bits has bits in up to three words.
+        // A field of 34 bits may span three words.
         let high = (word(first + 2) << 1) << (63 - shift);
         (low >> shift | high) & ((1 << self.width) - 1)
     }
 
-    /// The same as a two's complement number.
+    /// Reads the field as a two's complement number.
     #[inline]
     pub fn signed(self, words: &[u32]) -> i64 {
         let unused = 64 - self.width;
         (self.get(words) << unused) as i64 >> unused
     }
 
-    /// Sets the field, which was 0, to the lowest bits of `value`. Bits in missing words are dropped.
+    /// Sets the field, which must contain 0, to the lowest bits of `value`. Bits beyond the end of `words` are dropped.
     #[inline]
     pub fn put(self, words: &mut [u32], value: i64) {
         let (mut value, mut at, mut left) = (value, self.at, self.width);
         while left > 0 {
             let shift = at % 32;
             let count = left.min(32 - shift);
-            // The bits of this field in a word: `count` ones from `shift` on.
+            // Mask of the field's bits in one word: `count` ones from bit `shift` on.
             let mask = u32::MAX >> (32 - count) << shift;
             if let Some(word) = words.get_mut(at / 32) {
                 *word |= (value as u32) << shift & mask;

@@ -127,7 +127,7 @@ pub enum SampleError {
         /// Largest accepted value in LSB.
         most: u32,
     },
-    /// All samples have the same rates. A sensor that measures has noise, so this sensor does not measure.
+    /// All samples have the same rates. A working sensor has noise, so this sensor is faulty.
     Frozen,
 }
 
@@ -207,7 +207,7 @@ pub enum Progress {
 }
 
 impl Calibration {
-    /// Starts a calibration. The number of samples is limited to the range [`MOST_SAMPLES`].
+    /// Starts a calibration. The number of samples is clamped to the range [`MOST_SAMPLES`].
     pub fn new(units: Units, samples: u32) -> Self {
         Self {
             units,

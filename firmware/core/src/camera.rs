@@ -22,7 +22,7 @@ pub const DEFAULT_HALF_WIDTH: U8_28 = U8_28::lit("0.9");
 /// Distance of the near plane from the eye, in world units, for cameras that are defined by angles.
 pub const DEFAULT_NEAR: U4_28 = U4_28::lit("0.1");
 
-/// The default direction up on the screen, z.
+/// Default upward direction on the screen: the z axis.
 pub const UP: [Q32_32; 3] = [Q32_32::ZERO, Q32_32::ZERO, Q32_32::ONE];
 
 /// Smallest sine of the angle between gaze and up, 2^−10 in units of 2^−30.
@@ -34,7 +34,7 @@ type Exact = [i64; 3];
 /// Projection of the world to the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Projection {
-    /// Lines of sight meet in the eye.
+    /// All lines of sight pass through the eye.
     #[default]
     Perspective,
     /// Lines of sight are parallel to n, so sizes on the screen do not depend on the distance.
@@ -167,12 +167,11 @@ impl View {
     /// Returns the camera at `eye` that looks in the direction `gaze`, with the direction `up` upwards on the screen as far as
     /// possible: n = gaze/|gaze|, u = n × up/|n × up|, v = n × u. Both directions have any length except 0.
     ///
-    /// If the angle between `gaze` and `up`, or their opposites, has a sine below 2^−10 (0.056°), the coordinate axis to which
-    /// `up` is least inclined replaces `up`; of equally inclined axes the first. So with `up` = z and a gaze along z, x points
-    /// up.
+    /// If `gaze` and `up` are parallel or opposite within 0.056° (a sine below 2^−10), the coordinate axis along which `up` has
+    /// its smallest component replaces `up`; among equal components the first. So with `up` = z and a gaze along z, x points up.
     ///
-    /// Each component of the basis is within 0.51 units (2^−23) of its exact value; u and v have an additional error of 2^−29 over
-    /// the sine.
+    /// Each component of the basis is within 0.51 units (2^−23) of its exact value; u and v have an additional error of 2^−29
+    /// divided by the sine of the angle between `gaze` and `up`.
     ///
     /// # Errors
     /// A direction is 0, or the eye is more than 32 world units from the origin.
@@ -205,8 +204,8 @@ impl View {
         })
     }
 
-    /// Returns this camera in perspective, with another horizontal field of view: its half width is the tangent of half of
-    /// `angle`, within a part of 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a
+    /// Returns this camera in perspective, with another horizontal field of view: its half width is tan(`angle`/2), with a
+    /// relative error of at most 2^−22. Pixels are square, so the vertical field of view is 2·atan(H/W·tan(angle/2)) for a
     /// picture of W×H pixels.
     ///
     /// # Errors
@@ -226,7 +225,7 @@ impl View {
     }
 
     /// Returns this camera in orthographic projection, with `width` world units from the left side of the picture to the right
-    /// one. The half width is half of that, rounded down to 2^−28.
+    /// one. The half width is `width`/2, rounded down to 2^−28.
     ///
     /// # Errors
     /// The width is not from 0.0174 to 230.
@@ -269,8 +268,8 @@ impl View {
         }
     }
 
-    /// Returns this camera with its eye `aside` world units to the right, at most 1, and the middle of the picture shifted by
-    /// `shift`, which is at most 1 in magnitude, for one of two eyes.
+    /// Returns the camera of one eye of a stereo pair: this camera with its eye moved by `aside` world units (at most 1) to the
+    /// right, and the middle of the picture shifted by `shift` (at most 1 in magnitude).
     pub(crate) fn beside(&self, aside: Q32_32, shift: Q4_28) -> Self {
         let eye = [0, 1, 2].map(|i: usize| {
             // The product of the distance and u has 24 + 23 fraction bits, of which 32 remain, rounded down.
@@ -284,7 +283,8 @@ impl View {
         }
     }
 
-    /// The position of the eye in world units, at most 32 from the origin; one of two eyes is at most 1 beside such a position.
+    /// The position of the eye in world units, at most 32 from the origin; the eyes of a stereo pair are at most 1 beside such a
+    /// position.
     pub const fn eye(&self) -> [Q32_32; 3] {
         self.eye
     }
@@ -325,14 +325,14 @@ impl View {
         self.near
     }
 
-    /// The place that the middle of the picture shows, in world units along `u` from the camera's axis `n`, at distance 1; at most 1 in
-    /// magnitude. It is 0 except for one of two eyes.
+    /// Shift of the picture's middle from the camera's axis `n`, along `u` at distance 1, in world units; at most 1 in magnitude.
+    /// It is 0 except for the eyes of a stereo pair.
     pub const fn shift(&self) -> Q4_28 {
         self.shift
     }
 }
 
-/// Writes the arguments of the console's command `view`: eye, u, v, n, half width, near plane and, of an orthographic camera, its
+/// Writes the arguments of the console's command `view`: eye, u, v, n, half width, near plane, and for an orthographic camera the
 /// projection. Each number is the shortest decimal that reads back as the same bits.
 impl fmt::Display for View {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -349,7 +349,7 @@ impl fmt::Display for View {
     }
 }
 
-/// The coordinate axis to which a vector is least inclined, with a length of 1 in units of 2^−30.
+/// The unit vector, in units of 2^−30, of the coordinate axis along which `vector` has its smallest component in magnitude.
 fn across_axis(vector: [i32; 3]) -> [i32; 3] {
     let [x, y, z] = vector.map(i32::unsigned_abs);
     let one = 1 << 30;

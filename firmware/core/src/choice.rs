@@ -56,7 +56,7 @@ impl Choice for bool {
     const WORDS: &'static [&'static str] = &["on", "off"];
 }
 
-/// Returns the word of the console for a switch: `on` or `off`.
+/// Returns the console's word for the state of a switch: `on` or `off`.
 pub const fn switch_name(on: bool) -> &'static str {
     if on { "on" } else { "off" }
 }

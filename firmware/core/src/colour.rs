@@ -34,7 +34,7 @@ impl Rgb565 {
     }
 }
 
-/// The luminance of a colour (Rec. 601), for one of two eyes, rounded to nearest.
+/// Luminance of a colour (Rec. 601), rounded to nearest, for stereo pictures.
 pub const fn luminance(rgb: [u8; 3]) -> u8 {
     ((fine_luminance(rgb) + HALF_LUMINANCE) >> 8) as u8
 }
@@ -44,7 +44,7 @@ pub const fn fine_luminance([r, g, b]: [u8; 3]) -> u16 {
     77 * r as u16 + 150 * g as u16 + 29 * b as u16
 }
 
-/// Half a unit of a luminance, in units of 2^−8, which rounds to nearest.
+/// Half a unit of luminance, in units of 2^−8; adding it before truncation rounds to nearest.
 pub const HALF_LUMINANCE: u16 = 1 << 7;
 
 /// The source of a triangle's colours.
@@ -62,14 +62,14 @@ choices!(Shading {
     Smooth: "smooth"
 });
 
-/// The rule that tells which side of a triangle is seen.
+/// Rule that determines which side of a triangle is visible.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Winding {
     /// The order of the vertices in the mesh: counter-clockwise on the screen is the front.
     #[default]
     Mesh,
-    /// The position on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is seen, whatever the
-    /// order of its vertices in the mesh, and normals are turned towards the camera.
+    /// The position on the screen: the upper left vertex comes first, and the others follow clockwise. Every triangle is visible,
+    /// independent of the order of its vertices in the mesh, and normals are turned towards the camera.
     Screen,
 }
 

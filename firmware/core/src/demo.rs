@@ -1,27 +1,27 @@
-//! The demo of a board that runs alone: the scenes of a list in turn.
+//! The demo of a board without a host: shows the scenes of a list in turn.
 
 /// Time in milliseconds for which a scene is shown.
 pub const TURN_MS: u64 = 10_000;
 
-/// A move in the list.
+/// A step in the list of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Move {
-    /// Show the next scene; after the last one comes the first.
+    /// Show the next scene; after the last scene, the first.
     Next,
-    /// Show the previous scene; before the first one comes the last.
+    /// Show the previous scene; before the first scene, the last.
     Previous,
 }
 
-/// Which scene of a list is shown, and until when. Times are in milliseconds since start.
+/// The present scene of a list, and the end of its time. Times are in milliseconds since start.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Demo {
     /// Number of scenes; 0 while the demo is off.
     count: usize,
-    /// The scene whose turn it is.
+    /// Index of the present scene.
     number: usize,
-    /// Whether its turn has not begun.
+    /// Whether the present scene is not yet shown.
     is_due: bool,
-    /// The end of its turn.
+    /// Time at which the next scene follows.
     end: u64,
     is_held: bool,
 }
@@ -49,12 +49,12 @@ impl Demo {
         self.count > 0
     }
 
-    /// The scene whose turn it is, from 0; `None` while the demo is off.
+    /// Index of the present scene, from 0; `None` while the demo is off.
     pub fn number(&self) -> Option<usize> {
         self.is_on().then_some(self.number)
     }
 
-    /// Number of scenes of the list.
+    /// Number of scenes in the list.
     pub const fn count(&self) -> usize {
         self.count
     }
@@ -64,7 +64,7 @@ impl Demo {
         self.is_held
     }
 
-    /// Sets whether the shown scene stays. After a hold it has a whole turn.
+    /// Sets whether the shown scene stays. At the end of a hold the scene stays for another [`TURN_MS`].
     pub const fn hold(&mut self, now: u64, held: bool) {
         if self.is_held && !held {
             self.end = now.saturating_add(TURN_MS);
@@ -72,7 +72,7 @@ impl Demo {
         self.is_held = held;
     }
 
-    /// Moves to another scene, which a hold then keeps.
+    /// Moves to another scene; during a hold that scene stays.
     pub fn go(&mut self, step: Move) {
         let last = self.count.saturating_sub(1);
         self.number = match step {
@@ -88,7 +88,7 @@ impl Demo {
         self.is_on() && (self.is_due || !self.is_held && now >= self.end)
     }
 
-    /// Index of the scene to show, if a new time slot began.
+    /// Index of the scene to show now; `None` if the picture need not change.
     pub fn poll(&mut self, now: u64) -> Option<usize> {
         if !self.is_ready(now) {
             return None;

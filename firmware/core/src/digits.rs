@@ -1,4 +1,4 @@
-//! Characters on displays of seven segments.
+//! Characters on seven-segment displays.
 //!
 //! ```text
 //!   aaa
@@ -13,7 +13,7 @@ use core::fmt;
 /// Digits of a display.
 pub const COUNT: usize = 4;
 
-/// The segments of a character that is lit: bits 0 to 6 for a to g. A character without a form is dark.
+/// The segments of a character that is lit: bits 0 to 6 for a to g. A character that is not defined here lights no segment.
 pub const fn segments(character: char) -> u8 {
     const fn lit(names: &str) -> u8 {
         let (names, mut segments, mut place) = (names.as_bytes(), 0, 0);
@@ -40,8 +40,8 @@ pub const fn segments(character: char) -> u8 {
     }
 }
 
-/// A display of [`COUNT`] digits, as the segments of each digit from left to right. Text is written to it from the left; what does not
-/// fit is cut.
+/// A display of [`COUNT`] digits, as the segments of each digit from left to right. Text is written from the left; characters
+/// that do not fit are dropped.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Display {
     digits: [u8; COUNT],
@@ -57,12 +57,12 @@ impl Display {
         display
     }
 
-    /// A whole number at the right; the largest one that fits for a larger one.
+    /// A right-aligned whole number, limited to the largest number that fits.
     pub fn number(number: u64) -> Self {
         Self::of(format_args!("{:4}", number.min(9999)))
     }
 
-    /// `E` at the left, and the number of an error at the right.
+    /// `E` at the left, and a right-aligned error number.
     pub fn error(number: u8) -> Self {
         Self::of(format_args!("E{number:3}"))
     }
@@ -93,7 +93,7 @@ mod tests {
 
     use super::*;
 
-    /// The three rows of a character as a person sees it.
+    /// The three text rows that draw a character.
     fn drawn(character: char) -> [String; 3] {
         let lit = |segment: char, drawn| {
             let is_lit = segments(character) >> (segment as u8 - b'a') & 1 != 0;

@@ -1,7 +1,7 @@
-//! The parts of the firmware that a build for some scenes leaves out.
+//! Optional parts of the firmware, which a build for certain scenes leaves out.
 //!
-//! Each part is a Cargo feature of this crate, which the firmware has under the same name. Code of a part is always compiled and checked;
-//! the constant conditions of this module let the compiler remove what a build leaves out.
+//! Each part is a Cargo feature of this crate, and the firmware crate has a feature of the same name. Code of a part is always
+//! compiled and checked; the constant conditions of this module let the compiler remove the parts that a build leaves out.
 
 use core::fmt;
 
@@ -15,13 +15,13 @@ pub struct Feature {
 }
 
 impl Feature {
-    /// Calls `write` if this build has the part: what a build leaves out has no text.
+    /// Calls `write` if this build has the part, so that texts of missing parts are left out of the build.
     pub fn when_built(self, write: impl FnOnce() -> fmt::Result) -> fmt::Result {
         if self.is_built { write() } else { Ok(()) }
     }
 }
 
-/// States that this build lacks the part, and how to build one that has it.
+/// Writes an error: this build lacks the part; states how to build a firmware with the part.
 impl fmt::Display for Feature {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = self.name;
@@ -49,13 +49,13 @@ macro_rules! features {
 }
 
 features! {
-    /// Meshes, and the options of their triangles.
+    /// Meshes, and the options for triangles.
     MESH = "mesh";
     /// Several meshes in a picture, each with its own position.
     OBJECT = "object";
     /// Edges of a mesh.
     EDGES = "edges";
-    /// Programs of the wireframe simulator, and the buttons as its keys.
+    /// Programs of the wireframe simulator, and board buttons as its keys.
     WIREFRAME = "wireframe";
     /// Cameras that show the whole of a mesh.
     FIT = "fit";
@@ -63,15 +63,15 @@ features! {
     FIELD = "field";
     /// Spheres in a field, alone and in unions.
     SPHERES = "spheres";
-    /// Cones before the rays of a field.
+    /// Cone prepass of a field.
     PREPASS = "prepass";
     /// Fog of a field.
     FOG = "fog";
     /// A mesh in a field.
     MESH_IN_FIELD = "mesh-in-field";
-    /// Two eyes.
+    /// Stereo pictures.
     STEREO = "stereo";
-    /// Lights other than the one at start.
+    /// Lights other than the default lights.
     LIGHT = "light";
     /// The motion sensor.
     IMU = "imu";

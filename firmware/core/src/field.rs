@@ -1,9 +1,9 @@
 //! Distance fields: scenes defined by the distance of every point from a solid, instead of a mesh.
 //!
 //! The text form is a kind, a colon and numbers in world units, such as `menger:4` or `cubes:2,0.5`; [`Field::parse`] checks the
-//! numbers. Each kind of field has one module here. The module defines the kind's name, its numbers and their ranges ([`Shape`]).
-//! It also evaluates the solid's distances in fixed-point arithmetic, bit for bit as the gateware does ([`FlatSolid`],
-//! [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
+//! numbers. Each kind of field has one module here. The module defines the kind's name and its parameters with their ranges
+//! ([`Shape`]). It also evaluates distances from the solid in fixed-point arithmetic, bit for bit as the gateware
+//! ([`FlatSolid`], [`FixedSpheres`]). The lists in the module `primitive` name all kinds (docs/adding-a-field.md).
 
 use core::fmt;
 

@@ -1,9 +1,10 @@
 //! The named fixed-point formats, angles, and conversions from and to decimals.
 //!
 //! `QI.F` is a two's complement number with I integer bits, which include the sign, and F fraction bits; `UI.F` has no sign. The
-//! types are aliases of types of the [`fixed`] crate. Such a type may have more integer bits than the alias says; the code that
-//! makes a value keeps it within the range of the alias. `FromStr` reads a decimal by integer arithmetic, rounds to nearest with
-//! ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same bits.
+//! types are aliases of types of the [`fixed`] crate. Such a type may have more integer bits than the alias states; code that
+//! computes a value keeps the value within the range of the alias. `FromStr` reads a decimal by integer arithmetic, rounds to
+//! nearest with ties to even, and refuses numbers out of range. `Display` prints the shortest decimal that reads back as the same
+//! bits.
 
 pub use ::fixed;
 use ::fixed::types::extra::{LeEqU32, LeEqU64, U11, U12, U14, U16, U20, U23, U24, U28, U30, U32};
@@ -30,11 +31,11 @@ pub type U8_28 = FixedU64<U28>;
 
 /// Format of a position in a camera frame: units of 2^−12 pixels.
 pub type U20_12 = FixedU32<U12>;
-/// Format of a part of a whole: units of 2^−16, in [0, 1).
+/// Format of fractions of a whole: units of 2^−16, in [0, 1).
 pub type U0_16 = FixedU16<U16>;
 /// Format of frequencies in Hz, and of their products with a time: units of 2^−16, in [0, 65536).
 pub type U16_16 = FixedU32<U16>;
-/// Format of what a hand controls, turns or world units: units of 2^−28, in [−8, 8).
+/// Format of values that a hand controls, in turns or world units: units of 2^−28, in [−8, 8).
 pub type Q4_28 = FixedI32<U28>;
 
 /// An angle in units of 2^−32 turns, modulo one turn.
@@ -80,9 +81,9 @@ impl core::ops::Neg for Turns {
     }
 }
 
-/// Reads a decimal as `FromStr` does; `None` for a text of another form, and for a number out of range.
+/// Reads a decimal as `FromStr` does; `None` for a malformed or out-of-range number.
 ///
-/// The number is read with 64 bits, as are those of other formats, so that the firmware has one reader of their integer parts.
+/// All formats read numbers with 64 bits, so that the firmware has one function for integer parts.
 pub(crate) fn parse_i32<F: LeEqU32 + LeEqU64>(text: &str) -> Option<FixedI32<F>> {
     text.parse::<FixedI64<F>>().ok()?.checked_to_num()
 }

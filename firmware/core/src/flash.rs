@@ -1,7 +1,7 @@
 //! Images of a board's SPI flash: bitstream, firmware, and contents (docs/formats/flash.md, "Flash image").
 //!
-//! [`Image::new_checked`] checks a whole image, [`Contents::new_checked`] the list of the contents alone, as a board does at start: an
-//! item's bytes are checked when it is used ([`Item::checked`]).
+//! [`Image::new_checked`] checks a whole image. A board checks only the list of the contents at start
+//! ([`Contents::new_checked`]), and the bytes of an item before it uses the item ([`Item::checked`]).
 
 #[cfg(feature = "alloc")]
 mod encode;
@@ -30,14 +30,14 @@ pub const MAX_BYTES: usize = 16 << 20;
 pub const MAX_ITEMS: u32 = 64;
 /// The first four bytes of the contents.
 pub const MAGIC: [u8; 4] = *b"GFC1";
-/// Smallest length of a firmware in bytes that LiteX's BIOS boots.
+/// Smallest length in bytes of a firmware that LiteX's BIOS boots.
 pub const MIN_FIRMWARE: u32 = 32;
 /// Largest length of a firmware in bytes, which follows its header.
 pub const MAX_FIRMWARE: u32 = (CONTENTS - FIRMWARE - FirmwareHeader::BYTES) as u32;
 
-/// The word by which the FPGA finds the start of a bitstream.
+/// The synchronisation word that marks the start of a bitstream for the FPGA.
 const SYNC: [u8; 4] = [0xaa, 0x99, 0x55, 0x66];
-/// Number of bytes in which a bitstream has its [`SYNC`].
+/// Number of bytes at the start of a bitstream that must contain [`SYNC`].
 const SYNC_WITHIN: usize = 4096;
 /// Kind of an item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,9 +45,9 @@ const SYNC_WITHIN: usize = 4096;
 pub enum Kind {
     /// A mesh, in the format of an upload.
     Mesh = 1,
-    /// A scene: console commands, a line each.
+    /// A scene: console commands, one per line.
     Scene = 2,
-    /// A list of scenes: names, a line each. The board shows the first list.
+    /// A list of scenes: names, one per line. The board shows the first list of the flash.
     List = 3,
 }
 
@@ -90,8 +90,7 @@ impl<'a> Item<'a> {
 
     /// The bytes.
     ///
-    /// # Errors
-    /// Their checksum is wrong.
+    /// # Errors The checksum of the bytes is wrong.
     pub fn checked(&self) -> Result<&'a [u8], FlashError> {
         let found = crc32(self.bytes);
         expect(
@@ -103,10 +102,9 @@ impl<'a> Item<'a> {
         Ok(self.bytes)
     }
 
-    /// The text of a scene or a list, whose lines are not longer than a line of the console.
+    /// The text of a scene or a list, whose lines fit a line of the console.
     ///
-    /// # Errors
-    /// The checksum is wrong, or the bytes are no such text.
+    /// # Errors The checksum is wrong, or the bytes are not ASCII text with lines of this length.
     pub fn text(&self) -> Result<&'a str, FlashError> {
         let bytes = self.checked()?;
         let start = CONTENTS + self.offset;
@@ -121,7 +119,7 @@ impl<'a> Item<'a> {
             expect(place, limit, length as u32, length <= LINE_MAX)?;
             place += length + 1;
         }
-        // Visible ASCII is UTF-8.
+        // The bytes are ASCII, so this conversion to UTF-8 does not fail.
         Ok(str::from_utf8(bytes).unwrap_or_default())
     }
 }
@@ -129,13 +127,14 @@ impl<'a> Item<'a> {
 /// The contents of a flash: models, scenes and lists of scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contents<'a> {
-    /// All bytes, with the list of the items first.
+    /// All bytes, beginning with the list of the items.
     bytes: &'a [u8],
     count: usize,
 }
 
 impl<'a> Contents<'a> {
-    /// Checks the list of the items at the start of `bytes`, which may be longer than the contents. The items' bytes are not read.
+    /// Checks the list of the items at the start of `bytes`, which may be longer than the contents. The check does not read the
+    /// items' bytes.
     ///
     /// # Errors
     /// The first deviation from the format.
@@ -197,7 +196,7 @@ impl<'a> Contents<'a> {
     pub fn items(&self) -> impl Iterator<Item = Item<'a>> + use<'a> {
         let mut offset = list_end(self.count);
         let bytes = self.bytes;
-        // The list has been checked, so no item is left out.
+        // The list has been checked, so every entry yields an item.
         self.entries().map_while(move |entry| {
             let FlashEntry {
                 kind,
@@ -217,7 +216,7 @@ impl<'a> Contents<'a> {
         })
     }
 
-    /// The item of this kind and name.
+    /// Finds the item with a kind and a name.
     pub fn find(&self, kind: Kind, name: &str) -> Option<Item<'a>> {
         self.items()
             .find(|item| item.kind == kind && item.name == name)
@@ -275,7 +274,7 @@ pub struct Image<'a> {
 }
 
 impl<'a> Image<'a> {
-    /// Checks an image with all of its checksums. The meshes and the commands of the scenes are not read.
+    /// Checks an image with all of its checksums, but not the meshes and the commands of scenes.
     ///
     /// # Errors
     /// The first deviation from the format.
@@ -350,7 +349,7 @@ const fn list_end(items: usize) -> usize {
     FlashHeader::BYTES + items * FlashEntry::BYTES
 }
 
-/// The checksum of header and list, which end at `end`, without the checksum itself.
+/// Computes the checksum of header and list, which end at `end`; the checksum's own bytes are left out.
 fn list_checksum(contents: &[u8], end: usize) -> u32 {
     let mut digest = crate::wire::CRC_32.digest();
     for part in [
@@ -366,7 +365,7 @@ fn kind_of(code: u32) -> Option<Kind> {
     Kind::ALL.into_iter().find(|kind| *kind as u32 == code)
 }
 
-/// The name of an entry, after which all bytes are 0.
+/// Reads the name of an entry, which is padded with zeros.
 fn name_of(entry: &[u8; FlashEntry::BYTES]) -> Option<&str> {
     let field = entry.get(FlashEntry::NAME)?;
     let end = field.iter().position(|byte| *byte == 0)?;
@@ -375,7 +374,7 @@ fn name_of(entry: &[u8; FlashEntry::BYTES]) -> Option<&str> {
     (is_name(name) && rest.iter().all(|byte| *byte == 0)).then_some(name)
 }
 
-/// A length, at most the largest number of 32 bits.
+/// Converts a length to 32 bits; a longer one saturates.
 fn clamped(length: usize) -> u32 {
     u32::try_from(length).unwrap_or(u32::MAX)
 }

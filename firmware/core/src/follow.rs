@@ -15,17 +15,17 @@ use crate::trig::sin_cos_q30;
 /// A direction along one of the sensor's axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// In the direction of +x.
+    /// Along +x of the sensor.
     X,
-    /// In the direction of −x.
+    /// Along −x of the sensor.
     MinusX,
-    /// In the direction of +y.
+    /// Along +y of the sensor.
     Y,
-    /// In the direction of −y.
+    /// Along −y of the sensor.
     MinusY,
-    /// In the direction of +z.
+    /// Along +z of the sensor.
     Z,
-    /// In the direction of −z.
+    /// Along −z of the sensor.
     MinusZ,
 }
 
@@ -145,7 +145,7 @@ pub const SENSITIVITY: [u16; 2] = [32, 2_048];
 
 /// Computes the camera's attitude from the sensor's attitude, the attitude chosen as centre, and the sensitivity.
 ///
-/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, and as accurate as it. With
+/// With the sensitivity 1 the camera's attitude is a constant rotation times the sensor's attitude, with the same accuracy. With
 /// another sensitivity the angle of each turn is scaled and its axis is kept; the horizon may drift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steering {
@@ -198,7 +198,7 @@ impl Steering {
         self.camera
     }
 
-    /// Turns the camera about the vertical to the heading 0, that of the identity. From then on the sensor's present
+    /// Turns the camera about the vertical to the heading 0, the heading of the identity. From then on the sensor's present
     /// attitude stands for this heading. The horizon does not change.
     pub fn recentre(&mut self) {
         let back = Quaternion::about_axis(2, -self.camera.heading());

@@ -13,9 +13,9 @@ type Length = i64;
 
 /// 1 in units of a [`Length`].
 const ONE: Length = 1 << 20;
-/// Least distance between the camera and the sphere: twice that of the near plane.
+/// Smallest distance between the camera and the sphere: twice the distance of the near plane.
 const LEAST_GAP: Length = ONE / 5;
-/// Largest distance of the eye from the origin, 7.9, just below that which a mesh allows.
+/// Largest distance of the eye from the origin, 7.9: just below the limit for pictures of meshes.
 const FARTHEST: Length = ONE * 79 / 10;
 /// Azimuth of the camera, 30°.
 const AZIMUTH: Turns = Turns::from_degrees(Q32_32::lit("30"));
@@ -34,7 +34,7 @@ pub struct Sphere {
 /// Reason why no camera shows the whole of a sphere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FramingError {
-    /// The sphere reaches too far from the origin, so that no eye outside of it is allowed.
+    /// The sphere extends too far from the origin: no allowed position of the eye is outside of the sphere.
     TooFar {
         /// The centre.
         centre: [Q32_32; 3],
@@ -64,11 +64,11 @@ impl fmt::Display for FramingError {
 impl core::error::Error for FramingError {}
 
 impl Sphere {
-    /// The sphere around meshes at their places; `None` without a mesh. Centre and radius are within 2^−19 of their exact values.
+    /// Computes the sphere around placed meshes; `None` without a mesh. Centre and radius are within 2^−19 of their exact values.
     pub fn around<'a>(meshes: impl Iterator<Item = (Mesh<'a>, Matrix)> + Clone) -> Option<Self> {
         let points = meshes.flat_map(|(mesh, matrix)| {
             let vertices = mesh.chunks().flat_map(|chunk| chunk.vertices());
-            // In units of 2^−38 before, rounded down.
+            // Converted from units of 2^−38, rounded down.
             vertices.map(move |vertex| matrix.apply(vertex.position).map(|x| x >> 18))
         });
         let first = points.clone().next()?;
@@ -89,11 +89,11 @@ impl Sphere {
         })
     }
 
-    /// The camera in which the sphere takes 80 % of the height of the picture, with `up` up on the screen: 60° from that axis, and
-    /// `turned` from an azimuth of 30° about it.
+    /// Returns a camera in whose picture the sphere takes 80 % of the height, with the axis `up` up on the screen. The direction
+    /// to the camera has an angle of 60° from this axis, and an azimuth of 30° plus `turned` about it.
     ///
-    /// With a horizontal field of view, the distance of the eye follows from it; otherwise the field of view follows from a distance of 3.5
-    /// radii. An eye that would be too far from the origin is nearer, and one too close to the sphere farther.
+    /// A given horizontal field of view determines the distance of the eye; otherwise the distance is 3.5 radii, which determines
+    /// the field of view. The distance is clamped so that the eye is neither too far from the origin nor too close to the sphere.
     ///
     /// # Errors
     /// No allowed eye is outside of the sphere, or the field of view is out of range.
@@ -137,7 +137,7 @@ impl Sphere {
     }
 }
 
-/// Length of a line from the eye that touches a sphere of this radius, which takes 80 % of the height with this field of view; at most
+/// Length of a tangent from the eye to a sphere of this radius that takes 80 % of the height with this field of view; at most
 /// [`FARTHEST`].
 fn tangent_length(radius: Length, angle: Turns) -> Length {
     let [sin, cos] = sines(Turns(angle.0 / 2)).map(i64::unsigned_abs);
@@ -146,10 +146,11 @@ fn tangent_length(radius: Length, angle: Turns) -> Length {
     length.min(FARTHEST as u64) as Length
 }
 
-/// The half width in which a sphere of this radius takes 80 % of the height at this distance, which is larger than the radius.
+/// The half width with which a sphere of this radius takes 80 % of the height at this distance. The distance is larger than the
+/// radius.
 fn half_width(radius: Length, distance: Length) -> U8_28 {
     let touching = ((distance - radius) * (distance + radius)).isqrt().max(1);
-    // A radius is below 2^23 where an eye is outside of the sphere.
+    // The radius is below 2^23, because the eye is outside of the sphere.
     let bits = ((radius << 28) * 20 / (touching * 9)).unsigned_abs();
     U8_28::from_bits(bits).clamp(HALF_WIDTH[0], HALF_WIDTH[1])
 }
@@ -160,22 +161,22 @@ fn sines(angle: Turns) -> [i64; 2] {
     [sin, cos].map(|x| x.to_bits().into())
 }
 
-/// The square of a vector's length, whose components are below 2^30.
+/// The squared length of a vector with components below 2^30.
 fn length_squared(vector: [Length; 3]) -> u64 {
     vector.map(|x| x.unsigned_abs().pow(2)).iter().sum()
 }
 
-/// The square root of a² + b². Both are below 2^30.
+/// The square root of a² + b². `a` and `b` are below 2^30.
 fn hypotenuse(a: Length, b: Length) -> Length {
     length_squared([a, b, 0]).isqrt() as Length
 }
 
-/// A length in world units.
+/// Converts a length to world units.
 const fn world(length: Length) -> Q32_32 {
     Q32_32::from_bits(length << 12)
 }
 
-/// A vector given with z as the axis that is up, for another such axis.
+/// Permutes the coordinates of a vector so that its z axis becomes the axis `up`.
 fn about<T>(up: Axis, [a, b, c]: [T; 3]) -> [T; 3] {
     match up {
         Axis::X => [c, a, b],

@@ -1,7 +1,8 @@
 //! A hand in front of an image sensor that moves the camera on a sphere about the origin.
 //!
 //! The gesture engine counts the pixels of the hand's colour in each camera frame, and adds up their coordinates
-//! ([`Statistics`]). From these numbers come centre, width and confidence ([`Blob`]), then a target for the camera ([`target()`]):
+//! ([`Statistics`]). From these sums the firmware computes centre, width and confidence ([`Blob`]), then a target for the camera
+//! ([`target()`]):
 //!
 //! | hand | camera |
 //! |---|---|
@@ -9,13 +10,13 @@
 //! | y of the centre | polar angle φ, half a turn over the height, limited to [`POLE`] from both poles |
 //! | width, the square root of the area | distance r: 5 for [`WIDTHS`]`[0]` of the frame or less, 2 for [`WIDTHS`]`[1]` or more |
 //!
-//! [`Control`] filters the target, holds it when the hand is lost, and returns smoothly when the hand comes back. It also states
-//! the [`Setting`] of the engine for the next frame: the region around the hand, so that the rest of the frame does not count.
+//! [`Control`] filters the target, holds it when the hand is lost, and returns smoothly when the hand comes back. It also returns
+//! the [`Setting`] of the engine for the next frame: the region around the hand, outside which no pixels are counted.
 //! [`calibrate`] finds the windows of the hand's colour from a small picture.
 //!
-//! Noise pixels that are spread over the frame pull the mean of all pixels to the frame's middle: 5 % of them, by 80 pixels for a
-//! hand of 500 pixels at the border. Therefore the engine drops runs of few pixels in a line, and counts in the region alone. Around
-//! a hand at rest the region is small, so that shorter runs may count, as in the tips of fingers.
+//! Noise pixels all over the frame pull the mean of all pixels to the frame's middle: 5 % of noise pixels shift it by 80 pixels
+//! for a hand of 500 pixels at the border. Therefore the engine ignores short runs of pixels in a line, and all pixels outside
+//! the region. Around a hand at rest the region is small, so shorter runs, such as fingertips, may count.
 
 mod blob;
 mod calibration;

@@ -2,10 +2,10 @@
 //!
 //! [`ImageSensor`] finds the chip over any [`I2c`], checks its identity, and writes a short list of registers: RGB565 over the
 //! parallel port, the high byte of a pixel first, a mirrored picture (a hand moves as in a mirror), automatic exposure, gain and
-//! white balance. All other registers keep the values of the chip's reset. The lists follow the registers of public drivers;
-//! they have not been compared with the data sheets, nor tried with a real chip.
+//! white balance. All other registers keep their values after a reset of the chip. The lists follow the registers of public
+//! drivers; they have not been checked against the data sheets or tried with a real chip.
 //!
-//! SCCB differs from I2C: a read is two transactions, because its chips know no repeated start.
+//! SCCB differs from I2C: it has no repeated start, so a read takes two transactions.
 
 mod ov5640;
 mod ov7670;
@@ -49,7 +49,7 @@ pub enum Model {
 impl Model {
     const ALL: [Self; 2] = [Self::Ov7670, Self::Ov5640];
 
-    /// The chip's address on the bus, without the bit that tells reads from writes.
+    /// The chip's address on the bus, without the read/write bit.
     pub const fn address(self) -> u8 {
         match self {
             Self::Ov7670 => 0x21,
@@ -57,7 +57,7 @@ impl Model {
         }
     }
 
-    /// The contents of its two registers of the product number.
+    /// The product number in two registers of the chip.
     pub const fn product(self) -> u16 {
         match self {
             Self::Ov7670 => 0x7673,
@@ -65,13 +65,13 @@ impl Model {
         }
     }
 
-    /// Whether VSYNC is low between frames, with the registers that [`ImageSensor::start`] writes. HREF is high during a line, and
-    /// data are to be sampled at the rising edge of PCLK.
+    /// Whether VSYNC is low between frames, with the registers that [`ImageSensor::start`] writes. HREF is high during a line,
+    /// and data are valid at the rising edge of PCLK.
     pub const fn is_vsync_low(self) -> bool {
         matches!(self, Self::Ov5640)
     }
 
-    /// The number of the first register of the product number. The second one follows.
+    /// Number of the first of the two consecutive registers that hold the product number.
     const fn product_register(self) -> u16 {
         match self {
             Self::Ov7670 => 0x0a,
@@ -108,7 +108,7 @@ pub enum Error<E> {
     Absent,
     /// A chip answers, but has another product number.
     Identity {
-        /// The known chip of this address.
+        /// The expected chip with this address.
         model: Model,
         /// The product number of the chip.
         found: u16,
@@ -161,11 +161,10 @@ impl<E: fmt::Display> fmt::Display for Error<E> {
     }
 }
 
-/// A driver of an image sensor on an I2C bus. The chip answers only while its clock XCLK runs.
+/// A driver of an image sensor on an I2C bus. The chip responds only while its clock XCLK runs.
 ///
-/// A set-up takes about 60 transactions. On the bus of a sensor that is read periodically
-/// ([`PeriodicI2c`](glint_i2c::PeriodicI2c)) each of them would end the periodic reads; do it before they begin, or on wires of
-/// its own.
+/// A set-up takes about 60 transactions. On a bus with periodic reads of another sensor ([`PeriodicI2c`](glint_i2c::PeriodicI2c))
+/// each transaction would end the periodic reads, so set up the chip before them or on a separate bus.
 pub struct ImageSensor<B> {
     bus: B,
 }
@@ -206,8 +205,8 @@ impl<B: I2c> ImageSensor<B> {
         Ok(model)
     }
 
-    /// Whether the chip still has the settings of [`start`](Self::start) in the registers that it reads back. A chip that was without
-    /// supply has lost them.
+    /// Whether the chip still has the settings of [`start`](Self::start) in the registers that it reads back. A chip loses them
+    /// when its supply fails.
     ///
     /// # Errors
     /// The chip does not answer.
@@ -222,7 +221,8 @@ impl<B: I2c> ImageSensor<B> {
         Ok(true)
     }
 
-    /// Finds a known chip by its address and product number. A chip that is not known does not hide a known one.
+    /// Finds a known chip by its address and product number. An unknown chip at one address does not end the search for a known
+    /// chip.
     ///
     /// # Errors
     /// There is no chip, or only unknown ones.

@@ -30,9 +30,9 @@ choices!(Follow {
 /// Reason why a calibration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationError<E> {
-    /// The sensor moved, or does not measure.
+    /// The sensor moved or is faulty.
     Samples(calibration::SampleError),
-    /// The sensor failed, so that no samples arrived.
+    /// The sensor failed, so no samples arrived.
     Failed(Error<E>),
     /// No sensor was found since the board started.
     Absent,
@@ -48,7 +48,7 @@ impl<E: fmt::Display> fmt::Display for CalibrationError<E> {
     }
 }
 
-/// State of the last or present calibration. `Going` holds the calibration in progress and its number of samples so far.
+/// State of the last or present calibration. `Going` contains the calibration in progress and its number of samples so far.
 #[derive(Clone, Copy, Debug)]
 enum Calibrating<E> {
     Never,
@@ -139,7 +139,7 @@ impl<E: Copy> Imu<E> {
         self.tracker.attitude()
     }
 
-    /// Counts of the samples by their effect on the attitude.
+    /// Numbers of samples by their effect on the attitude.
     pub const fn counts(&self) -> Counts {
         self.tracker.counts()
     }

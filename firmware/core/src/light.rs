@@ -26,7 +26,7 @@ pub const FORM: &str = "X,Y,Z[,RRGGBB] or camera[,RRGGBB]";
 /// The first word of the text form of a light at the camera.
 const CAMERA: &str = "camera";
 
-/// The number 1 in the format of a direction, s1.14.
+/// 1 in the format of a direction, s1.14.
 const ONE: i32 = 1 << 14;
 
 /// A light at infinite distance, in a fixed direction or behind the camera.
@@ -69,12 +69,12 @@ impl Light {
         self.towards.is_none()
     }
 
-    /// Returns the light with the direction that it has for a camera: a light at the camera has none before.
+    /// Returns the light as seen from a camera: sets the direction of a light at the camera, and leaves other lights unchanged.
     #[must_use]
     pub fn seen_from(self, view: &View) -> Self {
         let back = view.n().map(|x| {
             let x = (-x.to_bits() + (1 << 8)) >> 9;
-            // The axis may be 10^−4 longer than 1.
+            // The length of the axis may exceed 1 by 10^−4.
             x.clamp(-ONE, ONE) as i16
         });
         Self {
@@ -98,8 +98,8 @@ impl Light {
         self.colour
     }
 
-    /// Parses the text form, such as `1,-2,3`, `0,0,1,ffc080` or `camera`: the direction to the light, of any length, or the camera,
-    /// and the colour, white by default.
+    /// Parses the text form, such as `1,-2,3`, `0,0,1,ffc080` or `camera`: the direction to the light, of any length, or
+    /// `camera`, then the colour, white by default.
     ///
     /// # Errors
     /// The text has another form, or the direction is 0.
@@ -139,7 +139,7 @@ impl fmt::Display for Light {
     }
 }
 
-/// Converts a share in 255ths to a share in 256ths: 255, the whole, becomes 256, which is a power of two.
+/// Converts a fraction from units of 1/255 to units of 1/256, so that 1 becomes a power of two.
 pub const fn whole(part: u8) -> i32 {
     part as i32 + (part >> 7) as i32
 }
@@ -203,11 +203,11 @@ impl Lighting {
         lights: Vec::new(),
     };
 
-    /// Default ambient light for a scene whose lights the user has set.
+    /// Default ambient light of a scene with lights set by the user.
     pub const AMBIENT: Rgb = [0x40; 3];
 
-    /// Returns the default lighting of all materials except `Normal`: the lights are a sun and a sky, whose directions give
-    /// faces different brightness.
+    /// Returns the default lighting of all materials except `Normal`: a sun and a sky, whose directions give each face a
+    /// different brightness.
     pub fn day() -> Self {
         let sun = Light {
             towards: Some([3, -5, 8].map(Q32_32::from_num)),
@@ -225,7 +225,7 @@ impl Lighting {
         }
     }
 
-    /// Returns the lighting with the directions that lights at the camera have for a camera.
+    /// Returns the lighting as seen from a camera: sets the directions of lights at the camera.
     #[must_use]
     pub fn seen_from(mut self, view: &View) -> Self {
         for light in &mut self.lights {
@@ -241,7 +241,8 @@ impl Lighting {
         core::array::from_fn(|face| {
             self.lit(faces[face], |light| {
                 let along = i32::from(light.direction[face / 2]);
-                // The faces are in the order −x, x, −y, y, −z, z, so the normals of odd faces point in the positive direction.
+                // The faces are in the order −x, x, −y, y, −z, z, so faces with odd numbers have normals in the positive
+                // direction.
                 if face % 2 == 1 { along } else { -along }
             })
         })
@@ -300,7 +301,7 @@ impl MeshLighting {
 /// Material of a solid, which determines its colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Material {
-    /// Each face has a colour that depends on its normal; spheres have the colours of the other materials in turn.
+    /// Each face has a colour that depends on its normal; successive spheres have the colours of the other materials.
     #[default]
     Normal,
     /// Reddish brown.
@@ -357,9 +358,9 @@ impl Material {
             while face < colours.len() {
                 let mut i = 0;
                 while i < 3 {
-                    // A face perpendicular to an axis has 130 − 90 or 130 + 100 in the channel of this axis, and 130 in the two
-                    // other channels. Here each component of the normal is 1/√3 in magnitude, so each channel is 130 − 90/√3 or
-                    // 130 + 100/√3.
+                    // The colour of a face perpendicular to an axis is 130 − 90 or 130 + 100 in the channel of this axis, and 130
+                    // in the two other channels. Each component of a diagonal normal is 1/√3 in magnitude, so each channel is 130
+                    // − 90/√3 or 130 + 100/√3.
                     colours[face][i] = if face >> i & 1 == 1 { 188 } else { 78 };
                     i += 1;
                 }
@@ -369,8 +370,8 @@ impl Material {
         colours
     }
 
-    /// The colours of the spheres in full light, by their numbers. All spheres have the material's colour; for `Normal` they have
-    /// the colours of the other materials in turn, so that neighbours differ.
+    /// The colours of the spheres in full light, by their numbers. All spheres have the material's colour; for `Normal`
+    /// successive spheres have the colours of the other materials.
     pub const fn spheres(self) -> [Rgb; MAX_SPHERES] {
         let mut colours = [self.faces()[0]; MAX_SPHERES];
         if let Self::Normal = self {
@@ -399,7 +400,7 @@ impl Material {
 pub enum Background {
     /// White.
     White,
-    /// A sky: blue above, pale at the horizon and below it. Behind meshes it has one colour, that of the horizon.
+    /// A sky: blue above, pale at the horizon and below it. Behind meshes it is the single colour of the horizon.
     Sky,
     /// One colour.
     Colour(Rgb),

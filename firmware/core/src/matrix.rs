@@ -1,8 +1,8 @@
-//! Model matrices: the place of an object in the world.
+//! Model matrices: the position, rotation and scale of an object in the world.
 //!
 //! A [`Matrix`] maps a point P of a mesh to the point A·P + t of the world, with the 3×3 matrix A and the translation t in
-//! Q8.24. Every matrix is in range and not singular: an operation whose result would be out of range or singular is refused, with
-//! an error that names the row. No operation saturates.
+//! Q8.24. Every matrix is in range and not singular: an operation with an out-of-range or singular result fails with an error
+//! that names the row. No operation saturates.
 
 use core::fmt;
 
@@ -27,7 +27,7 @@ pub enum Axis {
     X,
     /// The second axis.
     Y,
-    /// The third axis, which points up.
+    /// The axis z, which points up.
     Z,
 }
 
@@ -46,7 +46,7 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// The matrix that leaves every point in place.
+    /// The identity matrix.
     pub const IDENTITY: Self = {
         let [zero, one] = [Q8_24::ZERO, Q8_24::ONE];
         Self {
@@ -61,9 +61,7 @@ impl Matrix {
     /// Entries are within ±[`MAX_ENTRY`], the translation is within ±[`MAX_TRANSLATION`], every row is at least [`MIN_ROW`] long, and
     /// the sine of the angle between a row and the plane or line through the rows before it is at least 2^−10.
     ///
-    /// # Errors
-    /// The first row that violates a condition.
-    // Not inlined, as the firmware has one copy of each operation.
+    /// # Errors The first row that violates a condition. Not inlined, so that the firmware contains one copy.
     #[inline(never)]
     pub fn new_checked(
         linear: [[Q8_24; 3]; 3],
@@ -126,7 +124,7 @@ impl Matrix {
         rotation
     }
 
-    /// The scaling by a factor for each axis, exactly. A negative factor mirrors.
+    /// The scaling by a factor for each axis, exactly. A negative factor causes a reflection.
     ///
     /// # Errors
     /// A factor is not between 0.001 and 16 in magnitude.
@@ -154,7 +152,7 @@ impl Matrix {
     #[inline(never)]
     pub fn then(&self, next: &Self) -> Result<Self, MatrixError> {
         // An entry is at most 2^28 and a component of the translation at most 2^29, so the sums are below 2^59. The result is at most
-        // 3·16·32 + 32, which is not in the range of Q8.24; it saturates there, far out of the range of a matrix.
+        // 3·16·32 + 32, which exceeds the range of Q8.24; it saturates far outside the range of a matrix.
         let product = |row: [Q8_24; 3], column: [Q8_24; 3], addend: Q8_24| {
             let sum: i64 = core::iter::zip(row, column)
                 .map(|(a, b)| i64::from(a.to_bits()) * i64::from(b.to_bits()))
@@ -193,7 +191,7 @@ impl Matrix {
         self.translation
     }
 
-    /// Whether the determinant is negative, so that the mirror image of the mesh is seen: a front face is then clockwise.
+    /// Whether the determinant is negative, so that the mesh is mirrored and its front faces are clockwise.
     pub const fn mirrors(&self) -> bool {
         self.mirrors
     }
@@ -203,7 +201,7 @@ impl Matrix {
     pub fn normals(&self) -> Normals {
         let rows = self.linear.map(|row| row.map(Q8_24::to_bits));
         let [a, b, c] = rows;
-        // Entries are at most 2^28, and so each product of two is at most 2^57.
+        // Entries are at most 2^28, so the sum of two products is at most 2^57.
         let mut cofactors = [cross(b, c), cross(c, a), cross(a, b)];
         let largest = cofactors
             .as_flattened()
@@ -224,7 +222,8 @@ impl Matrix {
     }
 }
 
-/// Number of the highest bit of the largest cofactor. Normals have components below 2^15, so products stay below 2^62.
+/// Number of the highest bit of the largest cofactor after scaling. Normals have components below 2^15, so products stay below
+/// 2^62.
 const LEAD: u32 = 44;
 
 /// Whether a row is at least [`MIN_ROW`] long.
@@ -232,10 +231,12 @@ fn is_long(row: [i32; 3]) -> bool {
     dot(row, row) >= i64::from(MIN_ROW.to_bits()).pow(2)
 }
 
-/// Returns A/s for a matrix A that is a rotation or a reflection times one scale s, in units of 2^−30; `None` for any other.
+/// Returns A/s, in units of 2^−30, for a matrix A that is a rotation or reflection times a uniform scale s; `None` for any other
+/// matrix.
 ///
-/// The squares of the lengths may differ by a part of 2^−12, and so may the scalar products from 0. A row of length s has s·2^24 units, so
-/// the rounding of its entries alone may exceed this part if s is below 1/128.
+/// The squared lengths of the other rows may differ from that of the first row by 2^−13 of it, and the scalar products of the
+/// rows from 0 by the same amount. A row of length s has s·2^24 units, so the rounding of its entries alone may exceed the
+/// tolerance for s below 1/128.
 fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
     let [a, b, c] = rows;
     let square = dot(a, a);
@@ -251,12 +252,12 @@ fn rotation_of(rows: [[i32; 3]; 3]) -> Option<[[i32; 3]; 3]> {
 
 /// The matrix for the normals of a mesh: the inverse transpose of A, up to a positive factor.
 ///
-/// It is the matrix of the cofactors of A with the sign of the determinant, so nothing is divided.
+/// It is computed without divisions, as the matrix of the cofactors of A with the sign of the determinant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Normals {
     /// The highest bit of the largest cofactor has the number `LEAD`.
     cofactors: [[i64; 3]; 3],
-    /// A divided by its scale, Q2.30, if A is a rotation or a reflection times one scale.
+    /// A divided by its scale, Q2.30, if A is a rotation or reflection times a uniform scale.
     rotation: Option<[[i32; 3]; 3]>,
 }
 
@@ -275,9 +276,10 @@ impl Normals {
         unit::<14>(turned).map_or([0; 3], |x| x.map(|x| x as i16))
     }
 
-    /// A divided by its scale, Q2.30, if A is a rotation or a reflection times one scale, within a part of 2^−12; otherwise
-    /// `None`. Its transpose brings the direction of a light to the mesh, and the normals of the mesh stay as they are. A product of
-    /// up to four matrices with one scale below 1/128 may be `None` too, by the rounding of its entries.
+    /// A divided by its scale, Q2.30, if A is a rotation or reflection times a uniform scale within 2^−12; otherwise `None`. Its
+    /// transpose transforms the direction of a light to the coordinates of the mesh, so the normals of the mesh need no
+    /// transformation. Rounding errors of the entries may also cause `None` for a product of matrices with a uniform scale below
+    /// 1/128.
     pub const fn rotation(&self) -> Option<&[[i32; 3]; 3]> {
         self.rotation.as_ref()
     }
@@ -307,7 +309,7 @@ pub enum MatrixError {
         /// Entries of the row.
         entries: [Q8_24; 3],
     },
-    /// A row of the 3×3 matrix is, nearly, a sum of multiples of the rows before it.
+    /// A row of the 3×3 matrix is nearly a linear combination of the rows before it.
     Singular {
         /// The row.
         row: usize,

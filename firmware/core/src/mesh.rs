@@ -28,7 +28,7 @@ pub const MAX_CHUNK_VERTICES: u32 = u16::MAX as u32;
 /// The largest radius, in units of 2^−14: 2·√3, the distance of the farthest position from the origin, rounded up.
 pub const MAX_RADIUS: u32 = 56_756;
 
-/// Whether a text may be the name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
+/// Whether a text is a valid name of a mesh: 1 to [`MAX_NAME`] visible characters of ASCII.
 pub fn is_name(text: &str) -> bool {
     (1..=MAX_NAME).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_graphic())
 }
@@ -39,7 +39,7 @@ pub struct Mesh<'a> {
     bytes: &'a [u8],
     /// The records of all chunks.
     records: &'a [[u8; WORD]],
-    /// The arrays of the optional attributes.
+    /// The arrays of the optional attributes, after the chunks.
     arrays: &'a [[u8; WORD]],
     attributes: u32,
     vertices: u32,
@@ -177,13 +177,12 @@ impl<'a> Mesh<'a> {
         self.radius
     }
 
-    /// The records of all chunks, including the chunks' headers, and without the optional attributes after them: what the triangle
-    /// engine walks.
+    /// The records that the triangle engine reads: all chunks with their headers, without the optional attributes.
     pub const fn records(&self) -> &'a [[u8; WORD]] {
         self.records
     }
 
-    /// The elements of an optional attribute, one for each vertex of all chunks in their order; `None` if the mesh lacks it.
+    /// The elements of an optional attribute, one for each vertex of all chunks in order; `None` if the mesh lacks the attribute.
     pub fn attribute(&self, attribute: Attribute) -> Option<&'a [u8]> {
         let before = self.attributes & (attribute.bit() - 1);
         let at = array_words(before, self.vertices);
@@ -236,7 +235,7 @@ impl<'a> Chunk<'a> {
         self.triangles.iter().map(Triangle::from_bytes)
     }
 
-    /// Checks the records of the chunk. Its header is at byte `offset` of the mesh, whose radius is `radius`.
+    /// Checks the records of the chunk, whose header is at byte `offset` of a mesh with the given radius.
     fn check(&self, offset: u32, radius: u32) -> Result<(), MeshError> {
         let count = self.vertices.len() as u32;
         let mut offset = offset + WORD as u32;
@@ -280,12 +279,12 @@ impl<'a> Chunk<'a> {
 #[derive(Clone)]
 struct Walk<'a> {
     rest: &'a [[u8; WORD]],
-    /// Offset of `rest` in bytes from the start of the mesh.
+    /// Offset of `rest` from the start of the mesh, in bytes.
     offset: u32,
 }
 
 impl<'a> Walk<'a> {
-    /// The walk from the first record after the mesh's header on.
+    /// Starts at the first record after the mesh's header.
     const fn new(records: &'a [[u8; WORD]]) -> Self {
         Self {
             rest: records,
@@ -359,7 +358,7 @@ impl<'a> Iterator for Chunks<'a> {
     type Item = Chunk<'a>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        // In a checked mesh this is an error only at the end, where no chunk is left.
+        // In a checked mesh an error means the end of the chunks.
         self.0.chunk().ok().map(|(_, chunk)| chunk)
     }
 }
@@ -418,10 +417,10 @@ pub struct MeshError {
     pub found: u32,
 }
 
-/// Expectation that a mesh violates. A variant with a count also holds the name of the counted items.
+/// The content that a mesh should have at the offset. A variant with a count also contains the name of the counted items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
-    /// The four bytes [`MAGIC`].
+    /// The four bytes of [`MAGIC`].
     Magic,
     /// Exactly this number of items.
     Exactly(&'static str, u32),

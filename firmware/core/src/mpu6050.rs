@@ -160,7 +160,7 @@ pub enum Error<E> {
     },
     /// The chip answers, but has no new sample.
     Silent,
-    /// Many successive samples are all equal, so the chip does not measure.
+    /// Many successive samples are equal, so the chip does not measure.
     Frozen,
     /// The chip sent only a part of its sample.
     Cut,
@@ -216,7 +216,7 @@ impl<B: I2c> Mpu6050<B> {
     }
 
     /// Finds the chip at one of its addresses, then resets and configures it, which takes 0.13 s. Without `reset`, a chip that is
-    /// already configured is left as it is.
+    /// already configured stays unchanged.
     ///
     /// # Errors
     /// The chip is absent, unknown, or does not accept its configuration.
@@ -296,11 +296,11 @@ impl<B: I2c> Mpu6050<B> {
 
 /// The bytes of one periodic read: INT_STATUS, the sample, then EXT_SENS_DATA_00, which is 0.
 ///
-/// A master acknowledges the bytes that it receives, so it does not notice a chip that vanishes within them: the released bus
-/// reads as ones. EXT_SENS_DATA_00 shows that the chip was there until the end of its sample.
+/// The master, not the chip, acknowledges received bytes, so it does not detect a chip that vanishes during a read: the released
+/// bus reads as ones. EXT_SENS_DATA_00 verifies that the chip responded until the end of the sample.
 type Burst = [u8; 1 + Measurement::BYTES + 1];
 
-/// Value of a byte that no device sends.
+/// Value that the master reads if no device sends.
 const RELEASED: u8 = 0xff;
 
 impl<B: PeriodicI2c> Mpu6050<B> {
@@ -319,8 +319,8 @@ impl<B: PeriodicI2c> Mpu6050<B> {
         })?)
     }
 
-    /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. Instead of a sample that an
-    /// earlier read already returned, the result is `None`.
+    /// Waits for the next periodic read, and returns the time of its start in µs, and its sample. The sample is `None` if an
+    /// earlier read already returned it.
     ///
     /// # Errors
     /// Errors of the bus, or the chip vanished within the sample.

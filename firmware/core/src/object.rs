@@ -1,4 +1,4 @@
-//! Objects as written on the console and on the command line: the operations that make the position of a mesh.
+//! Text form of objects on the console and the command line: operations that compose the model matrix of a mesh.
 
 use core::fmt;
 
@@ -9,16 +9,16 @@ use crate::light::parse_rgb;
 use crate::matrix::{Axis, Matrix, MatrixError};
 use crate::words::{Word, Words};
 
-/// The place of an object in the world, and its colour.
+/// The placement of an object: its model matrix and its colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     /// The model matrix.
     pub matrix: Matrix,
-    /// Colour instead of those of the mesh.
+    /// Colour that replaces the colours of the mesh.
     pub colour: Option<Rgb565>,
 }
 
-/// An operation on a position.
+/// An operation on a placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
     /// `scale S` or `scale X,Y,Z`.
@@ -53,7 +53,7 @@ const SCALE: &str = "a scale S or X,Y,Z";
 const VECTOR: &str = "a vector X,Y,Z";
 
 impl Default for Place {
-    /// The position of the mesh in its own coordinates, with the colours of the mesh.
+    /// The identity matrix, with the colours of the mesh.
     fn default() -> Self {
         Self {
             matrix: Matrix::IDENTITY,
@@ -65,8 +65,7 @@ impl Default for Place {
 impl Place {
     /// Parses operations, each of which applies to the result of those before it, up to the end of `words`.
     ///
-    /// # Errors
-    /// The text has another form, or a matrix is out of range or singular, which names its row.
+    /// # Errors The text has another form, or a matrix is out of range or singular (the error names its row).
     pub fn parse<'a>(words: &mut Words<'a>) -> Result<Self, PlaceError<'a>> {
         let mut place = Self::default();
         while let Some(word) = words.next() {
@@ -80,11 +79,9 @@ impl Place {
         Ok(place)
     }
 
-    /// Parses the arguments of one operation, and applies it to the default place.
+    /// Parses the arguments of one operation, and applies the operation to the default placement.
     ///
-    /// # Errors
-    /// As [`parse`](Self::parse).
-    // Not inlined, as the firmware has one copy.
+    /// # Errors The errors of [`parse`](Self::parse). Not inlined, so that the firmware contains one copy.
     #[inline(never)]
     pub fn of<'a>(operation: Operation, words: &mut Words<'a>) -> Result<Self, PlaceError<'a>> {
         let mut place = Self::default();
@@ -124,7 +121,7 @@ impl Place {
         Ok(place)
     }
 
-    /// Returns the placement by this one and then by `next`, with the colour of `next` if it has one.
+    /// Composes two placements: applies this one first and `next` second, with the colour of `next` if it has a colour.
     ///
     /// # Errors
     /// The matrix is out of range or singular.
@@ -136,7 +133,7 @@ impl Place {
     }
 }
 
-/// Writes the place as operations that make it again.
+/// Writes the placement as operations that [`parse`](Self::parse) reads back.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str("matrix ")?;
@@ -177,7 +174,7 @@ fn numbers<const N: usize>(text: &str) -> Option<[Q8_24; N]> {
     words.next().is_none().then_some(numbers)
 }
 
-/// Reason why words are not the place of an object.
+/// Reason why words do not describe the placement of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PlaceError<'a> {
     /// Another word was expected.

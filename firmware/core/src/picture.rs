@@ -88,7 +88,7 @@ choices!(Backend {
 /// The edges of a mesh in a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Edges {
-    /// The edges alone, without those that faces hide.
+    /// Only the edges, without the edges that faces hide.
     Hidden,
     /// The edges over the shaded faces.
     Over,

@@ -10,7 +10,7 @@ use crate::trig::PI_Q60;
 const STEPS: usize = 36;
 /// The angles of the steps: atan(2^−i) for i = 0…35, in units of 2^−48 turns, rounded to nearest.
 static ANGLES: [u64; STEPS] = angles();
-/// Each step lengthens the vector. This factor, ∏ cos(atan(2^−i)) with 32 fraction bits, undoes the lengthening by all steps.
+/// Factor that compensates the lengthening of the vector by all steps: ∏ cos(atan(2^−i)), with 32 fraction bits.
 const SHORTENING: u64 = 0x9B74_EDA8;
 
 /// Before the steps, the components are shifted so that the highest bit of the larger component has this number. The steps
@@ -48,13 +48,13 @@ pub fn polar(x: i64, y: i64) -> (i64, Turns) {
             // A vector along the first axis needs no steps, and its length is exact.
             return ((x >> up) << down, Turns((angle >> 16) as u32));
         } else {
-            // `SHORTENING` undoes the lengthening by all steps, so every step must be carried out, even for a vector that already
-            // lies on the axis.
+            // `SHORTENING` compensates the lengthening by all steps, so every step must run, even for a vector that already lies
+            // on the axis.
             (x, y) = (x + turned, y - right);
             angle = angle.wrapping_add(step);
         }
     }
-    // The product is computed in two parts, because each part fits 64 bits.
+    // The product is computed in two parts, each of which fits 64 bits.
     let (upper, lower) = (x as u64 >> 32, x as u64 & u64::from(u32::MAX));
     let length = upper * SHORTENING + ((lower * SHORTENING) >> 32);
     (

@@ -1,4 +1,4 @@
-//! Quality of pictures: presets of the picture's size and of the precision of a field's rays.
+//! Quality of pictures: presets for the picture size and the precision of rays in a distance field.
 
 use crate::choice::choices;
 use crate::picture::Size;
@@ -6,9 +6,9 @@ use crate::picture::Size;
 /// A preset that trades frames per second for accuracy of the picture (docs/scenes.md, "Quality").
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Quality {
-    /// Most frames per second.
+    /// Highest frame rate.
     Fast,
-    /// Few errors, and four times the pixels of [`Fast`](Self::Fast).
+    /// Few errors, and four times as many pixels as [`Fast`](Self::Fast).
     #[default]
     Balanced,
     /// The smallest errors.
@@ -24,20 +24,20 @@ choices!(Quality {
 /// The threshold of a hit: a ray hits where the distance is below `base` + t·2^−`footprint`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Threshold {
-    /// The constant part, in field units with 12 fraction bits.
+    /// The constant part of the threshold, in field units with 12 fraction bits.
     pub base: u32,
     /// The exponent of the part that grows with the ray's parameter t, 7 to 15.
     pub footprint: u32,
 }
 
-/// Settings of a quality.
+/// Settings of a quality preset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Preset {
-    /// Size of the picture, which a monitor shows as 1280×720.
+    /// Size of the picture, which scan-out enlarges to 1280×720.
     pub size: Size,
-    /// Threshold in fields whose faces are perpendicular to an axis: errors lie at edges alone.
+    /// Threshold in fields whose faces are perpendicular to an axis: errors occur only at edges.
     pub faces: Threshold,
-    /// Threshold in round fields, and in those with oblique faces: silhouettes and the normals of spheres show the position of a hit.
+    /// Threshold in fields with spheres or oblique faces, where silhouettes and normals depend on the position of the hit.
     pub round: Threshold,
 }
 
@@ -46,7 +46,7 @@ const fn threshold(base: u32, footprint: u32) -> Threshold {
 }
 
 impl Quality {
-    /// Settings of this quality.
+    /// Settings of this quality preset.
     pub const fn preset(self) -> Preset {
         match self {
             Self::Fast => Preset {
@@ -67,7 +67,7 @@ impl Quality {
         }
     }
 
-    /// Size of the picture.
+    /// Size of this preset's picture.
     pub const fn size(self) -> Size {
         self.preset().size
     }

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-/// Regions begin at multiples of this number of bytes, the width of a memory word.
+/// Alignment of the start of regions, in bytes: the width of a memory word.
 pub const ALIGNMENT: usize = 16;
 
 /// The number of a region.
@@ -10,7 +10,7 @@ pub const ALIGNMENT: usize = 16;
 pub struct Region(usize);
 
 impl Region {
-    /// A region of no memory.
+    /// A region without memory.
     pub const NONE: Self = Self(usize::MAX);
 }
 
@@ -18,7 +18,7 @@ impl Region {
 #[derive(Clone, Debug)]
 pub struct Regions<const N: usize> {
     length: usize,
-    /// The range of each region; an empty one is free.
+    /// The range of each region; an entry with an empty range is free.
     ranges: [Range<usize>; N],
 }
 
@@ -37,7 +37,7 @@ impl<const N: usize> Regions<N> {
         self.length - used
     }
 
-    /// The largest gap; the first one of equals.
+    /// The largest gap; of equal gaps the first.
     pub fn gap(&self) -> Range<usize> {
         let next = |start: usize| {
             let later = self.used().filter(|range| range.start >= start);
@@ -51,8 +51,8 @@ impl<const N: usize> Regions<N> {
             .unwrap_or(0..0)
     }
 
-    /// Makes a region of the first `length` bytes of the largest gap, rounded up to [`ALIGNMENT`]. `None` if the gap is shorter, or if
-    /// there are `N` regions.
+    /// Allocates a region of `length` bytes, rounded up to [`ALIGNMENT`], at the start of the largest gap. `None` if the gap is
+    /// shorter, or if `N` regions exist.
     pub fn keep(&mut self, length: usize) -> Option<Region> {
         let gap = self.gap();
         let length = length.max(1).checked_next_multiple_of(ALIGNMENT)?;
@@ -69,7 +69,7 @@ impl<const N: usize> Regions<N> {
         self.ranges.get(number).cloned().unwrap_or_default()
     }
 
-    /// Makes a region part of the gaps.
+    /// Frees a region.
     pub fn release(&mut self, Region(number): Region) {
         if let Some(range) = self.ranges.get_mut(number) {
             *range = 0..0;
@@ -77,8 +77,8 @@ impl<const N: usize> Regions<N> {
     }
 
     /// Moves all regions to the start of the memory in their order, so that one gap remains. Calls `copy(range, to)` for each
-    /// region that moves, lowest first; `to` is the new position of its first byte. `to` is below `range.start` and not below the end of
-    /// any region already moved.
+    /// region that moves, in the order of their addresses; `to` is the new position of the region's first byte. `to` is below
+    /// `range.start` and not below the end of any region already moved.
     pub fn close_gaps(&mut self, mut copy: impl FnMut(Range<usize>, usize)) {
         let mut end = 0;
         let later = |range: &&mut Range<usize>, end| range.start < range.end && range.start >= end;

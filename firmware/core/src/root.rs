@@ -7,7 +7,7 @@ const fn seeds() -> [u16; 192] {
     let mut table = [0; 192];
     let mut i = 0;
     while i < table.len() {
-        // x is d/128, so the entry is the root of 2^27/d; twice the entry is the root of 2^29/d.
+        // With x = d/128, the entry is √(2^27/d), computed as half of √(2^29/d).
         let d = 129 + 2 * i as u64;
         let root = ((1 << 29) / d).isqrt().div_ceil(2);
         table[i] = if root < 1 << 10 {
@@ -22,7 +22,8 @@ const fn seeds() -> [u16; 192] {
 
 /// Approximates 2^31/√x for x in [1, 4), with 30 fraction bits, by a table and `STEPS` Newton steps y·(3 − x·y²)/2.
 ///
-/// The relative error is at most 4.2e-3 without a step, 2.7e-5 after one, and 4e-9 after two: the words have 31 bits.
+/// The relative error is at most 4.2e-3 without a step, 2.7e-5 after one, and 4e-9 after two, limited by the 31 bits of the
+/// numbers.
 pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
     let seed = SEED[((x >> 24) as usize).saturating_sub(64).min(191)];
     let mut y = u32::from(seed) << 21;
@@ -36,16 +37,16 @@ pub fn inverse_root<const STEPS: u32>(x: u32) -> u32 {
     y
 }
 
-/// Computes the square root to nearest; 65535 for larger ones.
+/// Computes the square root, rounded to nearest, at most 65535.
 ///
-/// The root is x·(1/√x) with one Newton step, at most 2 too small, and the square of the result corrects it.
-// Not inlined, because the linker script places it with the code of camera frames.
+/// The root is x·(1/√x) with one Newton step. It is at most 2 too small, and a comparison of its square with x corrects it.
+// Not inlined, because the linker script places this function with the code of camera frames.
 #[inline(never)]
 pub fn root(square: u32) -> u16 {
     if square == 0 {
         return 0;
     }
-    // The number x·4^n with x in [1, 4), 30 fraction bits.
+    // The number as x·4^n with x in [1, 4); x has 30 fraction bits.
     let (mut x, mut shift) = (square, 14);
     while x < 1 << 30 {
         x <<= 2;

@@ -1,4 +1,4 @@
-//! Stereo: the pictures of two eyes in one picture for coloured glasses (an anaglyph).
+//! Stereo: the pictures for two eyes combined in one picture for coloured glasses (an anaglyph).
 //!
 //! The text form is half the distance between the eyes, the distance of zero parallax, and the colours
 //! of the glasses, such as `0.05,3,red-cyan`.
@@ -33,8 +33,8 @@ choices!(Tint {
 });
 
 impl Tint {
-    /// The pixel of both eyes in RGB565, from the luminance that each sees. Channels are truncated instead of rounded, because the gateware
-    /// composes all eight pixels of a word at once.
+    /// The combined pixel in RGB565, from the luminances for the left and the right eye. Channels are truncated instead of
+    /// rounded, because the gateware composes all eight pixels of a word at once.
     pub fn compose(self, left: u8, right: u8) -> u16 {
         let [red, green, blue] = match self {
             Self::RedBlue => [left, left.min(right), right],
@@ -45,13 +45,13 @@ impl Tint {
     }
 }
 
-/// Two eyes, on both sides of the camera along its direction u.
+/// Settings of a stereo picture, whose two eyes are on both sides of the camera along its direction u.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stereo {
     /// Half separation: the distance from the camera to each eye, in world units, 0 to 1.
     pub half_separation: Q32_32,
-    /// Distance along the camera's direction n at which both eyes see a point at the same position of the picture (zero parallax):
-    /// at least the half separation, and at least 0.1.
+    /// Distance along the camera's direction n at which a point has the same position in the pictures of both eyes (zero
+    /// parallax): at least the half separation, and at least 0.1.
     pub zero_parallax: Q32_32,
     /// Colours of the glasses.
     pub tint: Tint,
@@ -81,8 +81,8 @@ impl Stereo {
         Ok(self)
     }
 
-    /// The cameras of the left and the right eye: beside the eye of `view` along its direction u, with shifted pictures, so that
-    /// both show a point at the distance of zero parallax at the same position.
+    /// The cameras of the left and the right eye: displaced from the eye of `view` along its direction u, with shifted pictures,
+    /// so that a point at the distance of zero parallax has the same position in both pictures.
     pub fn eyes(&self, view: &View) -> [View; 2] {
         let aside = self.half_separation;
         // The quotient of half separation and distance of zero parallax is at most 1, rounded down.
@@ -129,7 +129,7 @@ impl fmt::Display for Stereo {
     }
 }
 
-/// Reason why a text does not describe two eyes.
+/// Reason why a text does not describe stereo settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StereoError<'a> {
     /// The text does not have the form that `FORM` states.

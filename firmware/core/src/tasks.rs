@@ -1,26 +1,27 @@
-//! Tasks that take turns on one processor, which sleeps when all of them wait.
+//! Cooperative tasks on one processor, which sleeps when all tasks wait.
 //!
-//! A task states what it waits for by where it returns [`Turn::Wait`], and nowhere else: the code that finds no work is the condition to
-//! sleep. Two rules make this sound. A task that has worked returns [`Turn::Again`], because another one may wait for its work. An interrupt
-//! since the start of a pass forbids to sleep after it, because a task whose turn was over may wait for the interrupt.
+//! A task returns [`Turn::Wait`] in the code that finds no work; no other code repeats the condition to sleep. Two rules prevent
+//! lost wake-ups. A task that has worked returns [`Turn::Again`], because another task may wait for the result. After an
+//! interrupt during a pass over all tasks the processor does not sleep, because a task whose turn was already over may wait for
+//! this interrupt.
 
-/// The end of a task's turn.
+/// Result of a task's turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Turn {
-    /// The task has worked, or waits for something that raises no interrupt: all tasks get another turn at once.
+    /// The task has worked, or waits for an event without an interrupt: all tasks get another turn at once.
     Again,
     /// The task had nothing to do, and waits for an interrupt or for the work of another task.
     Wait,
 }
 
 impl Turn {
-    /// The turn of a task, from whether it has worked.
+    /// Converts whether a task has worked to the result of its turn.
     pub const fn worked(worked: bool) -> Self {
         if worked { Self::Again } else { Self::Wait }
     }
 }
 
-/// Gives each of the tasks a turn. `Wait` if all of them wait.
+/// Gives each of the tasks a turn. The result is `Wait` if all tasks wait.
 fn pass<T>(all: &mut T, tasks: &[fn(&mut T) -> Turn]) -> Turn {
     let mut turn = Turn::Wait;
     for task in tasks {
@@ -31,8 +32,8 @@ fn pass<T>(all: &mut T, tasks: &[fn(&mut T) -> Turn]) -> Turn {
     turn
 }
 
-/// Gives each of the tasks a turn, and sleeps if all of them wait. `interrupts` counts interrupts; `sleep` gets the count before the first
-/// turn, and must return at once if the count is another one by then.
+/// Gives each of the tasks a turn, and sleeps if all tasks wait. `interrupts` returns the number of interrupts so far. `sleep`
+/// gets this number from before the first turn, and must return at once if the number has changed.
 pub fn step<T>(
     all: &mut T,
     tasks: &[fn(&mut T) -> Turn],
@@ -51,7 +52,8 @@ mod tests {
 
     const TASKS: usize = 3;
 
-    /// Tasks that pass work on: task i does one of its items in a turn, and gives it to the task `next[i]`, if there is one.
+    /// Tasks that pass on work items: in a turn task i processes one of its items, and passes the item to the task `next[i]`, if
+    /// any.
     #[derive(Default)]
     struct World {
         work: [u32; TASKS],
@@ -72,7 +74,7 @@ mod tests {
                     self.work[next] += 1;
                 }
             }
-            // The interrupt comes after the task has looked for work.
+            // The interrupt comes after the task has checked for work.
             if let Some((_, to)) = self.interrupt.take_if(|(turn, _)| *turn == self.turns) {
                 self.work[to] += 1;
                 self.interrupts += 1;
@@ -86,7 +88,7 @@ mod tests {
     fn sleep_begins_only_when_no_task_has_work_left() {
         let tasks: [fn(&mut World) -> Turn; TASKS] =
             [|all| all.turn(0), |all| all.turn(1), |all| all.turn(2)];
-        // Each task but the last of a chain gives its work to one that is before or after it in the order of the turns.
+        // Each task of a chain except the last passes its items to a task that is earlier or later in the order of the turns.
         for chain in [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1]] {
             for first in 0..TASKS {
                 for (turn, to) in (0..12).flat_map(|turn| (0..TASKS).map(move |to| (turn, to))) {

@@ -11,11 +11,11 @@
 //! Other octants are mirrored onto the first one, and the signs are set at the end, so the symmetries hold bit for bit:
 //! sin(−x) = −sin x, cos(−x) = cos x, sin(x + ¼) = cos x, and quarter turns are exact.
 //!
-//! A polynomial of lower order takes less time and has a larger error, see [`sin_cos_q30_order`].
+//! [`sin_cos_q30_order`] offers polynomials of lower order, which take less time and have larger errors.
 
 use crate::fixed::{Q2_30, Turns};
 
-/// Number of steps in an octant, and of nodes in the table, because node 0, where sin = 0 and cos = 1, is not stored.
+/// Number of steps in an octant. The table has the same number of nodes, because node 0 (sin = 0, cos = 1) is not stored.
 const STEPS: u32 = 64;
 /// Length of one step, in units of 2^−32 turns.
 const STEP: u32 = (1 << 29) / STEPS;
@@ -93,8 +93,8 @@ fn octant<const ORDER: u32>(phase: u32) -> [i32; 2] {
     // The polynomial's additions to the node's sine and cosine, with 38 fraction bits; C·x is computed as x − versine·x.
     let sin = e - mul_high(e, versine) - (mul_high(h as i32, s) >> 7);
     let cos = -mul_high(e, s) - ((h as i32 - mul_high(h as i32, versine)) >> 7);
-    // Two successive roundings down equal a single one, so the exact sum (node·2^6 + polynomial) is in effect rounded once, to
-    // the nearest 2^−30. Sines of the octant lie in [0, 0.71], so the unsigned sum does not wrap.
+    // Two successive roundings down equal a single rounding down, so in effect the exact sum (node·2^6 + polynomial) is rounded
+    // once, to the nearest 2^−30. Sines of the octant lie in [0, 0.71], so the unsigned sum does not wrap.
     let sin = s.wrapping_add_signed((sin + 128) >> 6) >> 2;
     let cos = (1 << 30) + ((((cos + 128) >> 6) - versine as i32) >> 2);
     [sin as i32, cos]

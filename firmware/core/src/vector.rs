@@ -4,11 +4,11 @@ use crate::root::inverse_root;
 
 /// Normalises a vector given in any unit; the result is in units of 2^−`BITS`. `None` for the zero vector. `BITS` is at most 30.
 ///
-/// The error of each component is at most 0.501 units, and 2^−29 more if components of 2^31 and above lose bits. A component is at most 1
-/// in magnitude.
+/// The error of each component is at most 0.501 units, plus 2^−29 for vectors with components of 2^31 or more, which lose bits. A
+/// component of the result is at most 1 in magnitude.
 ///
-/// The vector times a reciprocal y of its length s has the length s·y, which is 1 within 2.7e-5. With ε = 1 − (s·y)², the factor
-/// 1 + ε/2 + 3·ε²/8 leaves 5/16·ε³, less than 2^−44.
+/// The vector times a reciprocal y of its length s has the length s·y, which is 1 within 2.7e-5. With ε = 1 − (s·y)², the
+/// correction factor 1 + ε/2 + 3·ε²/8 leaves an error of 5/16·ε³, less than 2^−44.
 pub fn unit<const BITS: u32>(vector: [i64; 3]) -> Option<[i32; 3]> {
     let magnitudes = vector.map(i64::unsigned_abs);
     let [a, b, c] = magnitudes;
@@ -52,13 +52,13 @@ const fn halves(x: u64) -> [u64; 2] {
     [x >> 32, x & 0xFFFF_FFFF]
 }
 
-/// Computes a × b. The components of both are at most 2^30 in magnitude, so those of the product are at most 2^61.
+/// Computes a × b. The components of `a` and `b` are at most 2^30 in magnitude, so the components of the result are at most 2^61.
 pub fn cross(a: [i32; 3], b: [i32; 3]) -> [i64; 3] {
     let product = |i: usize, j: usize| i64::from(a[i]) * i64::from(b[j]);
     [[1, 2], [2, 0], [0, 1]].map(|[i, j]| product(i, j) - product(j, i))
 }
 
-/// Computes a·b. The components of both are at most 2^30 in magnitude, so the product is below 2^62.
+/// Computes a·b. The components of `a` and `b` are at most 2^30 in magnitude, so the result is below 2^62.
 pub fn dot(a: [i32; 3], b: [i32; 3]) -> i64 {
     core::iter::zip(a, b)
         .map(|(a, b)| i64::from(a) * i64::from(b))

@@ -1,9 +1,10 @@
 //! The wireframe simulator: its programs, the motion of the picture by keys, and the projection to the screen (docs/wireframe.md).
 //!
-//! A program is a list of words of 99 bits: the eye, the view plane, the window, segments, and an end. [`Program::new_checked`]
-//! checks the binary form word by word, without a copy; [`text`] is the text form. [`Requests`] holds the keys that were pressed
-//! until the next frame takes one. [`Motion`] is the motion of all segments so far; [`accumulate`] is the rotation of the
-//! original design, which rounds the end points in place and therefore drifts. [`Projection`] maps a moved segment to the screen.
+//! A program is a list of 99-bit instructions: the eye, the view plane, the window, segments, and an end.
+//! [`Program::new_checked`] checks the binary form without a copy; [`text`] implements the text form. [`Requests`] stores the
+//! pressed keys; each frame takes one of them. [`Motion`] is the motion of all segments so far; [`accumulate`] implements the
+//! rotation of the original design, which rounds the end points in place and therefore drifts. [`Projection`] maps a moved
+//! segment to the screen.
 
 pub mod accumulate;
 mod cube;

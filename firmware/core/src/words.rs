@@ -11,7 +11,8 @@ pub struct Word<'a> {
     pub column: usize,
 }
 
-/// Writes the word and its column. A long word is shortened, and characters other than visible ASCII become `?`.
+/// Writes the word and its column for error messages. A long word is shortened, and characters other than visible ASCII become
+/// `?`.
 impl fmt::Display for Word<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         const LONGEST: usize = 24;

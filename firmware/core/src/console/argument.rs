@@ -81,12 +81,12 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// The words that are left, for a parser of its own.
+    /// The remaining words, for an argument with a parser of its own.
     pub const fn words(&mut self) -> &mut Words<'a> {
         &mut self.words
     }
 
-    /// Rejects the word that was taken last: stores the error that `error_of` gives for it.
+    /// Rejects the last word that was taken: stores the error that `error_of` returns for this word.
     #[cold]
     #[inline(never)]
     fn reject_word(&mut self, parameter: &'static Parameter, error_of: ErrorOf) {

@@ -185,7 +185,7 @@ type Read = for<'a> fn(&mut Reader<'a>) -> Option<Command<'a>>;
 enum Entry {
     /// A command of this build: its syntax, and the function that reads its arguments.
     Built { syntax: Syntax, read: Read },
-    /// A command that this build leaves out, and the feature that has it.
+    /// A command that this build leaves out, with the feature that contains it.
     LeftOut {
         name: &'static str,
         feature: Feature,
@@ -261,7 +261,8 @@ pub(super) fn find(name: &str) -> Option<&'static Syntax> {
     entry(name)?.syntax()
 }
 
-/// The words that the command accepts as its argument, without keywords for none; `None` if it accepts other texts.
+/// The words that the command accepts as its first argument, without a keyword that may replace the value; `None` for an argument
+/// that is no list of words.
 pub fn accepted_words(command: &str) -> Option<&'static [&'static str]> {
     match &find(command)?.parameters.first()?.shape {
         Shape::Word(Kind::Words(words) | Kind::Either(_, Kind::Words(words))) => Some(words),

@@ -41,7 +41,7 @@ pub enum Event<'a> {
 /// | Ctrl-L | redraws prompt and line |
 /// | Ctrl-C | cancels the line |
 ///
-/// A zero byte drops the line without an answer, because a zero byte ends the remains of a binary transfer. Other control
+/// A zero byte discards the line without an answer, because it ends the remains of a binary transfer. Other control
 /// characters, unknown escape sequences and bytes beyond ASCII are ignored.
 #[derive(Debug)]
 pub struct LineEditor {
@@ -57,7 +57,7 @@ pub struct LineEditor {
     escape: Escape,
     /// The history, newest line last.
     history: Deque<Line, HISTORY>,
-    /// Which line is shown: 0 is the typed line, 1 the newest line of the history, and higher numbers are older lines.
+    /// Number of the shown line: 0 for the typed line, 1 for the newest line of the history, and higher numbers for older lines.
     shown: usize,
     /// The typed line, while a line of the history is shown.
     typed: Line,
@@ -69,7 +69,7 @@ enum Escape {
     No,
     /// The Escape byte was received.
     Begun,
-    /// Escape and `[` or `O` were received. The value is the decimal number in the sequence, as far as its digits were received.
+    /// Escape and `[` or `O` were received. The value is the decimal number in the sequence, from the digits received so far.
     Number(u8),
 }
 
@@ -229,7 +229,7 @@ impl LineEditor {
         for place in self.line.iter_mut().skip(self.cursor) {
             core::mem::swap(place, &mut carried);
         }
-        // This cannot fail: the check above ensures that the line has room.
+        // This cannot fail: the check above ensures that the line is not full.
         let _ = self.line.push(carried);
         self.cursor += 1;
         echo.write_char(byte.into())?;
@@ -271,10 +271,9 @@ impl LineEditor {
         text(self.line.get(..self.cursor).unwrap_or_default())
     }
 
-    /// Writes prompt and line again, instead of the terminal's line.
+    /// Clears the terminal's line, and writes prompt and line again.
     ///
-    /// # Errors
-    /// Those of `echo`.
+    /// # Errors The errors of `echo`.
     pub fn redraw(&self, echo: &mut dyn Write) -> fmt::Result {
         write!(echo, "\r\x1B[K{PROMPT}{}", self.before())?;
         self.write_tail(echo)

@@ -1,4 +1,4 @@
-//! What commands do to the picture.
+//! Effects of commands on the picture.
 
 use super::command::{Command, Setting};
 use super::object::ObjectAction;
@@ -7,11 +7,11 @@ use super::values::{GestureAction, ImuAction};
 /// Effect of a command on the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Nothing: it shows or measures something, or sets what does not belong to a scene.
+    /// None: the command shows or measures something, or sets state outside the scene.
     None,
-    /// It sets the picture, or what moves the camera. The lines of a scene are such commands.
+    /// The command changes the picture, or the source of camera motion. The lines of a scene are such commands.
     Picture,
-    /// It changes the uploads.
+    /// The command changes the uploads.
     Uploads,
 }
 
@@ -71,7 +71,7 @@ impl Command<'_> {
 }
 
 impl Setting<'_> {
-    /// Each option is one of the picture, except the text over it, which no scene has.
+    /// All options affect the picture of a scene, except the text over the picture, which belongs to no scene.
     const fn effect(&self) -> Effect {
         if let Self::Overlay { .. }
         | Self::Object {

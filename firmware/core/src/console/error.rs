@@ -21,7 +21,7 @@ pub struct ParseError<'a>(pub(super) ParseErrorKind<'a>);
 pub(super) enum ParseErrorKind<'a> {
     /// The first word is not the name of a command.
     Unknown { word: Word<'a> },
-    /// The command of this feature is not in this build.
+    /// This build lacks the feature that contains the command.
     LeftOut { word: Word<'a>, feature: Feature },
     /// The line ends before this parameter.
     Missing {
@@ -72,12 +72,12 @@ pub enum ValueError<'a> {
     Stereo(StereoError<'a>),
     /// The word is not the text form of a light.
     Light(LightError<'a>),
-    /// The words are not the place of an object.
+    /// The words do not describe the placement of an object.
     Place(PlaceError<'a>),
 }
 
 impl<'a> ParseError<'a> {
-    /// The reason why the value of the command is rejected, unless that is its form.
+    /// The error in the command's value; `None` for an error in the form of the line.
     pub fn value(&self) -> Option<impl Display + 'a> {
         match self.0 {
             ParseErrorKind::Value { error, .. } => Some(error),

@@ -1,30 +1,30 @@
-//! Forms of a scene's options outside of the console.
+//! Keys of scene files and options of the command line that correspond to console commands.
 
-/// A command of the console, and how scene files and the command line of `glint` state what it sets.
+/// A console command, with its key in scene files and its option on the command line of `glint`.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// Name of the command.
     pub command: &'static str,
-    /// Its forms.
+    /// Its key and its option.
     pub forms: Forms,
 }
 
-/// How scene files and the command line of `glint` state what a command sets.
+/// The key of scene files, and the option on the command line of `glint`, for the value of a command.
 #[derive(Clone, Copy, Debug)]
 pub struct Forms {
-    /// Name of the key, if it is not that of the command.
+    /// Name of the key, if it differs from the command's name.
     pub key: Option<&'static str>,
-    /// Word of the command before the value of the key.
+    /// Word of the console line between the command's name and the key's value, if any.
     pub action: Option<&'static str>,
-    /// When the command is executed.
+    /// Position of the command in the order of execution.
     pub turn: Turn,
     /// Whether the value may be a list, with a command for each of its members.
     pub is_list: bool,
-    /// The file needs one of these keys beside it; empty: no other key.
+    /// Keys of which the file must also have one; empty if no other key is needed.
     pub with: &'static [&'static str],
-    /// Keys that exclude it.
+    /// Keys that the file must not also have.
     pub without: &'static [&'static str],
-    /// The option of `glint render` and `glint orbit`, if there is one.
+    /// The option of `glint render` and `glint orbit`, if any.
     pub host: Option<HostOption>,
 }
 
@@ -35,20 +35,20 @@ pub struct HostOption {
     pub name: &'static str,
     /// Name of the value in the help.
     pub value: &'static str,
-    /// The value of an option that is given without one.
+    /// Value that an option without a value stands for; `None` for an option with a value.
     pub switch: Option<&'static str>,
     /// Help.
     pub help: &'static str,
-    /// The expected value, for errors.
+    /// Description of the expected value, for errors.
     pub expected: &'static str,
-    /// Whether the option has a meaning without the keys that the command needs.
+    /// Whether the option of a field is also accepted without a field.
     pub is_free: bool,
 }
 
 /// The order in which the commands of a scene file are executed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Turn {
-    /// Quality and size, of which the second one replaces a part of the first.
+    /// Quality, then size, which overrides the size of the quality.
     Size,
     /// The camera, which also sets the lens.
     Camera,
@@ -56,11 +56,11 @@ pub enum Turn {
     Lens,
     /// Any other option.
     Option,
-    /// What the picture shows.
+    /// Content of the picture.
     Subject,
 }
 
-/// The key with the command's name, whose command is executed at this turn.
+/// Makes a key that has the command's name, and whose command is executed at this position.
 pub const fn key(turn: Turn) -> Forms {
     Forms {
         key: None,
@@ -73,7 +73,7 @@ pub const fn key(turn: Turn) -> Forms {
     }
 }
 
-/// An option of the command line with this name, name of its value, and help.
+/// Makes an option of the command line with its name, the name of its value, and its help line.
 pub const fn option(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
     HostOption {
         name,
@@ -85,7 +85,7 @@ pub const fn option(name: &'static str, value: &'static str, help: &'static str)
     }
 }
 
-/// An option of the command line that stands for this value.
+/// Makes an option without a value on the command line, which stands for `value`.
 pub const fn switch(name: &'static str, value: &'static str, help: &'static str) -> HostOption {
     HostOption {
         switch: Some(value),
@@ -94,12 +94,12 @@ pub const fn switch(name: &'static str, value: &'static str, help: &'static str)
 }
 
 impl HostOption {
-    /// With this description of the value in errors.
+    /// Sets the description of the expected value for errors.
     pub const fn expects(self, expected: &'static str) -> Self {
         Self { expected, ..self }
     }
 
-    /// With a meaning without the keys that the command needs.
+    /// Accepts the option also without a field.
     pub const fn free(self) -> Self {
         Self {
             is_free: true,
@@ -109,7 +109,7 @@ impl HostOption {
 }
 
 impl Forms {
-    /// With this name of the key.
+    /// Sets the name of the key.
     pub const fn named(self, key: &'static str) -> Self {
         Self {
             key: Some(key),
@@ -117,7 +117,7 @@ impl Forms {
         }
     }
 
-    /// With this word before the value.
+    /// Sets the word between the command's name and the key's value.
     pub const fn action(self, action: &'static str) -> Self {
         Self {
             action: Some(action),
@@ -125,7 +125,7 @@ impl Forms {
         }
     }
 
-    /// With a value that may be a list.
+    /// Accepts a list as the key's value.
     pub const fn list(self) -> Self {
         Self {
             is_list: true,
@@ -133,12 +133,12 @@ impl Forms {
         }
     }
 
-    /// Beside one of these keys alone.
+    /// Sets the keys of which the file must also have one.
     pub const fn with(self, with: &'static [&'static str]) -> Self {
         Self { with, ..self }
     }
 
-    /// With this option of the command line.
+    /// Sets the option of the command line.
     pub const fn host(self, option: HostOption) -> Self {
         Self {
             host: Some(option),
@@ -146,17 +146,17 @@ impl Forms {
         }
     }
 
-    /// Without these keys.
+    /// Sets the keys that the file must not also have.
     pub const fn without(self, without: &'static [&'static str]) -> Self {
         Self { without, ..self }
     }
 }
 
-/// The keys of meshes.
+/// Keys that show meshes.
 pub const MESHES: &[&str] = &["model", "object"];
-/// The key of a field.
+/// The key that shows a field.
 pub const FIELD: &[&str] = &["field"];
-/// The keys of what has a camera and lights.
+/// Keys whose pictures have a camera and lights.
 pub const LIT: &[&str] = &["model", "object", "field"];
 
 impl Row {

@@ -18,14 +18,14 @@ pub enum ObjectAction<'a> {
     Add {
         /// Name of the mesh.
         mesh: &'a str,
-        /// Its place and colour.
+        /// Its placement and colour.
         place: Place,
     },
     /// Move, turn, scale or colour an object.
     Change {
         /// Number of the object, from 1.
         number: u32,
-        /// The operation that follows those of the object's position, or its new colour.
+        /// The operation to apply after the object's earlier operations, or its new colour.
         next: Place,
     },
     /// Remove the object with this number, from 1; `None` removes all objects.
@@ -139,7 +139,7 @@ impl Argument for Object {
     }
 }
 
-/// The place, if it was accepted; otherwise `None`, and `reader` stores the error.
+/// Returns the placement if it is valid; otherwise stores the error in `reader` and returns `None`.
 fn accepted<'a>(reader: &mut Reader<'a>, place: Result<Place, PlaceError<'a>>) -> Option<Place> {
     place
         .map_err(|error| reader.reject(ValueError::Place(error)))

@@ -11,7 +11,7 @@ pub struct Syntax {
     pub summary: &'static str,
     /// Parameters in their order. Only the last one may be optional.
     pub parameters: &'static [Parameter],
-    /// Whether the line may end before the parameters, to show what they set.
+    /// Whether the line may end before the parameters, which shows the present setting.
     pub is_shown: bool,
 }
 
@@ -22,7 +22,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// Whether the line may end before this parameter.
     pub optional: bool,
-    /// The words that the parameter consists of.
+    /// Form of the words that the parameter consists of.
     pub shape: Shape,
 }
 
@@ -114,7 +114,7 @@ impl Syntax {
         }
     }
 
-    /// The syntax of a command that shows what it sets, or not.
+    /// Sets whether the command without arguments shows the present setting.
     pub const fn or_show(self, is_shown: bool) -> Self {
         Self { is_shown, ..self }
     }

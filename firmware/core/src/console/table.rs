@@ -16,7 +16,7 @@
 ///
 /// Each `Type` implements [`Argument`](super::argument::Argument). A build without the [feature](crate::feature) leaves the command out;
 /// a command without `in FEATURE` is in every build. An option with `or show` is shown if the line ends after its name. The
-/// [`Forms`](super::forms::Forms) state how scene files and other programs state what the command sets.
+/// [`Forms`](super::forms::Forms) define the key of scene files and the option of `glint` that correspond to the command.
 ///
 /// The macro generates the enumerations `Command`, `Setting` and `OptionName`, the list `COMMANDS` for parser, help and completion, the
 /// list `FORMS`, and a trait per subject with one method per command.
@@ -30,8 +30,8 @@ macro_rules! commands {
             $($option:ident $value:ident($($part:ident: $form:ty),+ $(,)?) $(or $shown:ident)? $(in $of:ident)?: $help:literal $(=> $stated:expr)?;)*
         }
     )+) => {
-        /// A command with its arguments. Each argument is in its range. The state of the machine may still exclude the command; its
-        /// handler checks this.
+        /// A command with its arguments. Each argument is in its range. The handler of the command checks whether the state of
+        /// the machine permits the command.
         #[derive(Clone, Copy, Debug, PartialEq)]
         #[expect(
             clippy::large_enum_variant,
@@ -140,7 +140,7 @@ macro_rules! commands {
             )*
         )+];
 
-        /// The forms of what commands set, outside of the console, in the order of the help.
+        /// The keys and options that correspond to commands, in the order of the help.
         pub static FORMS: &[Row] = &[$(
             $($(Row { command: stringify!($name), forms: $forms },)?)+
             $($(Row { command: stringify!($option), forms: $stated },)?)*
@@ -157,14 +157,14 @@ macro_rules! commands {
         )+
 
         impl<'a> Command<'a> {
-            /// Executes the command: calls the method of `executor` that has the command's name, or that for all options.
+            /// Executes the command: calls the method of `executor` with the command's name, or the common method of all options.
             pub fn execute<E: $($subject<'a> +)+>(self, executor: &mut E) -> E::Output {
                 match self {
                     Self::Set(setting) => executor.set(setting),
                     Self::Show(option) => executor.show(option),
                     $($(
                         Self::$variant { $($argument),* } => {
-                            // The parser makes no command of another part.
+                            // The parser returns only commands of this build; the condition lets the compiler remove the call.
                             if part!($($feature)?).is_built {
                                 executor.$name($($argument),*)
                             } else {
@@ -175,7 +175,7 @@ macro_rules! commands {
                 }
             }
 
-            /// The part of the firmware that has the command.
+            /// The feature that contains the command.
             pub const fn feature(&self) -> Feature {
                 match self {
                     Self::Set(setting) => setting.name().feature(),
@@ -195,7 +195,7 @@ macro_rules! commands {
         }
 
         impl OptionName {
-            /// The part of the firmware that has the option.
+            /// The feature that contains the option.
             pub const fn feature(self) -> Feature {
                 match self {
                     $($(Self::$value => part!($($of)?),)*)+
@@ -205,7 +205,7 @@ macro_rules! commands {
     };
 }
 
-/// Whether an option with this mark, or without one, is shown.
+/// Whether an option can be shown: `true` for the entry `or show` of the table.
 macro_rules! shows {
     () => {
         false
@@ -215,7 +215,7 @@ macro_rules! shows {
     };
 }
 
-/// The part of the firmware with this name, or the one of every build.
+/// The feature with this name, or without a name the feature of every build.
 macro_rules! part {
     () => {
         $crate::feature::BASE

@@ -307,7 +307,7 @@ group! {
 }
 
 group! {
-    /// A camera by its eye and the direction of its gaze, with z up on the screen.
+    /// A camera given by its eye and its direction of view, with z up on the screen.
     LookAt: camera::View = (ex: Q32_32, ey: Q32_32, ez: Q32_32, gx: Q32_32, gy: Q32_32, gz: Q32_32, up: Option<Up>)
         => camera::View::towards([ex, ey, ez], [gx, gy, gz], up.unwrap_or(camera::UP)).map_err(ValueError::View)
 }
@@ -349,7 +349,7 @@ pub enum ImuAction {
     Calibrate(u32),
     /// Print this number of samples; `None` prints samples until the next command.
     Stream(Option<u32>),
-    /// Let the sensor steer the camera in this way; `None` stops the steering.
+    /// Let the sensor steer the camera in this mode; `None` stops the steering.
     Follow(Option<Follow>),
     /// Turn the steered camera about the vertical, back to heading 0.
     Recentre,
@@ -404,17 +404,17 @@ group! {
 pub enum GestureAction {
     /// Set up the image sensor for 320×240, and let the hand steer the camera.
     On,
-    /// The same for 640×480.
+    /// Set up the image sensor for 640×480, and let the hand steer the camera.
     Vga,
     /// Turn the image sensor off; the camera stays.
     Off,
-    /// Find the windows of the hand's colour.
+    /// Find the ranges of the hand's colour (calibrate).
     Calibrate,
-    /// Send a small picture of the pixels of the hand's colour.
+    /// Send a small picture that marks the pixels of the hand's colour.
     Mask,
     /// Draw the position of the hand in a corner of the picture.
     Mark,
-    /// Draw it no longer.
+    /// Stop drawing the position of the hand.
     Unmark,
 }
 
@@ -441,7 +441,7 @@ pub enum DemoAction {
     Previous,
     /// Keep the shown scene.
     Hold,
-    /// Go on after `hold`.
+    /// Continue after `hold`.
     Run,
 }
 

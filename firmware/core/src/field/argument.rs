@@ -1,11 +1,11 @@
-//! The numbers of a field: parsed from text, or drawn at random from the same ranges.
+//! The parameters of a field: parsed from text, or random within the same ranges.
 
 use super::error::FieldError;
 use super::limits::MAX_SPHERES;
 use crate::fixed::{Q32_32, Turns};
 
-/// A source of a field's numbers. Each kind of field requests its numbers by name and range, so that the ranges are stated once
-/// for parser, error messages and random tests.
+/// A source of a field's parameters. Each kind of field requests its parameters by name and range, so parser, error messages and
+/// random tests share one definition of the ranges.
 pub trait Arguments<'a> {
     /// Returns the next number, after checking that it is within `range` (both ends included).
     ///
@@ -15,8 +15,7 @@ pub trait Arguments<'a> {
 
     /// Returns the next number, after checking that it is an integer within `range` (both ends included).
     ///
-    /// # Errors
-    /// The same as those of [`number`](Self::number).
+    /// # Errors The errors of [`number`](Self::number).
     fn integer(&mut self, name: &'static str, range: [u8; 2]) -> Result<u8, FieldError<'a>>;
 
     /// Returns the next number as an angle, which is stated in degrees; 0 if the number is missing.
@@ -49,7 +48,7 @@ pub(in crate::field) fn check(
 pub(in crate::field) struct Words<'a> {
     kind: &'a str,
     words: core::str::Split<'a, char>,
-    /// The text of the groups that are not yet read; `None` after the last group.
+    /// Text of the groups after the present one; `None` after the last group.
     rest: Option<&'a str>,
     in_group: bool,
 }
@@ -79,7 +78,7 @@ impl<'a> Words<'a> {
             .ok_or(FieldError::Missing { kind, name })
     }
 
-    /// Checks that no number is left in the present group, or in the whole text if `group` was not called.
+    /// Checks that the present group, or the whole text before the first call of `group`, has no further number.
     pub fn end(&mut self) -> Result<(), FieldError<'a>> {
         let kind = self.kind;
         self.word()
@@ -131,7 +130,7 @@ impl<'a> Arguments<'a> for Words<'a> {
     }
 }
 
-/// A source of random numbers for tests and test vectors: each number is an end of its range or a value between the ends.
+/// A source of random numbers for tests and test vectors: each number is the minimum, the maximum or an inner value of its range.
 #[derive(Debug)]
 pub struct Random<F> {
     bits: F,

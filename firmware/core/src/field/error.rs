@@ -16,11 +16,11 @@ pub enum FieldError<'a> {
         /// Text form and description of every kind.
         kinds: &'static [(&'static str, &'static str)],
     },
-    /// This build leaves the kind out.
+    /// This build lacks the kind.
     LeftOut {
         /// The kind.
         kind: &'a str,
-        /// The part of the firmware that has it.
+        /// The feature that contains the kind.
         feature: Feature,
     },
     /// A number is missing.
@@ -44,7 +44,7 @@ pub enum FieldError<'a> {
         /// The word.
         word: &'a str,
     },
-    /// The text of a union does not name two kinds that can be its members.
+    /// The text of a union does not name two kinds that a union accepts.
     Union,
     /// The number of spheres is 0 or above [`MAX_SPHERES`].
     Spheres,

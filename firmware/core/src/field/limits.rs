@@ -11,8 +11,8 @@ pub const SMALLEST: Q32_32 = Q32_32::lit("0.01");
 /// The largest number of spheres of a field.
 pub const MAX_SPHERES: usize = 8;
 
-/// The largest accepted half side or radius in a field with this period: half the period less a unit of coordinates, of which the
-/// period has 2^18, so that neighbours have a slit between them after rounding.
+/// The largest accepted half side or radius in a field with this period: half the period minus one unit of coordinates
+/// (period/2^18), so that a gap between neighbours remains after rounding.
 pub fn largest_half(period: Q32_32) -> Q32_32 {
     period / 2 - Q32_32::from_bits((period.to_bits() >> 18) + 1)
 }

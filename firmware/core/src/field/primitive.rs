@@ -82,7 +82,7 @@ macro_rules! primitives {
             pub fn placed(&self) -> Placed<Solid> {
                 match self {
                     $(Self::$kind(shape) if is_built::<$shape>() => shape.placed().map(Into::into),)*
-                    // No field is of a kind that this build leaves out.
+                    // The parser rejects the kinds that this build lacks, so this branch is not reached.
                     _ => Placed::endless(FixedBox::of(&FlatConstants::default()).into()),
                 }
             }
@@ -147,7 +147,7 @@ macro_rules! flat_solids {
                 }
             }
 
-            /// The solid's constants, in the form of the gateware's registers.
+            /// The solid's constants, as the gateware's registers hold them.
             pub fn constants(&self) -> FlatConstants {
                 match self {
                     $(Self::$solid(solid) => solid.constants(),)*

@@ -26,13 +26,13 @@ pub trait Shape: Sized {
     /// Whether the faces are perpendicular to the diagonals instead of the axes.
     const OCTANTS: bool = false;
 
-    /// Reads the numbers of a field of this kind, from a text or at random.
+    /// Reads the parameters of a field of this kind from `arguments`, which parses a text or generates random numbers.
     ///
     /// # Errors
     /// A number is missing, malformed or out of range.
     fn read<'a>(numbers: &mut impl Arguments<'a>) -> Result<Self, FieldError<'a>>;
 
-    /// Writes the numbers of the field as they stand in the text form.
+    /// Writes the parameters of the field as in the text form.
     ///
     /// # Errors
     /// The formatter reports an error.
@@ -65,7 +65,7 @@ pub fn scale_of(period: Q32_32) -> Q32_32 {
 }
 
 impl<S> Placed<S> {
-    /// Places a solid without a period whose bounding box has the half sides `extent`.
+    /// Scales a solid without a period whose bounding box has the half sides `extent`.
     pub const fn bounded(solid: S, extent: [Q32_32; 3]) -> Self {
         Self {
             solid,
@@ -74,7 +74,7 @@ impl<S> Placed<S> {
         }
     }
 
-    /// Places an unbounded solid without a period.
+    /// Scales an unbounded solid without a period.
     pub const fn endless(solid: S) -> Self {
         Self {
             solid,
@@ -120,9 +120,9 @@ pub trait FlatSolid: Sized {
 pub struct FlatConstants {
     /// [`FlatSolid::CODE`].
     pub kind: u8,
-    /// Which levels of the sponge are evaluated, the first level in bit 0.
+    /// Levels of the sponge to evaluate, one bit per level, the first level in bit 0.
     pub levels: u8,
-    /// Axes along which the box has faces, x in bit 0.
+    /// Axes along which the box has faces, one bit per axis, x in bit 0.
     pub has: u8,
     /// Whether the solid is outside the box.
     pub room: bool,
@@ -130,6 +130,6 @@ pub struct FlatConstants {
     pub repeated: bool,
     /// Half the side of a sponge's smallest cubes, u10.12.
     pub cube_half: u32,
-    /// Half the sides of a box along x, y and z, u10.12. An octahedron has its size in the first number.
+    /// Half the sides of a box along x, y and z, u10.12. For an octahedron, the first number is its size.
     pub half: [u32; 3],
 }

@@ -85,7 +85,7 @@ pub const fn cropped(x: i32, bits: u32) -> i32 {
     x << beyond >> beyond
 }
 
-/// Returns the magnitude of a number without the carry of a negation: |x| for x ≥ 0, |x| − 1 for x < 0.
+/// Returns the ones' complement magnitude of a number, which needs no carry: |x| for x ≥ 0, |x| − 1 for x < 0.
 pub const fn magnitude(x: i32) -> u32 {
     (x ^ (x >> 31)) as u32
 }

@@ -33,8 +33,7 @@ impl Union {
 
     /// Makes a union of two fields, its members, with a fillet of the width `blend` in world units; 0 means no fillet.
     ///
-    /// # Errors
-    /// The members are not of a flat and a round kind that unions accept, or the width is out of range.
+    /// # Errors `flat` or `round` is of a kind that unions do not accept, or the width is out of range.
     pub fn new(
         flat: Primitive,
         round: Primitive,
@@ -60,8 +59,8 @@ impl Union {
         &self.round
     }
 
-    /// Width of the fillet in world units: within the fillet, the distances to both members differ by at most this width. 0
-    /// means no fillet.
+    /// Width of the fillet in world units: the fillet covers points whose distances to the two members differ by at most this
+    /// width. 0 means no fillet.
     pub const fn blend(&self) -> Q32_32 {
         self.blend
     }

@@ -24,11 +24,11 @@ pub struct Piece {
 /// Reason why an image cannot be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EncodeError {
-    /// This part is too long: the largest length and its own, in bytes.
+    /// A part is too long: its name, the largest length, and its length, both in bytes.
     Long(&'static str, usize, usize),
-    /// Too many items: the largest number and that of the items.
+    /// Too many items: the largest number of items, and their number.
     Items(usize, usize),
-    /// A part that the format refuses.
+    /// A part violates its format.
     Part(FlashError),
 }
 
@@ -83,7 +83,7 @@ fn contents(pieces: &[Piece]) -> Vec<u8> {
     let list = list_end(pieces.len());
     let mut bytes = alloc::vec![0; FlashHeader::BYTES];
     for piece in pieces {
-        // A name that is too long has no end here, and the check refuses it.
+        // A name that is too long is truncated; the check then finds no terminating zero and rejects it.
         let mut name = [0; FlashEntry::NAME.end - FlashEntry::NAME.start];
         for (to, byte) in name.iter_mut().zip(piece.name.as_bytes()) {
             *to = *byte;

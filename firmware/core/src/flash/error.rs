@@ -13,7 +13,7 @@ pub struct FlashError {
     pub found: u32,
 }
 
-/// Expectation that an image violates. A variant with a count also holds the name of the counted items.
+/// The content that an image should have at the offset. A variant with a count also holds the name of the counted items.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// These four bytes.
@@ -28,7 +28,7 @@ pub enum Expected {
     Crc32(u32),
     /// The code of a kind of items.
     Kind,
-    /// The first character of a name.
+    /// A first character of a name.
     Name,
     /// A character of a text.
     Text,
@@ -47,10 +47,9 @@ impl fmt::Display for FlashError {
 }
 
 impl FlashError {
-    /// Writes what was found.
+    /// Writes the found content.
     ///
-    /// # Errors
-    /// Those of `f`.
+    /// # Errors The errors of `f`.
     pub fn write_found(&self, f: &mut impl fmt::Write) -> fmt::Result {
         let found = self.found;
         match self.expected {

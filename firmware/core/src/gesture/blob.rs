@@ -5,7 +5,7 @@ use core::fmt;
 use crate::fixed::{U0_16, U20_12};
 use crate::root::root;
 
-/// A rectangle of pixels of a camera frame. Its corners belong to it.
+/// A rectangle of pixels of a camera frame. It includes its corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Region {
     /// Coordinates x and y of the top left pixel.
@@ -21,7 +21,7 @@ impl Region {
         last: [u16::MAX; 2],
     };
 
-    /// Width and height in pixels. They are 0 for a rectangle whose corners are exchanged.
+    /// Width and height in pixels. They are 0 if the corners are exchanged.
     pub const fn size(&self) -> [u32; 2] {
         let [left, top] = self.first;
         let [right, bottom] = self.last;
@@ -31,14 +31,14 @@ impl Region {
         ]
     }
 
-    /// Number of its pixels; saturates.
+    /// Number of pixels in the rectangle; saturates.
     pub const fn area(&self) -> u32 {
         let [columns, rows] = self.size();
         columns.saturating_mul(rows)
     }
 
-    /// Returns the rectangle enlarged on each side by the numbers of columns and rows `margin`. It begins in the frame, and may end
-    /// beyond it.
+    /// Returns the rectangle enlarged on each side by `margin` columns and rows. Its start is clamped to the frame; its end may
+    /// be outside.
     #[must_use]
     pub const fn grown(&self, margin: [u16; 2]) -> Self {
         let [left, top] = self.first;
@@ -54,32 +54,33 @@ impl Region {
 /// Statistics of one camera frame, as counted by the gesture engine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Statistics {
-    /// Columns and rows of the frame, as received.
+    /// Number of columns and rows of the received frame.
     pub size: [u16; 2],
     /// Number of pixels of the hand's colour.
     pub count: u32,
     /// Sums of the x and of the y coordinates of these pixels. The top left pixel of the frame is (0, 0).
     pub sums: [u32; 2],
-    /// Bounding box of these pixels. It has no meaning if there are none.
+    /// Bounding box of these pixels. It has no meaning without such pixels.
     pub bounds: Region,
-    /// Whether the frame was received without a fault.
+    /// Whether the frame was received without an error.
     pub is_whole: bool,
 }
 
 /// Reason why a camera frame does not show a hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Doubt {
-    /// There was no frame yet.
+    /// No frame has been received yet.
     Missing,
-    /// The frame was received with a fault.
+    /// The frame was received with an error.
     Faulty,
     /// Fewer pixels than 1/1024 of the frame have the hand's colour.
     Few,
     /// More pixels than 7/8 of the frame have the hand's colour.
     Most,
-    /// The statistics contradict themselves: the centre is outside the bounds, or there are more pixels than the bounds hold.
+    /// The statistics contradict themselves: the centre is outside the bounds, or the number of pixels exceeds the area of the
+    /// bounds.
     Contradiction,
-    /// The pixels fill little of their bounds, so they are more than one blob, or noise.
+    /// The pixels fill only a small part of their bounds, so they are several blobs or noise.
     Scattered,
     /// The area changed by more than a factor of 1.5 since the last frame.
     Jump,
@@ -99,12 +100,12 @@ impl fmt::Display for Doubt {
     }
 }
 
-/// A hand must have at least this part of the frame's pixels: 2^−10. This constant is the exponent.
+/// Exponent of the smallest part of the frame's pixels that a hand must have: 2^−10.
 const LEAST_AREA: u32 = 10;
-/// A hand of 2^2 times the least area has full confidence. This constant is the exponent.
+/// Exponent of the factor on the smallest area from which on the area gives full confidence: 2^2.
 const FULL_AREA: u32 = 2;
-/// Parts of the bounds that the pixels fill, in 1/256, at which the confidence begins and is full: 1/8 and 3/8. A hand fills
-/// about half of its bounds.
+/// Filled parts of the bounds, in 1/256, at which the confidence starts to rise and at which it is full: 1/8 and 3/8. A hand
+/// fills about half of its bounds.
 const FILL: [u32; 2] = [32, 96];
 /// Smallest [`Blob::confidence`] with which a hand is accepted, in units of 1/256.
 pub const LEAST_CONFIDENCE: u8 = 64;
@@ -112,24 +113,25 @@ pub const LEAST_CONFIDENCE: u8 = 64;
 /// The hand in one camera frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blob {
-    /// Number of its pixels.
+    /// Number of the hand's pixels.
     pub count: u32,
-    /// Coordinates x and y of its centre of mass; the centre of the frame's top left pixel is (0, 0). Rounded down to 2^−12
-    /// pixels.
+    /// Coordinates x and y of the hand's centre of mass, rounded down to 2^−12 pixels; the centre of the frame's top left pixel
+    /// is (0, 0).
     pub centre: [U20_12; 2],
-    /// The square root of its part of the frame's area: the side of a square of this area, as part of the frame's. Rounded to nearest.
+    /// Width of the hand: the square root of the ratio of the hand's area to the frame's area. Rounded to nearest.
     pub width: U0_16,
-    /// Bounding box of its pixels.
+    /// Bounding box of the hand's pixels.
     pub bounds: Region,
 }
 
 impl Blob {
-    /// Confidence that this is one hand in a frame of `size` columns and rows, in units of 1/256. It grows with the area, from
-    /// the least area to four times that, and with the part of the bounds that the pixels fill, from 1/8 to 3/8.
+    /// Confidence that the blob is a single hand in a frame of `size` columns and rows, in units of 1/256. It grows with the
+    /// area, from the smallest area to four times this area, and with the part of the bounds that the pixels fill, from 1/8 to
+    /// 3/8.
     pub fn confidence(&self, size: [u16; 2]) -> u8 {
         let least = least_area(u32::from(size[0]) * u32::from(size[1]));
         let certain = ramp(self.count / (least >> 2).max(1), [4, 4 << FULL_AREA]);
-        // A rectangle beyond 2^24 pixels is filled by less than 1/16, because a frame is smaller than 2^20 pixels.
+        // The pixels fill less than 1/16 of a rectangle of more than 2^24 pixels, because a frame has fewer than 2^20 pixels.
         let within = self.bounds.area().clamp(1, 1 << 24);
         let filled = ramp((self.count << 8) / within, FILL);
         ((certain * filled) >> 8) as u8
@@ -199,12 +201,13 @@ pub fn quotient(number: u32, divisor: u32) -> u32 {
     whole << 12 | fraction(number - whole * divisor, divisor)
 }
 
-/// Computes 12 fraction bits of the quotient of `rest` and `divisor`; the rest is below the divisor, which is below 2^20.
+/// Computes 12 fraction bits of the quotient of `rest` and `divisor`, where `rest` < `divisor` < 2^20.
 const fn fraction(rest: u32, divisor: u32) -> u32 {
     (rest << 12) / divisor
 }
 
-/// Returns 0 below the first limit, 255 from the second one on, and the linear interpolation between them. Limits are below 2^24.
+/// Returns 0 below the first limit, 255 from the second limit on, and a linear interpolation between the limits. Limits are below
+/// 2^24.
 fn ramp(number: u32, [low, high]: [u32; 2]) -> u32 {
     (number.clamp(low, high) - low) * 255 / (high - low)
 }

@@ -1,8 +1,8 @@
-//! The window of the hand's colour, found from a small picture of a hand in the middle of the frame.
+//! Calibration of the hand's colour: finds its ranges of chroma from a small picture of a hand in the middle of the frame.
 
 use core::fmt;
 
-/// The accepted values of a chroma channel. Both ends belong to the window.
+/// The accepted range (window) of a chroma channel, including both ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// The smallest value.
@@ -12,7 +12,7 @@ pub struct Window {
 }
 
 impl Window {
-    /// Whether the window holds the value.
+    /// Whether the value is in the window.
     pub const fn holds(self, value: u8) -> bool {
         self.lower <= value && value <= self.upper
     }
@@ -25,16 +25,16 @@ pub struct Calibrated {
     pub windows: [Window; 2],
     /// Share of the samples in the box that are in both windows, in percent.
     pub inside: u8,
-    /// Samples outside the box that are in both windows, in percent.
+    /// Share of the samples outside the box that are in both windows, in percent.
     pub outside: u8,
 }
 
 /// Reason why a calibration failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CalibrationError {
-    /// The picture has fewer samples than its size says, or fewer than [`LEAST_SAMPLES`] are in the box.
+    /// The picture has fewer samples than its size requires, or the box has fewer than [`LEAST_SAMPLES`].
     Samples,
-    /// The box does not show one colour: the middle 80 % of a channel's values, which is given, span more than [`WIDEST`].
+    /// The box shows several colours: the middle 80 % of a channel's values span more than [`WIDEST`]. The value is this span.
     Colours(u8),
     /// Too few samples of the box are in both windows, in percent: the box shows several colours.
     Inside(u8),
@@ -69,21 +69,22 @@ impl fmt::Display for CalibrationError {
 pub const LEAST_SAMPLES: u32 = 16;
 /// Largest span of the middle 80 % of a channel's values in the box.
 pub const WIDEST: u8 = 48;
-/// Smallest part of the box that must be in both windows, in percent.
+/// Smallest accepted share of the box's samples in both windows, in percent.
 const LEAST_INSIDE: u8 = 70;
-/// Largest part of the rest that may be in both windows, in percent.
+/// Largest accepted share of the samples outside the box in both windows, in percent.
 const MOST_OUTSIDE: u8 = 25;
-/// The window reaches at least this far beyond the middle 80 % of the values.
+/// Smallest margin of the window beyond the middle 80 % of the values.
 const MARGIN: u8 = 4;
 
-/// Finds the windows of Cr and Cb of a hand that covers the box in the middle of the frame: a quarter of its width and of its height.
+/// Finds the windows of Cr and Cb of a hand that covers the box in the middle of the frame. The box has a quarter of the frame's
+/// width and height.
 ///
-/// `samples` are Cr and Cb of a picture of `columns` times `rows` samples, line by line from the top left; they are read twice. For
-/// each channel the window is the range of the box's values without the lowest and highest tenth, widened on both sides by half
-/// of its span, at least by 4. The values beyond the tenths are seams of the box, highlights and noise.
+/// `samples` are Cr and Cb of a picture of `columns` times `rows` samples, line by line from the top left; the iterator is read
+/// twice. For each channel the window is the range of the box's values without the lowest and highest tenth, widened on both
+/// sides by half of its span, at least by 4. The values in the lowest and highest tenth are edges of the hand, highlights and
+/// noise.
 ///
-/// # Errors
-/// The box does not show one colour, or much of the background has this colour too.
+/// # Errors The box shows several colours, or much of the background has the hand's colour too.
 pub fn calibrate(
     columns: u16,
     rows: u16,
@@ -122,7 +123,7 @@ pub fn calibrate(
             *(if is_boxed { &mut inside } else { &mut outside }) += 1;
         }
     }
-    // The box is at most a fourth of a picture of at least 16 samples, so the rest is not empty.
+    // The box is at most a fourth of a picture of at least 16 samples, so some samples are outside the box.
     let percent = |part: u32, whole: u32| (u64::from(part) * 100 / u64::from(whole.max(1))) as u8;
     let found = Calibrated {
         windows,

@@ -1,4 +1,4 @@
-//! The camera's control: presence of the hand, filters, hold and return.
+//! Control of the camera by the hand: presence of the hand, filters, hold and return.
 
 use core::fmt;
 
@@ -8,46 +8,47 @@ use super::target::{DISTANCES, POLARS, target};
 use crate::camera::{View, ViewError};
 use crate::fixed::{Q4_28, Q32_32, Turns, U16_16, U20_12};
 
-/// Smallest number of pixels in a run that the engine counts, in the whole frame: a run of noise pixels is so long in one of 1,000
-/// frames of 320×240 with 5 % of noise pixels.
+/// Smallest run of pixels that the engine counts in the whole frame. With 5 % of noise pixels, one of 1,000 frames of 320×240 has
+/// a noise run of this length.
 pub const RUN_SEARCHING: u8 = 6;
-/// The same in the region around a hand in motion, where less noise comes in, and narrow parts of the hand are to count.
+/// Smallest run that counts in the region around a hand in motion: shorter, because the region contains less noise, and so that
+/// narrow parts of the hand count.
 pub const RUN_MOVING: u8 = 4;
-/// The same in the smaller region around a hand at rest: the tips of fingers that are 5 pixels wide are to count.
+/// Smallest run that counts in the smaller region around a hand at rest, so that fingertips 5 pixels wide count.
 pub const RUN_RESTING: u8 = 3;
-/// Time for which a hand that was lost is awaited in its region, in µs. Afterwards it is searched for in the whole frame. It is also the
-/// longest time between two frames after which tracking continues.
+/// Time in µs for which a lost hand is searched for in its region only. Afterwards it is searched for in the whole frame. It is
+/// also the longest time between two frames after which tracking continues.
 pub const PATIENCE: u32 = 250_000;
 /// Number of successive frames that must show a hand before it moves the camera.
 const FRAMES: u8 = 3;
 
-/// Tuning for azimuth and polar angle, in turns.
+/// Filter parameters for azimuth and polar angle, in turns.
 pub const ANGLE: Tuning = Tuning {
     cutoff: U16_16::lit("1"),
     slope: U16_16::lit("120"),
     speed_cutoff: U16_16::lit("4"),
 };
-/// Tuning for the distance, in world units. The whole range is 3 units, so the slope is less than that of the angles.
+/// Filter parameters for the distance, in world units. The whole range is 3 units, so the slope is smaller than for the angles.
 pub const DISTANCE: Tuning = Tuning {
     cutoff: U16_16::lit("1"),
     slope: U16_16::lit("8"),
     speed_cutoff: U16_16::lit("2"),
 };
-/// Tunings and dead zones of azimuth, polar angle and distance: zones of 0.06° and 1/256 world unit.
+/// Filter parameters and dead zones of azimuth, polar angle and distance. The zones are 0.06° and 1/256 world unit.
 pub const CHANNELS: [(Tuning, Q4_28); 3] = [
     (ANGLE, Q4_28::lit("0.000166")),
     (ANGLE, Q4_28::lit("0.000166")),
     (DISTANCE, Q4_28::lit("0.00390625")),
 ];
-/// Corner frequency in Hz of each stage of the return to a hand that comes back, a time constant of 0.16 s.
+/// Corner frequency in Hz of both low passes that fade the offset after a hand comes back; the time constant is 0.16 s.
 const RETURN: U16_16 = U16_16::lit("1");
 
-/// A place of the camera on a sphere about the origin, as [`View::spherical`] takes it.
+/// A position of the camera on a sphere about the origin, for [`View::spherical`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pose {
     /// Azimuth.
     pub theta: Turns,
-    /// Polar angle, at least [`POLE`](super::POLE) from 0 and from half a turn.
+    /// Polar angle, at least [`POLE`](super::POLE) away from 0 and from half a turn.
     pub phi: Turns,
     /// Distance from the origin in world units, in [2, 5].
     pub r: Q32_32,
@@ -72,7 +73,7 @@ pub enum Presence {
     Appearing,
     /// The hand steers the camera.
     Tracked,
-    /// The hand was lost just now and is awaited in its region; the camera stays.
+    /// The hand was lost recently and is searched for in its region; the camera stays.
     Held,
 }
 
@@ -90,9 +91,9 @@ impl fmt::Display for Presence {
 /// Settings of the engine for the next frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Setting {
-    /// Pixels outside do not count.
+    /// Region of the frame; pixels outside do not count.
     pub region: Region,
-    /// Runs of fewer pixels in a line do not count.
+    /// Minimum run: shorter runs of pixels in a line do not count.
     pub least_run: u8,
 }
 
@@ -103,8 +104,8 @@ impl Setting {
         least_run: RUN_SEARCHING,
     };
 
-    /// The setting around a hand in motion with the given bounds. On each side there is room for an eighth of the frame, the way of a
-    /// fast hand in two frames.
+    /// The setting around a hand in motion with the given bounds. The margin on each side is an eighth of the frame, the path of
+    /// a fast hand in two frames.
     pub const fn moving(bounds: &Region, size: [u16; 2]) -> Self {
         Self {
             region: bounds.grown([size[0] / 8, size[1] / 8]),
@@ -112,8 +113,8 @@ impl Setting {
         }
     }
 
-    /// The setting around a hand at rest, which may begin to move: room for a thirty-second of the frame. A larger region would hold a
-    /// run of noise pixels in most frames. Such a run enlarges the bounds, and so the next region.
+    /// The setting around a hand at rest, which may begin to move: the margin is a thirty-second of the frame. A larger region
+    /// would contain a noise run in most frames, which would enlarge the bounds and therefore the next region.
     pub const fn resting(bounds: &Region, size: [u16; 2]) -> Self {
         Self {
             region: bounds.grown([size[0] / 32, size[1] / 32]),
@@ -127,7 +128,7 @@ impl Setting {
 struct Last {
     /// Number of the hand's pixels; 0 if the frame was counted with a larger minimum run.
     count: u32,
-    /// Coordinates x and y of its centre.
+    /// Coordinates x and y of the hand's centre.
     centre: [U20_12; 2],
 }
 
@@ -138,7 +139,8 @@ enum State {
     Appearing(Blob, u8),
     /// The hand of the last frame.
     Tracked(Last),
-    /// Number of pixels in the last frame with the hand, 0 if it is not known, and the time since the first one without it in µs.
+    /// Number of the hand's pixels in the last frame that showed it, 0 if unknown, and the time in µs since the first frame
+    /// without it.
     Held(u32, u32),
 }
 
@@ -147,8 +149,8 @@ enum State {
 struct Channel {
     filter: OneEuro,
     zone: Backlash,
-    /// Rest of the way from the place where the camera was held to the hand's new position. It fades through two low passes in series,
-    /// so that the camera also starts smoothly.
+    /// Remaining offset from the hand's new position to the camera's held position. It fades through two low passes in series, so
+    /// that the camera also starts smoothly.
     offsets: [Q4_28; 2],
     output: Q4_28,
 }
@@ -185,7 +187,7 @@ impl Channel {
     }
 }
 
-/// The control of the camera by the hand: takes the statistics of each camera frame, and states the camera's position and the
+/// The control of the camera by the hand: takes the statistics of each camera frame, and returns the camera's position and the
 /// engine's setting for the next frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
@@ -193,7 +195,7 @@ pub struct Control {
     setting: Setting,
     /// Time in µs at which the last frame ended.
     ended: Option<u64>,
-    /// Content of the last frame.
+    /// Result of the last frame: the hand, or the reason why it shows none.
     seen: Result<Blob, Doubt>,
     /// Azimuth, polar angle and distance.
     channels: [Channel; 3],
@@ -240,34 +242,34 @@ impl Control {
         }
     }
 
-    /// Content of the last frame.
+    /// Result of the last frame: the hand, or the reason why it shows none.
     ///
-    /// # Errors
-    /// It did not show the hand.
+    /// # Errors The last frame did not show the hand.
     pub const fn seen(&self) -> Result<Blob, Doubt> {
         self.seen
     }
 
     /// Takes the statistics of a new camera frame, and returns the hand that it shows. `time` is the time in µs at which the frame ended,
-    /// from any start; it does not go back. After a pause of more than [`PATIENCE`] the hand is searched for again.
+    /// from any start; it must not decrease. After a pause of more than [`PATIENCE`] the search starts again.
     ///
-    /// A hand appears when three frames in a row show one with enough confidence, of nearly the same area and place. The camera then
-    /// moves to it within some tenths of a second, the shorter way around; the same holds when it comes back to its region.
+    /// A hand appears when three successive frames show a hand with sufficient confidence and nearly constant area and position.
+    /// The camera then moves to the hand's position within some tenths of a second, along the shorter arc. A hand that comes back
+    /// to its region has the same effect.
     ///
     /// # Errors
     /// The frame does not show the hand; the camera stays.
     #[inline]
     pub fn on_frame(&mut self, time: u64, statistics: &Statistics) -> Result<Blob, Doubt> {
         let before = self.ended.replace(time);
-        // The first frame ends a pause without a hand.
+        // The first frame counts as following a pause of the maximum length.
         let gap = before.and_then(|before| u32::try_from(time.saturating_sub(before)).ok());
         self.take(gap.unwrap_or(u32::MAX), statistics);
-        // A caller that drops this result has no copy of it.
+        // A copy, which an inlined call omits if its result is unused.
         self.seen
     }
 
-    /// Takes a frame, `gap` µs after the previous frame. Every frame with a hand runs all of this code, which the instruction cache has to
-    /// load, so what runs rarely is in other functions.
+    /// Takes a frame, `gap` µs after the previous frame. Every frame with a hand runs all of this code, which must fit the
+    /// instruction cache, so rare cases are in other functions.
     #[inline(never)]
     fn take(&mut self, gap: u32, statistics: &Statistics) {
         self.seen = statistics.blob();
@@ -305,7 +307,7 @@ impl Control {
             waited = *since;
         }
         if waited > PATIENCE && self.state != State::Absent {
-            // The statistics of this frame may be those of the hand's region alone, so the search begins with the next one.
+            // The statistics of this frame may be those of the hand's region alone, so the search begins with the next frame.
             self.search();
         }
         match self.state {
@@ -320,7 +322,7 @@ impl Control {
         self.setting = Setting::SEARCHING;
     }
 
-    /// Looks for a hand in three successive frames.
+    /// Searches for a hand in three successive frames.
     fn appear(&mut self, size: [u16; 2]) -> Result<Blob, Doubt> {
         let before = self.state;
         self.search();
@@ -339,8 +341,8 @@ impl Control {
         Ok(blob)
     }
 
-    /// Waits for the hand in its region, from the first frame without it on. The region becomes larger, because a hand that began to
-    /// move fast has left that of a hand at rest.
+    /// Searches for a lost hand in its region, from the first frame without the hand on. The region becomes larger, because a
+    /// hand that suddenly moves fast leaves the region of a hand at rest.
     fn hold(&mut self, count: u32, size: [u16; 2]) {
         match self.seen {
             Ok(blob) if is_like(count, &blob) => return self.enter(&blob, size),
@@ -353,7 +355,8 @@ impl Control {
         }
     }
 
-    /// Begins to follow a hand: the filters start at its place, and the way from the camera's position to it becomes the offset.
+    /// Begins to follow a hand: the filters start at the hand's position, and the difference from the camera's position becomes
+    /// the offset.
     fn enter(&mut self, blob: &Blob, size: [u16; 2]) {
         // The next frame counts shorter runs, so its area may be larger.
         self.state = State::Tracked(Last {
@@ -369,7 +372,7 @@ impl Control {
                 ..Channel::at(target)
             };
         }
-        // The azimuth goes the shorter way around: the difference of two azimuths loses its whole turns.
+        // The azimuth takes the shorter arc: whole turns are removed from the difference of two azimuths.
         let [azimuth, ..] = &mut self.channels;
         azimuth.offsets = azimuth.offsets.map(within_a_turn);
     }
@@ -400,7 +403,8 @@ const fn is_like(count: u32, blob: &Blob) -> bool {
     count == 0 || (2 * blob.count <= 3 * count && 2 * count <= 3 * blob.count)
 }
 
-/// Whether a hand may be that of the previous frame: of nearly the same area, and at most an eighth of the frame away.
+/// Whether a hand may be the hand of the previous frame: its area is nearly equal, and its centre at most an eighth of the frame
+/// away.
 fn is_near(before: &Blob, blob: &Blob, size: [u16; 2]) -> bool {
     let moved = |axis: usize| {
         before.centre[axis]

@@ -7,17 +7,17 @@ const RADIANS: u32 = 26_986;
 /// Minimum and maximum step, in µs.
 const STEPS: [u32; 2] = [1_000, 100_000];
 
-/// The time between two camera frames, in the forms that the filters need.
+/// The time between two camera frames, converted to the units that the filters need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
     /// 2π·step: the angle in radians by which 1 Hz advances in one step, with 32 fraction bits.
     radians: u32,
-    /// Number of steps per second, with 12 fraction bits, rounded down.
+    /// Reciprocal of the step: steps per second, with 12 fraction bits, rounded down.
     rate: u32,
 }
 
 impl Step {
-    /// Makes a step of `micros` µs, which is limited to the range from 1 to 100 ms.
+    /// Makes a step of `micros` µs, which is clamped to 1 to 100 ms.
     pub fn new(micros: u32) -> Self {
         let micros = micros.clamp(STEPS[0], STEPS[1]);
         Self {
@@ -71,13 +71,13 @@ impl OneEuro {
         }
     }
 
-    /// Takes the next input, and returns the output. A speed of 128 units per second saturates.
+    /// Takes the next input, and returns the output. The speed saturates at 128 units per second.
     pub fn next(&mut self, input: Q4_28, tuning: &Tuning, step: Step) -> Q4_28 {
         let gain = low_pass_gain(tuning.speed_cutoff, step);
         self.next_with(input, tuning, step, gain)
     }
 
-    /// Does the same with `gain`, that of the low pass for the speed.
+    /// Takes the next input as [`Self::next`] does, with the given gain of the low pass for the speed.
     pub(super) fn next_with(
         &mut self,
         input: Q4_28,
@@ -87,7 +87,7 @@ impl OneEuro {
     ) -> Q4_28 {
         let moved = input.saturating_sub(self.input).to_bits();
         self.input = input;
-        // 28 and 12 fraction bits in the product, 24 in the speed.
+        // The product has 28 + 12 fraction bits, the speed 24.
         let speed = (i64::from(moved) * i64::from(step.rate)) >> 16;
         let speed = speed.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
         self.speed = towards(self.speed, speed, gain);
@@ -101,16 +101,16 @@ impl OneEuro {
     }
 }
 
-/// Moves `from` to `to` by a part of the distance: `gain`, at most 1, with 16 fraction bits. Rounded to nearest. A distance beyond 2^31
-/// counts as one of 2^31.
+/// Moves `from` towards `to` by the part `gain` (16 fraction bits, at most 1) of the distance, rounded to nearest. The distance
+/// saturates at 2^31.
 pub fn towards(from: i32, to: i32, gain: u32) -> i32 {
     let way = i64::from(to.saturating_sub(from)) * i64::from(gain);
     // The gain is at most 1, so the sum lies between the two numbers.
     from.wrapping_add(((way + (1 << 15)) >> 16) as i32)
 }
 
-/// A dead zone that moves along: the output stays while the input is within the zone about it, and is drawn along by the zone's
-/// edge otherwise. So the output has no jumps, and differs from the input by at most the zone.
+/// A moving dead zone: the output stays constant while the input is within the zone about it; otherwise the zone's edge follows
+/// the input. Therefore the output has no jumps, and differs from the input by at most the zone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Backlash(Q4_28);
 
@@ -120,7 +120,7 @@ impl Backlash {
         Self(output)
     }
 
-    /// Takes the next input, and returns the output. `zone` is the largest difference between them.
+    /// Takes the next input, and returns the output. `zone` is the largest difference between input and output.
     pub fn next(&mut self, input: Q4_28, zone: Q4_28) -> Q4_28 {
         let least = input.saturating_sub(zone);
         let greatest = input.saturating_add(zone);

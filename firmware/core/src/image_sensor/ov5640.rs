@@ -2,7 +2,7 @@
 
 use super::step::Step::{self, Check, Wait, Write};
 
-/// Takes the clock from the pin, resets all registers, and sleeps until the end of the set-up.
+/// Selects the clock of the pin, resets all registers, and sleeps until the end of the set-up.
 pub const RESET: &[Step] = &[
     Write(0x3103, 0x11),
     Write(0x3008, 0x82),
@@ -10,7 +10,7 @@ pub const RESET: &[Step] = &[
     Write(0x3008, 0x42),
 ];
 
-/// Clock, array, format and automatic control, for all sizes.
+/// Settings for all sizes: clock, pixel array, format and automatic control.
 pub const COMMON: &[Step] = &[
     // The clock comes from the PLL from here on: pre-divider 3 and root divider 2, times 70, divided by 2.
     Write(0x3103, 0x03),
@@ -22,7 +22,7 @@ pub const COMMON: &[Step] = &[
     // Pins of the parallel port are outputs.
     Check(0x3017, 0xff),
     Check(0x3018, 0xff),
-    // The array from (0, 4) to (2623, 1947), every second column and line, binned; mirrored.
+    // The pixel array from (0, 4) to (2623, 1947): every second column and line, binned and mirrored.
     Write(0x3800, 0x00),
     Write(0x3801, 0x00),
     Write(0x3802, 0x00),
@@ -45,16 +45,16 @@ pub const COMMON: &[Step] = &[
     Write(0x3811, 0x10),
     Write(0x3812, 0x00),
     Write(0x3813, 0x06),
-    // Analog settings of the maker for every second column and line.
+    // The manufacturer's analog settings for every second column and line.
     Write(0x3618, 0x00),
     Write(0x3612, 0x29),
     Write(0x3708, 0x64),
     Write(0x3709, 0x52),
     Write(0x370c, 0x03),
-    // RGB565, the byte with red first.
+    // RGB565 with the byte that contains red first.
     Check(0x4300, 0x61),
     Check(0x501f, 0x01),
-    // Polarities of PCLK, HREF and VSYNC: those of the reset.
+    // Polarities of PCLK, HREF and VSYNC as after a reset.
     Check(0x4740, 0x20),
     // Colour correction, gamma, white balance, scaling.
     Write(0x5000, 0xa7),
@@ -63,7 +63,7 @@ pub const COMMON: &[Step] = &[
     Check(0x3503, 0x00),
 ];
 
-/// Columns and lines of the picture, then the end of the sleep.
+/// Number of columns and lines of the picture, then the end of the sleep.
 pub const VGA: &[Step] = &[
     Check(0x3808, 0x02),
     Check(0x3809, 0x80),
@@ -72,7 +72,7 @@ pub const VGA: &[Step] = &[
     Check(0x3008, 0x02),
 ];
 
-/// Columns and lines of the picture, then the end of the sleep.
+/// Number of columns and lines of the picture, then the end of the sleep.
 pub const QVGA: &[Step] = &[
     Check(0x3808, 0x01),
     Check(0x3809, 0x40),

@@ -3,12 +3,12 @@
 use super::MeshHeader;
 use crate::wire::CRC_32;
 
-/// The checksum in the header of a mesh; `None` for bytes without a whole header.
+/// Reads the checksum in the header of a mesh; `None` for bytes shorter than a header.
 pub fn stated_checksum(mesh: &[u8]) -> Option<u32> {
     Some(MeshHeader::from_bytes(mesh.first_chunk()?).checksum)
 }
 
-/// The checksum that a mesh needs: the CRC-32 of all its bytes but those of the checksum itself.
+/// Computes the checksum of a mesh: the CRC-32 of all bytes except the checksum's own bytes.
 pub fn checksum(mesh: &[u8]) -> u32 {
     let place = MeshHeader::CHECKSUM;
     let (before, rest) = mesh.split_at(place.start.min(mesh.len()));
@@ -18,7 +18,7 @@ pub fn checksum(mesh: &[u8]) -> u32 {
     digest.finalize()
 }
 
-/// Sets the checksum in the header of a mesh. Bytes without a whole header stay as they are.
+/// Sets the checksum in the header of a mesh. Bytes shorter than a header stay unchanged.
 pub fn set_checksum(mesh: &mut [u8]) {
     let checksum = checksum(mesh);
     if let Some(header) = mesh.first_chunk_mut() {

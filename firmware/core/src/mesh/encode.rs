@@ -31,11 +31,10 @@ pub fn encode(vertices: &[Vertex], triangles: &[IndexedTriangle]) -> Result<Vec<
     encode_with(vertices, triangles, &[])
 }
 
-/// Encodes an indexed mesh with optional attributes, in the order of their numbers: for each the elements of all vertices. Missing
-/// elements are 0.
+/// Encodes an indexed mesh with optional attributes, in the order of their numbers. Each attribute has one element per vertex.
+/// Missing elements are 0.
 ///
-/// # Errors
-/// Those of [`encode`].
+/// # Errors The errors of [`encode`].
 pub fn encode_with(
     vertices: &[Vertex],
     triangles: &[IndexedTriangle],
@@ -97,7 +96,7 @@ pub fn encode_with(
 #[derive(Default)]
 struct Writer<'a> {
     records: Vec<[u8; WORD]>,
-    /// For each attribute the elements of the mesh, and those of the vertices of the chunks.
+    /// For each attribute the elements of the mesh's vertices, and the elements of the chunks' vertices.
     arrays: Vec<(Attribute, &'a [u8], Vec<u8>)>,
     chunks: u32,
     vertices: u32,

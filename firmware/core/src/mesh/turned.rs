@@ -1,9 +1,9 @@
-//! Copies of meshes with other normals, for objects whose normals a matrix turns.
+//! Copies of meshes with transformed normals, for objects whose matrix changes normals.
 
 use super::{Mesh, MeshHeader, Triangle, Vertex};
 
 impl Mesh<'_> {
-    /// Copies the mesh to the start of `memory`, with the normals that `turn` returns for those of this mesh. `None` if `memory` is
+    /// Copies the mesh to the start of `memory`, and replaces each normal by the result of `turn`. `None` if `memory` is
     /// shorter than the mesh.
     pub fn copy_with_normals<'m>(
         &self,

@@ -2,11 +2,10 @@
 
 /// A model of the sensor's clock, which computes the times at which samples were measured.
 ///
-/// A new sample was measured in the interval between the previous read and the present read, and at most a period before the latter. The
-/// period of the samples is not a
-/// multiple of the period of the reads, so the reads drift across the samples, and from time to time the interval begins or ends
-/// close to the sample's time. The clock predicts the time of each sample. A prediction outside the interval is moved to the
-/// nearer end of the interval.
+/// A new sample was measured between the previous read and the present read, and at most a period before the present read. The
+/// sample period is not a multiple of the read period, so the reads drift relative to the samples, and from time to time the
+/// interval begins or ends close to the sample's time. The clock predicts the time of each sample. A prediction outside the
+/// interval is moved to the nearer end of the interval.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     /// Nominal period (`nominal`) and estimated period (`period`) of the samples, in 2^−8 µs.
@@ -16,7 +15,7 @@ pub struct Pace {
     looked: Option<u64>,
     /// Predicted time of the next sample, in 2^−8 µs.
     expected: Option<u64>,
-    /// Number of samples that are left until corrections also change the estimated period.
+    /// Number of samples until corrections also change the estimated period.
     settling: u8,
 }
 
@@ -24,10 +23,10 @@ pub struct Pace {
 /// samples the reads drift across a whole sample period.
 const SETTLED: u8 = 32;
 
-/// After each correction of the time, the estimated period changes by 2^−5 of this correction, so that it settles within some
-/// dozens of corrections. This constant is the exponent.
+/// Exponent of the part of each correction of the time by which the estimated period changes: 2^−5, so that the period settles
+/// within some dozens of corrections.
 const SLOWNESS: u32 = 5;
-/// The estimated period differs from the nominal period by at most 2^−5 of the nominal period. This constant is the exponent.
+/// Exponent of the largest relative difference between the estimated and the nominal period: 2^−5.
 const TOLERANCE: u32 = 5;
 
 impl Pace {
@@ -44,22 +43,23 @@ impl Pace {
     }
 
     /// Takes the time of a read in µs, which is later than the time of the previous read. If `found` states that the read has a
-    /// new sample, returns the time in µs at which this sample was measured. The sample of the first read may be old, so for it
-    /// the result is `None`.
+    /// new sample, returns the time in µs at which this sample was measured. The result is `None` for the first read, because its
+    /// sample may be old.
     pub fn on_poll(&mut self, time: u64, found: bool) -> Option<u64> {
         let before = self.looked.replace(time)?;
         if !found {
             return None;
         }
         let to = time << 8;
-        // The chip has its newest sample, which is not older than a period, even if others were lost.
+        // The chip holds its newest sample, which is at most a period old even if samples were lost.
         let from = (before << 8).max(to.saturating_sub(self.period.into()));
         let expected = self.expected.unwrap_or(from.midpoint(to));
         let measured = expected.clamp(from, to);
         if self.settling > 0 {
             self.settling -= 1;
         } else {
-            // The period is corrected by a part of the prediction's error, which is less than a period unless samples were lost.
+            // The period is corrected by a part of the prediction's error. This error is less than a period unless samples were
+            // lost.
             let most = i64::from(self.nominal);
             let off = (measured as i64 - expected as i64).clamp(-most, most) >> SLOWNESS;
             let tolerance = self.nominal >> TOLERANCE;

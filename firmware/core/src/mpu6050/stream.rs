@@ -16,18 +16,18 @@ const POLL_PERIOD: u32 = 480;
 /// and gives the same drift as `POLL_PERIOD`.
 const SLOW_POLL_PERIOD: u32 = 960;
 
-/// Longest time without a new sample that is not an error, in µs.
+/// Longest accepted time without a new sample, in µs.
 const SILENCE: u32 = 20_000;
-/// This many successive samples that are each equal to their predecessor are an error.
+/// Number of successive equal samples that is an error.
 const FROZEN: u32 = 50;
-/// Pause before the next attempt to find the chip, in ms. It bounds the load that an absent sensor causes.
+/// Pause before the next attempt to find the chip, in ms. It limits the CPU load with an absent sensor.
 const RETRY_DELAY: u32 = 30;
 
 /// Receiver of samples.
 pub trait Sink<E> {
     /// The chip was found and configured.
     fn on_start(&mut self, identity: Identity);
-    /// Takes a sample and its time in µs. The time is later than the measured motion by the delay of the chip's filter. Apart
+    /// Takes a sample and its time in µs. The time is delayed against the measured motion by the chip's filter. Apart
     /// from this delay, the error of the time is at most 0.1 ms, or 0.3 ms for the first hundred samples after a start.
     fn on_sample(&mut self, time: u64, measurement: &Measurement);
     /// The chip was not found, or reading it failed. The stream tries again.
@@ -36,7 +36,7 @@ pub trait Sink<E> {
 
 /// Reads a chip endlessly.
 ///
-/// Each sample is read once. After an error the stream searches for the chip every 30 ms. A chip that kept its configuration
+/// Each sample is read once. After an error the stream searches for the chip every 30 ms. A chip that is still configured
 /// continues at once; any other chip is reset and configured.
 pub struct Stream<B, D, S> {
     chip: Mpu6050<B>,
@@ -60,7 +60,7 @@ impl<B: PeriodicI2c, D: DelayNs, S: Sink<B::Error>> Stream<B, D, S> {
         let mut period = POLL_PERIOD;
         loop {
             let Err(error) = self.start_and_read(reset, period).await;
-            // A chip that answers without measuring may seem correctly configured, so the next start resets it.
+            // A chip that responds without measuring may appear correctly configured, so the next start resets the chip.
             reset = matches!(error, Error::Silent | Error::Frozen);
             let is_late = matches!(&error, Error::Bus(error) if error.kind() == ErrorKind::Overrun);
             period = if is_late {

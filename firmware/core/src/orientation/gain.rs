@@ -9,7 +9,7 @@ pub struct Gain {
     time_constant: u32,
     /// 2^48 divided by the time constant.
     inverse: u64,
-    /// The length of the last step in µs, and its gain. They are stored because most steps are equally long.
+    /// The length of the last step in µs, and its gain. They are stored because most steps have the same length.
     last: (u32, u32),
 }
 
@@ -92,8 +92,8 @@ fn approach(x: u64) -> u32 {
 fn series(x: u32) -> u32 {
     let times = |a: u32, b: u32| ((u64::from(a) * u64::from(b)) >> 32) as u32;
     let part = |n: u32| times(x, ((1 << 32) / u64::from(n)) as u32);
-    // Computes part·(1 − lack), rounded down: each `lack` is 1 minus a bracket of the series, from the
-    // innermost bracket outwards.
+    // Evaluates a bracket of the series, from the innermost bracket outwards: part·(1 − lack), rounded down, where `lack` is 1
+    // minus the inner bracket.
     let less = |part: u32, lack: u32| {
         part - ((u64::from(part) * u64::from(lack) + u64::from(u32::MAX)) >> 32) as u32
     };

@@ -22,8 +22,8 @@ pub struct Integrator {
     attitude: [i64; 4],
     /// The attitude rounded to 30 fraction bits, to nearest.
     rounded: Quaternion,
-    /// Half angle vector with 48 fraction bits, which the next step adds to its own: the remainder of the last step's vector part of exp h
-    /// after rounding, and corrections.
+    /// Half angle vector with 48 fraction bits that the next step adds to its own half angle vector. It contains the rounding
+    /// remainder of the last step's vector part of exp h, and corrections.
     rest: [i64; 3],
 }
 
@@ -55,7 +55,7 @@ impl Integrator {
         self.history.start(rate);
     }
 
-    /// Drops the rates before the last one, which are unrelated to it.
+    /// Drops all rates except the last one.
     #[cold]
     #[inline(never)]
     pub(super) fn forget(&mut self) {
@@ -71,9 +71,9 @@ impl Integrator {
         self.advance_order::<4>(rate, step, correction);
     }
 
-    /// Integrates a rate as [`Self::advance`] does, by a method of the given order; orders above 4 count as 4. As the rate
-    /// between two samples, order 1 takes the newest sample, 2 the mean of two samples, 3 a parabola through three samples, and 4
-    /// a cubic through four samples.
+    /// Integrates a rate as [`Self::advance`] does, by a method of the given order; orders above 4 count as 4. Between two
+    /// samples, order 1 uses the newest rate, order 2 the mean of two rates, order 3 a parabola through three rates, and order 4
+    /// a cubic through four rates.
     pub fn advance_order<const ORDER: u32>(
         &mut self,
         rate: [i32; 3],
@@ -101,8 +101,8 @@ impl Integrator {
         self.rounded
     }
 
-    /// References to the attitude, rounded to nearest, and to a half angle vector in the body's axes, in radians with 48 fraction bits,
-    /// which the next step adds to its own. A caller may add a vector whose components are within ±8.
+    /// References to the attitude, rounded to nearest, and to a half angle vector that the next step adds to its own: in the
+    /// body's axes, in radians with 48 fraction bits. A caller may add a vector with components within ±8.
     pub(super) const fn correctable(&mut self) -> (&Quaternion, &mut [i64; 3]) {
         (&self.rounded, &mut self.rest)
     }
@@ -132,10 +132,10 @@ impl Integrator {
     }
 
     /// Turns the attitude by a short half angle vector.
-    // Inlined in the code of every sample; `turn_far` has a copy.
+    // Inlined in the code that runs for every sample; `turn_far` contains a second copy.
     #[inline(always)]
     fn turn_part(&mut self, half: [i64; 3]) {
-        // h with 32 fraction bits, rounded down, from the words of 32 bits: all that follows is in such words.
+        // h with 32 fraction bits, rounded down, in 32-bit words as all of the following numbers.
         let short = half.map(|x| (((x >> 32) as i32) << 16) | (x as u32 >> 16).cast_signed());
         // `square` is |h|² with 32 fraction bits, rounded down; each of its three addends is below 2^26.
         let square = short
@@ -147,9 +147,9 @@ impl Integrator {
         // The scalar part of `change` uses half of 1 − |q|², with 32 fraction bits, rounded down.
         let mut change = [(excess(q) >> 27) - versine as i32, 0, 0, 0];
         for i in 0..3 {
-            // h·sin|h|/|h| is h less this product, which has 64 fraction bits.
+            // h·sin|h|/|h| is h minus this product, which has 64 fraction bits.
             let less = i64::from(short[i]) * i64::from(lack);
-            // The bits of the difference below 32 fraction bits, with 48 fraction bits, plus 2^−33 so that the shift rounds to nearest.
+            // Rounding remainder of the difference, with 48 fraction bits, plus 2^−33 so that the shift rounds to nearest.
             let low = (half[i] as i32 & 0xFFFF) - (less as u32 >> 16) as i32 + (1 << 15);
             change[i + 1] = short[i] - (less >> 32) as i32 + (low >> 16);
             self.rest[i] = i64::from((low & 0xFFFF) - (1 << 15));
@@ -159,14 +159,15 @@ impl Integrator {
         for (part, turned) in core::iter::zip(&mut self.attitude, turned) {
             *part += turned;
         }
-        // Rounded by the highest bit of the low word, which takes fewer instructions than a sum of 64 bits.
+        // Rounding by the highest bit of the low word takes fewer instructions than a 64-bit addition.
         let round = |part: i64| (part >> 32) as i32 + (part as u32 >> 31) as i32;
         self.rounded.parts = self.attitude.map(round);
     }
 }
 
-/// Computes 1 − |q|² with 58 fraction bits. The length of q is 1 within 2^−28, so the result fits 32 bits, and they follow from the low
-/// words of products alone: with q = 2a + b, b being its lowest bit, q² is 4·a·(a + b) + b. The sum of b/4 is left out.
+/// Computes 1 − |q|² with 58 fraction bits. The length of q is 1 within 2^−28, so the result fits 32 bits and needs only the low
+/// words of products. With q = 2a + b, where b is the lowest bit of q, q² is 4·a·(a + b) + b. The sum of the terms b/4 is left
+/// out.
 fn excess(q: &[i32; 4]) -> i32 {
     q.iter().fold(0_i32, |sum, &q| {
         sum.wrapping_sub((q >> 1).wrapping_mul(q - (q >> 1)))

@@ -1,8 +1,8 @@
 //! The format of a log of sensor samples, which a board can replay: a header, then one record for each sample. A replay computes
 //! the attitude after each sample, and writes the attitude over the sample's record.
 //!
-//! All numbers are little-endian. A sample is less than 2^31 µs, 36 minutes, later than the one before it; other differences of the times
-//! mean an earlier one.
+//! All numbers are little-endian. A sample is less than 2^31 µs, 36 minutes, later than the one before it; any other difference
+//! of the times means an earlier sample.
 //!
 //! | bytes | header |
 //! |---|---|
@@ -57,7 +57,7 @@ pub struct Setup {
 /// Reason why bytes are not a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LogError {
-    /// The log has only this number of bytes, fewer than a header.
+    /// The log is shorter than a header; it has this number of bytes.
     Short(usize),
     /// The magic number is wrong.
     Magic([u8; 4]),
@@ -290,19 +290,19 @@ pub fn to_bytes(record: Record) -> [u8; RECORD_BYTES] {
 pub fn record(sample: &Sample) -> Record {
     let pair = |low: i16, high: i16| u32::from(low as u16) | u32::from(high as u16) << 16;
     let ([ax, ay, az], [gx, gy, gz]) = (sample.accel, sample.gyro);
-    // The record has the low word of the time.
+    // The record contains the low word of the time.
     let time = sample.t_us as u32;
     [time, pair(ax, ay), pair(az, gx), pair(gy, gz)]
 }
 
-/// The time in µs before the first sample of a log, for [`sample`]: the first sample then has the time in its record.
+/// The time in µs before the first sample of a log, for [`sample`]: with this value the first sample has the time of its record.
 pub const START: u64 = 1 << 31;
 
-/// Unpacks the sample that a record holds. `last` is the time in µs of the sample before it, or [`START`].
+/// Unpacks the sample that a record holds. `last` is the time in µs of the previous sample, or [`START`].
 pub const fn sample([time, ax_ay, az_gx, gy_gz]: Record, last: u64) -> Sample {
     let step = time.wrapping_sub(last as u32).cast_signed();
     Sample {
-        // An earlier time than 0 becomes 0.
+        // A negative time becomes 0.
         t_us: last.saturating_add_signed(step as i64),
         accel: [ax_ay as i16, (ax_ay >> 16) as i16, az_gx as i16],
         gyro: [(az_gx >> 16) as i16, gy_gz as i16, (gy_gz >> 16) as i16],

@@ -11,7 +11,7 @@ pub struct Quaternion {
     pub(super) parts: [i32; 4],
 }
 
-/// The number 1 in the units of a component.
+/// 1 in the units of a component.
 const ONE: i32 = 1 << 30;
 /// If the cosine of the pitch is below this limit, roll is defined as 0. The limit is 2^−16 with 60 fraction bits, which is
 /// reached within 0.00088° of the pole.
@@ -35,7 +35,7 @@ impl Quaternion {
     }
 
     /// Returns the quaternion with exactly these components (w, x, y, z in units of 2^−30); `None` unless the
-    /// length is 1 within 2^−28, at which the correction of the length by the integrator ends.
+    /// length is 1 within 2^−28, the range in which the integrator's correction of the length converges.
     pub(crate) fn exact(parts: [i32; 4]) -> Option<Self> {
         // Each square is at most 2^62, so the sum fits u64; a sum beyond i64 is far too long.
         let square = parts
@@ -51,8 +51,8 @@ impl Quaternion {
 
     /// Returns the rotation by `angle` about one of the axes: 0, 1, 2 for x, y, z (larger numbers count as 2).
     pub fn about_axis(axis: usize, angle: Turns) -> Self {
-        // The angle is taken as −½ to ½ turns before it is halved, so that small angles of both signs give a quaternion
-        // near the identity.
+        // The angle is reduced to −½ to ½ turns before it is halved, so that small angles of both signs give a quaternion near
+        // the identity.
         let half = Turns((angle.0 as i32 >> 1) as u32);
         let (sin, cos) = sin_cos_q30(half);
         let mut parts = [cos.to_bits(), 0, 0, 0];
@@ -60,7 +60,7 @@ impl Quaternion {
         Self { parts }.renormalised()
     }
 
-    /// Returns the attitude with these angles, as the inverse function of [`Quaternion::angles`].
+    /// Returns the attitude with these angles: the inverse of [`Quaternion::angles`].
     pub fn from_angles(angles: Angles) -> Self {
         let pitched = Self::about_axis(2, angles.yaw).times(Self::about_axis(1, angles.pitch));
         pitched.times(Self::about_axis(0, angles.roll))
@@ -210,7 +210,7 @@ fn dot([aw, ax, ay, az]: &[i32; 4], w: i32, x: i32, y: i32, z: i32) -> i64 {
     wide(*aw, w) + wide(*ax, x) + wide(*ay, y) + wide(*az, z)
 }
 
-/// Yaw, pitch and roll. Angles of half a turn or more count as negative.
+/// Yaw, pitch and roll. Angles of half a turn or more represent negative angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Angles {
     /// Rotation about the world's z axis.

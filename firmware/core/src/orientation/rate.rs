@@ -36,7 +36,7 @@ pub const MOST_STRETCH: u32 = 3;
 /// file that are stored in 32 bits fit.
 pub const LARGEST_RATE: i32 = 3 << 22;
 
-/// The data of the earlier samples from which the next step is computed.
+/// State of the earlier samples for the next step.
 #[derive(Clone, Copy, Debug)]
 pub struct History {
     scale: Scale,
@@ -45,12 +45,12 @@ pub struct History {
     axes: [Axis; 3],
     /// The durations h₁ and h₂ of the two earlier steps, in µs.
     ages: [u32; 2],
-    /// The factors of the last step: that of its half angle, and that of A × E.
+    /// The factors of the last step for its half angle and for A × E.
     factor: Factor,
     coning: u32,
 }
 
-/// The data of the earlier rates about one axis from which the next step is computed, in 1/256 LSB.
+/// State of the earlier rates about one axis for the next step, in 1/256 LSB.
 #[derive(Clone, Copy, Debug, Default)]
 struct Axis {
     /// The rate at the last sample, ω₂.
@@ -61,8 +61,8 @@ struct Axis {
     second: i32,
 }
 
-/// The weights of the module's formulas for steps that are not equal, which depend only on the times of the samples. Weights without a
-/// stated format have 15 fraction bits.
+/// The weights of the module's formulas for steps that are not equal, which depend only on the times of the samples. Unless
+/// stated otherwise, weights have 15 fraction bits.
 #[derive(Clone, Copy)]
 struct Weights {
     /// g = h/h₁ in units of 2^−30, rounded to 15 fraction bits.
@@ -192,7 +192,7 @@ impl Axis {
         let e1 = rate - self.last;
         let second = e1 - self.difference;
         let third = second - self.second;
-        // A twenty-fourth of the sum, and the change from 8 to 13 fraction bits, are a factor of 4/3.
+        // The division by 24 and the change from 8 to 13 fraction bits are together a factor of 4/3.
         let curve = half_up(upper((2 * second + third) << 2, TWO_THIRDS));
         let ends = (
             ((rate + self.last) << 4) - curve,
@@ -215,8 +215,8 @@ impl Axis {
         let before = half_up(upper(self.difference << 3, weights.stretch));
         let second = half_up(upper((e1 - before) << 2, weights.half));
         let third = second - narrow(wide(weights.stretch_squared, self.second));
-        // `curve` is (2·S + D·…)/12 of A. The weights contain the factor 8/12: the division by 12, the change from 8 to 12
-        // fraction bits, and the factor 2 of S and D.
+        // `curve` is the term (2·S + D·…)/12 of A. The weights contain the factor 8/12: the division by 12, the change from 8 to
+        // 12 fraction bits, and the factor 2 of S and D.
         let curve = wide(second, FOUR_THIRDS) + wide(third, weights.far);
         let curve = ((curve + (1 << 14)) >> 15) as i32;
         let mean = ((rate + self.last) << 3) - curve;
@@ -235,7 +235,7 @@ impl Axis {
 }
 
 impl History {
-    /// Starts with the rate of a first sample, in 1/256 LSB, and without earlier samples.
+    /// Starts with the rate of the first sample, in 1/256 LSB.
     pub fn new(scale: Scale, rate: [i32; 3]) -> Self {
         let axis = |last| Axis {
             last,
@@ -251,7 +251,7 @@ impl History {
         }
     }
 
-    /// Drops all samples, and starts with the rate of another one, in 1/256 LSB.
+    /// Drops all samples, and starts with the rate of a new sample, in 1/256 LSB.
     pub fn start(&mut self, rate: [i32; 3]) {
         *self = Self::new(self.scale, rate);
     }
@@ -264,9 +264,9 @@ impl History {
     /// Takes the rate of a sample that was measured `step` µs (at least 1) after the previous sample. Returns half the rotation
     /// vector of this step, φ/2, in radians with 48 fraction bits.
     ///
-    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method: 1 takes the newest sample as the rate, 2 the
-    /// mean of two samples, 3 the parabola through three samples (with e₁ instead of E), and 4 or more the cubic through four
-    /// samples. The first steps after a start have fewer earlier samples; together they leave an error of order h³.
+    /// The rate saturates to ±[`LARGEST_RATE`]. `ORDER` is the order of the method. Order 1 uses the rate of the newest sample, 2
+    /// the mean of two samples, 3 the parabola through three samples (with e₁ instead of E), and 4 or more the cubic through four
+    /// samples. The first steps after a start use fewer earlier samples; their total error is of order h³.
     #[inline(always)]
     pub fn advance<const ORDER: u32>(&mut self, rate: [i32; 3], step: u32) -> [i64; 3] {
         let is_even = self.steps == 2 && self.ages == [step; 2];
@@ -289,7 +289,7 @@ impl History {
     }
 
     /// Takes the rate of a sample as [`Self::advance`] does, by a method of any order. Returns A and E along the axes.
-    // The components are arguments of their own, which are in registers.
+    // The components are separate arguments, so that they are passed in CPU registers.
     #[inline(never)]
     fn advance_uneven(&mut self, order: u32, x: i32, y: i32, z: i32, step: u32) -> [Ends; 3] {
         let [h1, _] = self.ages;
@@ -326,8 +326,8 @@ const fn mul_high(a: i32, b: i32) -> i32 {
     ((a as i64 * b as i64) >> 32) as i32
 }
 
-/// The largest mean rate, 1.5·2^16 LSB with 12 fraction bits. With this limit the rate with its coning term fits 32 bits in the
-/// longest curved step of the most sensitive scale.
+/// The largest mean rate, 1.5·2^16 LSB with 12 fraction bits. With this limit the rate with its coning term fits 32 bits, even in
+/// the longest curved step at the most sensitive scale.
 const MOST_MEAN: i32 = 3 << 27;
 /// The largest change of the rate in a step, almost 2^17 LSB, with 8 fraction bits.
 const MOST_CHANGE: i32 = (1 << 25) - 1;

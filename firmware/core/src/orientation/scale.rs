@@ -3,7 +3,7 @@
 use crate::fixed::Q32_32;
 use crate::mpu6050::GYRO_LSB_PER_DPS;
 
-/// The half angle by which a body turns for each count of its rate and each microsecond.
+/// Scale from counts to angles: half the angle by which a body turns per count of its rate and microsecond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scale {
     /// Half angle in radians with 80 fraction bits, for a rate of 2^−12 LSB over 1 µs.

@@ -9,9 +9,9 @@
 //! ```
 //!
 //! where τ is the filter's time constant, dt the time since the previous reading, `a` the reading and `up` the upward direction,
-//! both in the body's axes. Readings are not normalised, and no reading is rejected only because its length differs slightly from
-//! 1 g. Normalising or rejecting would give accelerations unequal weights, and their mean would not be 0. Readings above 3 g,
-//! which a hand or a walking person does not reach, and readings at the end of the sensor's range are rejected.
+//! both in the body's axes. Readings are not normalised, and small deviations of their length from 1 g do not reject them.
+//! Normalising or rejecting would weight accelerations unequally, and their mean would not be 0. Readings above 3 g, which do not
+//! occur in a hand or during walking, and readings at the end of the sensor's range are rejected.
 
 use super::gain::Gain;
 use super::quaternion::{Angles, Quaternion};
@@ -22,11 +22,11 @@ use crate::polar::polar;
 pub const TIME_CONSTANT: u32 = 3_000_000;
 /// Smallest and largest accepted LSB per g.
 pub const LSB_PER_G: [u32; 2] = [1_024, 32_767];
-/// Weight of an attitude that comes from a single reading, as a time in µs: it counts like the mean of readings over this time.
+/// Weight of an attitude from a single reading, as a time in µs: it has the weight of the mean of readings over this time.
 pub const FRESH: u32 = 20_000;
-/// Largest weight of an attitude after saturation of the gyroscope or after a gap, as a time in µs: it counts like the mean of
-/// readings over this time. A short saturation changes the attitude little, and the accelerometer corrects the error within ten
-/// times this time.
+/// Largest weight of an attitude after saturation of the gyroscope or after a gap, as a time in µs: it has the weight of the mean
+/// of readings over this time. A short saturation changes the attitude little, and the accelerometer corrects the error within
+/// ten times this time.
 pub const DOUBTFUL: u32 = 100_000;
 /// Largest accepted reading, in g.
 const MOST: u32 = 3;
@@ -64,7 +64,7 @@ impl Tilt {
         self.age >= self.time_constant
     }
 
-    /// Marks the attitude as uncertain, so that the next readings get more weight.
+    /// Marks the attitude as uncertain, which gives the next readings more weight.
     #[cold]
     #[inline(never)]
     pub fn doubt(&mut self) {
@@ -95,7 +95,7 @@ impl Tilt {
         // by g. `self.inverse` is at most 2^22.
         let factor = ((u64::from(self.gain.of(step)) * u64::from(self.inverse)) >> 22) as u32;
         let up = attitude.up();
-        // After this shift, the error below is computed from the upper 32 bits of the products alone.
+        // This shift lets the error below use only the upper 32 bits of the products.
         let a = a.map(|x| x << 16);
         // The components of a × up, in LSB with 14 fraction bits, rounded down; they are at most 2^30.
         let error = [0, 1, 2].map(|i| {
@@ -138,10 +138,10 @@ impl Tilt {
     }
 }
 
-/// Lengthens `error`, which is a × up, for an attitude whose error of tilt is more than a right angle. At such angles |a × up|
-/// decreases as the error grows, and is 0 if the attitude is upside down, so that this attitude would not be corrected. The
-/// length is set to 2·|a|, roughly |a| times the angle in radians. A vector near 0 is replaced by a vector perpendicular to `up`.
-/// `square` is |a|², at most (2^16 − 1)².
+/// Lengthens `error`, which is a × up, for an attitude with a tilt error of more than a right angle. At such angles |a × up|
+/// decreases as the error grows, and it is 0 for an attitude upside down, which would never be corrected. The length is set to
+/// 2·|a|, roughly |a| times the angle in radians. A vector near 0 is replaced by a vector perpendicular to `up`. `square` is
+/// |a|², at most (2^16 − 1)².
 #[cold]
 #[inline(never)]
 fn lengthened(error: [i32; 3], up: [i32; 3], square: u32) -> [i32; 3] {

@@ -1,4 +1,4 @@
-//! Computes a body's attitude from the samples of the sensor on the body.
+//! Computes a body's attitude from samples of its sensor.
 
 use super::integrator::{Integrator, LONGEST_STEP};
 use super::quaternion::Quaternion;
@@ -21,7 +21,7 @@ pub enum SampleEffect {
     Gap,
 }
 
-/// Counts of samples by their effect on the attitude.
+/// Numbers of samples by their effect on the attitude.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Integrated samples.
@@ -64,7 +64,7 @@ impl Tracker {
         }
     }
 
-    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, which no rate reaches.
+    /// Sets a constant bias of the gyroscope, in 1/256 LSB. The bias saturates to ±2^30, which exceeds every rate.
     pub fn set_bias(&mut self, bias: [i32; 3]) {
         self.bias = bias.map(|bias| bias.clamp(-LARGEST_BIAS, LARGEST_BIAS));
         self.resting = None;
@@ -76,7 +76,7 @@ impl Tracker {
         self.resting = Some(resting);
     }
 
-    /// Bias of the gyroscope in 1/256 LSB.
+    /// Present bias of the gyroscope in 1/256 LSB.
     pub const fn bias(&self) -> [i32; 3] {
         self.bias
     }
@@ -97,26 +97,26 @@ impl Tracker {
     }
 
     /// Takes a sample and updates the attitude; returns the sample's effect.
-    // On the soft core most of the time is spent on misses of the instruction cache, so the code of every sample is small and
-    // contiguous, and rare code is in separate functions.
+    // On the soft core, instruction cache misses take most of the time, so the code for every sample is small and contiguous, and
+    // rare cases are in separate functions.
     #[inline(never)]
     pub fn on_sample(&mut self, sample: &Sample) -> SampleEffect {
         let Some(last) = self.last else {
             return self.begin(sample);
         };
         let step = sample.t_us.wrapping_sub(last);
-        // An earlier time gives a long step.
+        // The time of an earlier sample results in a large unsigned step.
         if step == 0 || step > u64::from(LONGEST_STEP) {
             return self.hold(sample, last);
         }
         let step = step as u32;
-        // The time alone is written: `last` is known to have one.
+        // Only the time is written, because `last` is `Some` here.
         if let Some(last) = &mut self.last {
             *last = sample.t_us;
         }
         self.integrator.step::<4>(self.rate(sample), step);
         // The correction uses the attitude after the step, which is the attitude at the time of the reading. With the attitude
-        // before the step a fast turn would cause a tilt.
+        // before the step, fast turns would cause a tilt error.
         if let Some(tilt) = &mut self.tilt {
             let (attitude, half) = self.integrator.correctable();
             if !tilt.correct(attitude, sample.accel, step, half) {
@@ -126,7 +126,7 @@ impl Tracker {
         self.counts.steps += 1;
         if let Some(resting) = &mut self.resting {
             resting.on_sample(sample, step);
-            // A weighted mean of counts and of the first bias, so no rate overflows.
+            // The bias is a weighted mean of counts and of the first bias, so no rate overflows.
             self.bias = resting.bias();
         }
         if sample.gyro.into_iter().any(|count| is_end(count.into())) {

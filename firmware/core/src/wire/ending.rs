@@ -5,7 +5,7 @@ use super::state::{Failure, Reason, State, Timing};
 
 /// Number of times that the last message of a transfer is sent. The message is repeated because it is not acknowledged.
 const COPIES: u8 = 3;
-/// After a failure the wait for a quiet line is longer by this factor, because the other side may still be sending.
+/// Factor that lengthens the wait for a quiet line after a failure, because the other side may still be sending.
 const FAILED_QUIET_FACTOR: u64 = 10;
 
 /// Carries out the end of a transfer: sends the last message, waits for a quiet line, and then gives the outcome.
@@ -48,7 +48,7 @@ impl Ending {
         Self::new(State::Failed(failure), None, timing, now_ms)
     }
 
-    /// Starts the end of a transfer that the other side has interrupted: it waits for nothing.
+    /// Starts the end of a transfer that the other side has interrupted, which needs no wait.
     pub fn interrupted(now_ms: u64) -> Self {
         let timing = Timing {
             silence_ms: 0,

@@ -14,7 +14,7 @@ pub const MAX_LENGTH: u32 = ((1 << 24) - 1) * BLOCK;
 /// The CRC-32 algorithm by which a whole transfer is checked.
 pub static CRC_32: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// The computation of a CRC-32, a part of the data at a time.
+/// Incremental computation of a CRC-32.
 pub type Digest = crc::Digest<'static, u32>;
 
 /// Computes the CRC-32 (IEEE 802.3, as in zlib) of all bytes of a transfer.
@@ -34,7 +34,7 @@ pub struct Manifest {
 impl Manifest {
     /// Computes the manifest of `data`.
     pub fn of(data: &[u8]) -> Self {
-        // A saturated length does no harm, because both sides reject lengths above `MAX_LENGTH`.
+        // A saturated length is harmless, because both sides reject lengths above `MAX_LENGTH`.
         Self {
             length: u32::try_from(data.len()).unwrap_or(u32::MAX),
             crc32: crc32(data),

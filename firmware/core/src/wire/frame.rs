@@ -8,10 +8,10 @@ use cobs::{CobsEncoder, DestBufTooSmallError, decode_in_place};
 use super::format::{BLOCK, MAX_BLOCKS, Manifest};
 use super::state::Reason;
 
-/// Number of bytes of a data frame on the line besides its data: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
+/// Overhead of a data frame on the line, in bytes: kind and session (1), frame number (1), block number (3), CRC-16 (2), COBS
 /// code (1) and two zeros.
 pub const OVERHEAD: usize = 10;
-/// Length in bytes of the longest encoded frame, for which the buffer of `poll` must have room.
+/// Length in bytes of the longest encoded frame, and the required length of the buffer of `poll`.
 pub const MAX_FRAME: usize = OVERHEAD + (MAX_BLOCKS * BLOCK) as usize;
 
 /// The CRC-16 of a frame, with the CCITT polynomial. It starts with all ones, so that it detects lost or added zeros
@@ -33,7 +33,8 @@ pub enum Message<'a> {
     Close,
     /// Message from either side: the transfer is cancelled.
     Abort(Reason),
-    /// Message from a host that begins a conversation: a transfer that an earlier one has left is over, whatever its session.
+    /// Message from a host at the start of a session: cancels an unfinished transfer of an earlier session, with any session
+    /// number.
     Reset,
 }
 
@@ -67,12 +68,12 @@ const CLOSE: u8 = 5;
 const ABORT: u8 = 6;
 const RESET: u8 = 7;
 
-/// Time in milliseconds without a byte after which the start of a frame is not a start any more.
+/// Longest gap in milliseconds within a frame; after it the bytes of an unfinished frame are discarded.
 const GAP_MS: u64 = 50;
-/// The byte of the key Ctrl-C.
+/// The byte that the key Ctrl-C sends.
 const CTRL_C: u8 = 0x03;
 
-/// Writes the frame that cancels an unfinished transfer, and returns its length. Its bytes do nothing on a console without a
+/// Writes the frame that cancels an unfinished transfer, and returns its length. Its bytes have no effect on a console without a
 /// transfer.
 pub fn reset(out: &mut [u8]) -> usize {
     write(0, Message::Reset, out)
@@ -113,8 +114,8 @@ fn write_body(
         Message::Acknowledge(Acknowledge { number, next, map }) => {
             let [low, middle, high, _] = next.to_le_bytes();
             body.push(&[head(ACKNOWLEDGE), number, low, middle, high])?;
-            // The map is sent without the zero bytes at its two ends. Before it, the number of lowest zero bytes that were left
-            // out is sent.
+            // The map is sent without the zero bytes at its two ends. Before the map, the number of omitted lowest zero bytes is
+            // sent.
             let first = map.trailing_zeros() / 8;
             let past = (u128::BITS - map.leading_zeros()).div_ceil(8);
             if let Some(bytes) = map.to_le_bytes().get(first as usize..past as usize) {
@@ -149,7 +150,7 @@ impl Body<'_> {
 /// Splits a byte stream into frames at zero bytes.
 pub struct Reader {
     buffer: [u8; MAX_FRAME],
-    /// Number of bytes received so far of the present frame. A number above the buffer's length marks a frame that is too long.
+    /// Number of bytes received so far of the present frame. A number above the buffer's length means that the frame is too long.
     length: usize,
     /// Time in milliseconds at which the last bytes were received.
     last_ms: u64,
@@ -164,7 +165,7 @@ impl Reader {
         }
     }
 
-    /// Notes that bytes are received now. After a gap they do not continue a frame.
+    /// Records the time of received bytes. After a gap the bytes do not continue a frame.
     pub fn receive(&mut self, now_ms: u64) {
         if self.has_gap(now_ms) {
             self.length = 0;
@@ -172,7 +173,7 @@ impl Reader {
         self.last_ms = now_ms;
     }
 
-    /// Whether a person has typed Ctrl-C: the key's byte stands alone before a gap. In a frame other bytes follow it at once.
+    /// Whether Ctrl-C was typed: its byte is followed by a gap. Within a frame other bytes follow at once.
     pub fn is_interrupted(&self, now_ms: u64) -> bool {
         let typed = self.buffer.get(..self.length).unwrap_or_default();
         !typed.is_empty() && typed.iter().all(|&byte| byte == CTRL_C) && self.has_gap(now_ms)

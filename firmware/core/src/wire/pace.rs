@@ -10,8 +10,8 @@ const FRAME: u32 = 256;
 
 /// Chooses the best length of a data frame from the rate of lost frames.
 ///
-/// A frame of n data bytes and h further bytes, on a line that damages a byte with probability p, uses n/(n + h)·(1 − p)^(n + h)
-/// of the line's capacity. The maximum is at about n = √(h/p).
+/// With n data bytes and h bytes of overhead in a frame, on a line that damages a byte with probability p, the used part of the
+/// line's capacity is n/(n + h)·(1 − p)^(n + h). The maximum is at about n = √(h/p).
 pub struct FrameSize {
     /// Number of lost frames, in units of 1/256 frame; older frames count less.
     lost: u32,
@@ -49,8 +49,8 @@ impl FrameSize {
 
 /// The timeouts after which a missing answer is requested again.
 ///
-/// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. If the other side
-/// is slow, the number of requests grows only with the square root of the time.
+/// Each timeout is slightly longer than the previous one. The first timeouts are short, which suits a bad line. With a slow other
+/// side, the number of requests grows only with the square root of the time.
 pub struct Patience {
     since_ms: Option<u64>,
     tries: u64,

@@ -4,15 +4,15 @@ use super::ending::Ending;
 use super::frame::{MAX_FRAME, Message, Reader};
 use super::state::State;
 
-/// What a sender or receiver does.
+/// The behaviour in which a sender and a receiver differ.
 pub trait Role {
     /// Processes a valid frame.
     fn on_message(&mut self, now_ms: u64, session: u8, message: Message);
-    /// Ends the transfer at once, on request of the other side. What follows on the line does not belong to it.
+    /// Ends the transfer at once, on request of the other side. Later bytes on the line do not belong to the transfer.
     fn interrupt(&mut self, now_ms: u64);
     /// The end of the transfer; `None` while the transfer is in progress.
     fn ending(&mut self) -> Option<&mut Ending>;
-    /// Writes the next frame, if any, to `out`, which has room for it, and returns its length.
+    /// Writes the next frame, if any, to `out`, which is long enough, and returns its length.
     fn poll(&mut self, now_ms: u64, out: &mut [u8]) -> usize;
     /// Cancels the transfer and notifies the other side.
     fn abort(&mut self, now_ms: u64);
@@ -25,7 +25,7 @@ pub trait Role {
 /// A side of a transfer: a sender or a receiver, by its [`Role`].
 pub struct Party<R> {
     reader: Reader,
-    /// Everything except the reader, which received frames borrow.
+    /// All state except the reader, because received frames borrow the reader.
     pub(super) transfer: R,
 }
 
@@ -65,7 +65,7 @@ impl<R: Role> Party<R> {
             return 0;
         }
         if self.transfer.ending().is_none() && self.reader.is_interrupted(now_ms) {
-            // A person has typed Ctrl-C.
+            // Cancels the transfer because Ctrl-C was typed.
             self.transfer.interrupt(now_ms);
         }
         self.transfer.poll(now_ms, out)
@@ -81,7 +81,7 @@ impl<R: Role> Party<R> {
         self.transfer.state()
     }
 
-    /// Whether the transfer is over but for its last message and a quiet line, which it waits for by time alone.
+    /// Whether the transfer only has to repeat its last message and to wait for a quiet line, both controlled by time.
     pub fn is_ending(&mut self) -> bool {
         self.transfer.ending().is_some()
     }

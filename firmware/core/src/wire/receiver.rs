@@ -57,7 +57,7 @@ pub struct Receiving<B> {
     state: State,
 }
 
-/// A transfer whose `Open` was received.
+/// State of a transfer whose `Open` was received.
 struct Opened {
     session: u8,
     manifest: Manifest,
@@ -203,7 +203,7 @@ impl Opened {
         opened
     }
 
-    /// Stores the new blocks of a data frame, if they are within the window.
+    /// Stores the new blocks of a data frame that are within the window.
     fn store(
         &mut self,
         Data {

@@ -24,7 +24,7 @@ impl<D: AsRef<[u8]>> Party<Sending<D>> {
         Self::announced(data, manifest, session, timing, now_ms)
     }
 
-    /// The same for data whose manifest is known.
+    /// Starts to send `data` with a known manifest.
     pub fn announced(
         data: D,
         manifest: Manifest,

@@ -13,12 +13,12 @@ pub struct Timing {
 }
 
 impl Timing {
-    /// Time-outs of the board, which runs the console. A simulated board takes two minutes for the first one.
+    /// Time-outs for the board, the side with the console. A simulated board takes two minutes to send its first frame.
     pub const CONSOLE: Self = Self {
         silence_ms: 1_000,
         quiet_ms: 5,
     };
-    /// Time-outs of the host, which uses the console of the board.
+    /// Time-outs for the host, the side that uses the board's console.
     pub const HOST: Self = Self {
         silence_ms: 5_000,
         quiet_ms: 0,
@@ -45,9 +45,9 @@ pub enum Failure {
     Stalled(u64),
     /// The CRC-32 of the transfer was wrong in every attempt.
     Corrupt,
-    /// Cancelled by this side.
+    /// This side cancelled the transfer.
     Aborted(Reason),
-    /// Cancelled by the other side.
+    /// The other side cancelled the transfer.
     AbortedByPeer(Reason),
 }
 

@@ -25,8 +25,7 @@ pub struct Window {
     heard: u8,
 }
 
-/// The news in an acknowledgement: how many blocks have arrived, how many blocks were lost, and how many frames were lost, since
-/// the previous acknowledgement.
+/// Changes since the previous acknowledgement: numbers of arrived blocks, lost blocks and lost frames.
 pub struct Fate {
     pub arrived: u32,
     pub lost: u32,
@@ -53,7 +52,7 @@ impl Window {
         }
     }
 
-    /// Applies an acknowledgement, and returns its news; `None` for an impossible acknowledgement, which is ignored.
+    /// Applies an acknowledgement, and returns the changes; ignores an impossible acknowledgement and returns `None`.
     pub fn update(&mut self, Acknowledge { number, next, map }: Acknowledge) -> Option<Fate> {
         let past = next.checked_add(u128::BITS - map.leading_zeros())?;
         let unheard = self.number.wrapping_sub(self.heard);
@@ -121,8 +120,8 @@ impl Window {
             .min(most)
             .min(WINDOW - first)
             .min(total - block);
-        // If no frame number is free, the new frame gets the number of the last frame. Blocks of a frame with the last number are
-        // never marked as lost.
+        // If no frame number is free, the new frame gets the number of the last frame. Blocks of the last frame are never marked
+        // as lost.
         if !self.is_full() {
             self.number = self.number.wrapping_add(1);
         }

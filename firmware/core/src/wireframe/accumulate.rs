@@ -4,11 +4,10 @@ use super::format::{Point, Segment};
 use super::motion::{PAN, ROTATION_COSINE, ROTATION_SINE, Step};
 use crate::fixed::{Q5_11, Q12_20, wide};
 
-/// Moves all end points in place by one step. Returns whether this was possible: if one of them would leave the range of Q5.11,
-/// all stay as they are.
+/// Moves all end points in place by one step. Returns `false` and changes nothing if a coordinate would leave the range of Q5.11.
 ///
-/// A rotation computes i' = i·c ∓ j·s and j' = ±i·s + j·c, each as an exact sum of two products that is rounded to nearest once,
-/// half units up. c² + s² is 1 + 2^−22, so each step also enlarges by 1.2·10^−7.
+/// A rotation computes i' = i·c ∓ j·s and j' = ±i·s + j·c, each as an exact sum of two products that is rounded once, to nearest,
+/// half units up. As c² + s² = 1 + 2^−22, each step also enlarges the picture by 1.2·10^−7.
 pub fn apply(segments: &mut [Segment], step: Step) -> bool {
     let possible = segments
         .as_flattened()
@@ -41,7 +40,7 @@ fn pan(x: Q5_11, steps: i8) -> Option<Q5_11> {
     x.checked_add(PAN.checked_mul_int(steps.into())?)
 }
 
-/// Rotates from the first axis to the second, or back.
+/// Rotates from the first axis towards the second axis, or backwards.
 fn rotate([i, j]: [Q5_11; 2], forwards: bool) -> Option<[Q5_11; 2]> {
     let bits = |x: Q5_11| i32::from(x.to_bits());
     let cosine = bits(ROTATION_COSINE);
@@ -59,7 +58,7 @@ fn rotate([i, j]: [Q5_11; 2], forwards: bool) -> Option<[Q5_11; 2]> {
     Some([Q5_11::from_bits(i?), Q5_11::from_bits(j?)])
 }
 
-/// The segment in the format of the projection, exactly.
+/// Converts the segment to the format of the projection, exactly.
 pub fn segment(segment: Segment) -> [[Q12_20; 3]; 2] {
     segment.map(|point| point.map(Q12_20::from))
 }

@@ -21,7 +21,7 @@ const fn program() -> [[u8; WORD_BYTES]; 16] {
     let sides = [q("-2"), q("2")];
     let mut edge = 0;
     while edge < 12 {
-        // Four edges along each axis, one for each pair of sides on the other two axes.
+        // Four edges along each axis, one for each combination of signs of the other two coordinates.
         let (axis, corner) = (edge / 4, edge % 4);
         let (first, second) = (sides[corner % 2], sides[corner / 2]);
         let [low, high] = sides;
@@ -39,7 +39,7 @@ const fn program() -> [[u8; WORD_BYTES]; 16] {
     words
 }
 
-/// Encodes a word in a constant; [`super::Instruction::encode`] does so at run time.
+/// Encodes an instruction at compile time; [`super::Instruction::encode`] does the same at run time.
 const fn word(opcode: Opcode, fields: [Q5_11; 6]) -> [u8; WORD_BYTES] {
     let mut bits = opcode as u128;
     let mut field = 0;

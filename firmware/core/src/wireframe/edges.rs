@@ -1,7 +1,7 @@
 //! Unique edges of meshes.
 
-/// Keeps each undirected edge once: sorts the edges in place, each with its smaller index first, and returns the part that has
-/// every edge once, in increasing order. Edges from an index to itself are left out.
+/// Removes duplicates of undirected edges: sorts the edges in place, each with its smaller index first, and returns the slice of
+/// the unique edges in increasing order. Edges from an index to itself are removed.
 ///
 /// The edges of a mesh are three for each triangle, or one for each corner of a polygon. An edge inside a closed mesh then occurs
 /// twice, in both directions, and an edge on the border of an open mesh once. The function needs no memory besides the slice.

@@ -1,4 +1,4 @@
-//! Errors in programs: the place, what was expected there, and what was found.
+//! Errors in programs: the position, the expected input, and the found input.
 
 use core::fmt;
 
@@ -15,7 +15,7 @@ pub struct ProgramError<'a> {
     pub violation: Violation<'a>,
 }
 
-/// The place of an error in a program.
+/// The position of an error in a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
     /// A line of the text form, counted from 1.
@@ -47,7 +47,7 @@ impl<'a> Violation<'a> {
     }
 }
 
-/// Expectation that a program violates.
+/// Input that was expected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expected {
     /// One of the opcodes.
@@ -56,7 +56,7 @@ pub enum Expected {
     Keyword,
     /// Zeros in the bits above bit 98.
     ZerosAbove,
-    /// Zeros in a field that the instruction does not use.
+    /// Zeros in an unused field of the instruction.
     Unused {
         /// The kind of the instruction.
         opcode: Opcode,
@@ -71,7 +71,7 @@ pub enum Expected {
     NothingAfterEnd,
     /// Exactly one instruction of a kind.
     One(Opcode),
-    /// A z of the eye that is not negative.
+    /// A z of the eye of at least 0.
     EyeNotNegative,
     /// A z of the eye above that of the view plane.
     EyeAbove {
@@ -95,18 +95,18 @@ pub enum Expected {
     EndOfLine,
 }
 
-/// Input found instead of an [`Expected`].
+/// Input that was found instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Found<'a> {
     /// The three bits of an opcode.
     Opcode(u8),
     /// Some bits.
     Bits(u32),
-    /// A number of bytes.
+    /// This number of bytes.
     Bytes(usize),
     /// A number.
     Number(Q5_11),
-    /// A number of numbers.
+    /// This number of numbers.
     Count(usize),
     /// A word of a line.
     Word(Word<'a>),

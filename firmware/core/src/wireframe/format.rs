@@ -5,7 +5,7 @@ use crate::fixed::Q5_11;
 
 /// Largest number of segments of a program.
 pub const MAX_SEGMENTS: u32 = 65_535;
-/// Number of bytes of a word in memory: 128 bits, little-endian, of which a program uses the lower 99.
+/// Number of bytes of a word in memory: 128 bits, little-endian, of which an instruction uses the lower 99.
 pub const WORD_BYTES: usize = 16;
 
 /// A position in space: x to the right, y up, z to the viewer.
@@ -27,7 +27,7 @@ pub struct Window {
 pub enum Opcode {
     /// The eye: x, y, z.
     Eye = 0b000,
-    /// The view plane: its z.
+    /// The view plane: z.
     Plane = 0b001,
     /// The window: x and y of the lower left corner, then of the upper right one.
     Window = 0b010,

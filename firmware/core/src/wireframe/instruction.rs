@@ -1,4 +1,4 @@
-//! The instructions of a program, and their words.
+//! The instructions of a program, and their binary encoding.
 
 use super::error::{Expected, Found, Violation};
 use super::format::{Opcode, Point, Segment, WORD_BYTES, Window};
@@ -22,7 +22,7 @@ pub enum Instruction {
 impl Instruction {
     /// Decodes a word: the opcode in bits 98 to 96, and six fields of 16 bits, the first one in bits 95 to 80.
     ///
-    /// Only the opcode tells an end from other instructions, so a segment whose fields are all ones is an ordinary segment.
+    /// Only the opcode distinguishes an end from other instructions, so a segment with all fields ones is an ordinary segment.
     ///
     /// # Errors
     /// The opcode is unknown, a bit above bit 98 is set, or an unused field is not 0. The six unused fields of an end may also be
@@ -63,7 +63,7 @@ impl Instruction {
         ))
     }
 
-    /// Encodes the instruction as a word. Unused fields are 0, those of an end are all ones.
+    /// Encodes the instruction as a word. Unused fields are 0, except for the fields of an end, which are all ones.
     pub fn encode(self) -> [u8; WORD_BYTES] {
         let (opcode, fields) = self.parts();
         let mut fields = fields.map(|field| field.to_bits() as u16);

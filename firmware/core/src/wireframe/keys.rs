@@ -1,9 +1,9 @@
-//! Keys, the requests that they make, and the suppression of contact bounce.
+//! Keys, their requests for motion, and the suppression of contact bounce.
 
 use super::motion::Step;
 use crate::choice::choices;
 
-/// A key of the simulator.
+/// A key of the wireframe simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     /// Pans up, or rotates the near side up.
@@ -14,7 +14,7 @@ pub enum Key {
     Left,
     /// Pans to the right, or rotates the near side to the right.
     Right,
-    /// Moves the segments to the viewer.
+    /// Moves the segments towards the viewer.
     ZoomIn,
     /// Moves the segments away from the viewer.
     ZoomOut,
@@ -47,19 +47,19 @@ impl Key {
     }
 }
 
-/// The keys that were pressed and have not yet moved the segments: at most one request of each key.
+/// Pending requests of pressed keys that have not yet moved the segments: at most one request per key.
 ///
-/// Each frame takes one request. Keys take turns, so no key waits for more than the five others.
+/// Each frame takes one request. Keys are served in rotation, so a request waits for at most the five other keys.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Requests {
-    /// A bit for each key.
+    /// Pending requests, one bit per key.
     pending: u8,
-    /// Number of the key whose turn is next.
+    /// Number of the key that is served next.
     next: u8,
 }
 
 impl Requests {
-    /// Adds the request of a key. A request of the same key that still waits is the same request.
+    /// Adds the request of a key. A second request of a key with a pending request has no effect.
     pub const fn press(&mut self, key: Key) {
         self.pending |= 1 << key as u8;
     }
@@ -76,7 +76,7 @@ impl Requests {
         Some(key)
     }
 
-    /// Whether no request waits.
+    /// Whether no request is pending.
     pub const fn is_empty(&self) -> bool {
         self.pending == 0
     }
@@ -85,23 +85,23 @@ impl Requests {
 /// Time in milliseconds for which all samples of a button must agree before its new level counts.
 pub const DEBOUNCE_MS: u32 = 5;
 
-/// Suppresses the contact bounce of up to eight buttons, from samples at any times.
+/// Suppresses the contact bounce of up to eight buttons, from samples at irregular times.
 ///
 /// A new level of a button counts at the first sample that is at least [`DEBOUNCE_MS`] after the first sample of this level, if no
-/// sample between them differs. So one sample alone never counts, and bounces that are shorter than this time are ignored.
+/// sample between them differs. Therefore a single sample never counts, and bounces shorter than this time are ignored.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Debouncer {
-    /// The levels that count.
+    /// The debounced levels.
     levels: u8,
-    /// Buttons whose last sample differs from the level that counts.
+    /// Buttons whose last sample differs from the debounced level.
     changing: u8,
     /// For each button, the time of the first sample of the new level.
     since_ms: [u32; 8],
 }
 
 impl Debouncer {
-    /// Takes a sample of all buttons, 1 for a pressed one, at a time in milliseconds that may wrap. Returns the buttons whose
-    /// press counts from this sample on.
+    /// Takes a sample of all buttons, 1 for a pressed one, at a time in milliseconds that may wrap. Returns the buttons that are
+    /// newly pressed after debouncing.
     pub fn sample(&mut self, now_ms: u32, sample: u8) -> u8 {
         let different = sample ^ self.levels;
         let mut settled = 0;
@@ -118,7 +118,7 @@ impl Debouncer {
         settled & self.levels
     }
 
-    /// Whether a button's level is changing, so that the next sample should follow soon.
+    /// Whether a level is changing, so the next sample should follow soon.
     pub const fn is_changing(&self) -> bool {
         self.changing != 0
     }

@@ -15,9 +15,9 @@ pub const ROTATION_SINE: Q5_11 = Q5_11::from_bits(0x0040);
 const HALF_COSINE: i128 = 0x3FFD_FFD8_02C0_6979;
 /// sin(ε/2) with 62 fraction bits, rounded to nearest.
 const HALF_SINE: i128 = 0x0100_07FE_DFF1_02D6;
-/// Fraction bits of the quaternion's parts.
+/// Number of fraction bits of the quaternion's components.
 const FRACTION: u32 = 62;
-/// The largest distance in the body's axes: 16 with 34 fraction bits.
+/// The largest displacement in the body's axes: 16, with 34 fraction bits.
 const FARTHEST: i64 = 16 << 34;
 
 /// A change of the position of all segments, about or along the world's axes.
@@ -37,11 +37,11 @@ pub enum Step {
     },
 }
 
-/// The motion of all segments since the start, without drift: the segments themselves stay as they are in the program.
+/// The motion of all segments since the start, without drift: the segments in the program stay unchanged.
 ///
-/// A point p moves to R(p + d). The rotation R is a quaternion with 62 fraction bits and length 1, so that 10,000 steps have an
-/// error of 10^−14. The displacement d is in the body's axes, where a rotation does not change it; a pan adds a row of the matrix
-/// of R exactly.
+/// It maps a point p to R(p + d). The rotation R is a quaternion with 62 fraction bits and length 1, so that 10,000 steps have an
+/// error of 10^−14. The displacement d is in the body's axes, where a rotation does not change it; a pan adds a multiple of a row
+/// of R's matrix to it, exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Motion {
     /// w, x, y, z: s2.62.
@@ -60,8 +60,8 @@ impl Default for Motion {
 }
 
 impl Motion {
-    /// Adds a step. Returns whether it was possible: a pan that would displace the segments by more than 16 in the body's axes
-    /// changes nothing.
+    /// Adds a step. Returns `false` and changes nothing for a pan that would displace the segments by more than 16 in the body's
+    /// axes.
     pub fn apply(&mut self, step: Step) -> bool {
         match step {
             Step::Pan(direction) => return self.pan(direction),
@@ -92,8 +92,8 @@ impl Motion {
         possible
     }
 
-    /// Rotates by ±ε: multiplies the quaternion by that of the step from the left, rounds to nearest, and corrects the length to 1.
-    /// `k` is the number of the axis' part, and `i` and `j` those of the next axes.
+    /// Rotates by ±ε: multiplies the quaternion from the left by the step's quaternion, rounds to nearest, and corrects the
+    /// length to 1. `k` is the index of the axis' component, and `i` and `j` are the indices of the next axes' components.
     fn rotate(&mut self, [k, i, j]: [usize; 3], forwards: bool) {
         let sine = if forwards { HALF_SINE } else { -HALF_SINE };
         let old = self.rotation.map(i128::from);
@@ -105,7 +105,8 @@ impl Motion {
                 *new = nearest(part(number) * HALF_COSINE + other * sine);
             }
         }
-        // One Newton step to the length 1. The error of the squared length is a few units of 2^−62, and no sum exceeds 2^126.
+        // One Newton step towards the length 1. The error of the squared length is a few units of 2^−62, and no sum exceeds
+        // 2^126.
         let excess = (1 << FRACTION) - nearest(new.iter().map(|x| x * x).sum());
         self.rotation = new.map(|x| (x + nearest(x * excess / 2)) as i64);
     }
@@ -119,7 +120,7 @@ impl Motion {
         Quaternion::exact(parts).unwrap_or(Quaternion::IDENTITY)
     }
 
-    /// The constants of a frame.
+    /// Computes the constants of a frame.
     pub fn pose(&self) -> Pose {
         Pose {
             axes: self.quaternion().axes(),
@@ -138,7 +139,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// Moves a point: R(p + d), rounded to nearest once. Each coordinate is within ±56.
+    /// Moves a point: Computes R(p + d), rounded once to nearest. Each coordinate is within ±56.
     pub fn point(&self, point: Point) -> [Q12_20; 3] {
         let [x, y, z] = point.map(|x| i64::from(x.to_bits()) << 9);
         let [dx, dy, dz] = self.displacement.map(i64::from);

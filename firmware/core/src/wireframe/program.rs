@@ -18,8 +18,8 @@ pub struct Viewing {
 
 /// Checks the instructions of a program one after the other.
 ///
-/// A program has one eye, one view plane and one window, in any order and at any place before the end, because all segments are
-/// drawn together at the end.
+/// A program has one eye, one view plane and one window, in any order and anywhere before the end, because all segments are drawn
+/// together at the end.
 #[derive(Clone, Debug, Default)]
 pub struct Checker {
     eye: Option<Point>,
@@ -29,8 +29,8 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// Takes the next instruction. Returns the viewing parameters at the end of the program, after which the checker must not be
-    /// used.
+    /// Takes the next instruction. Returns the viewing parameters at the end of the program; the checker must not be used
+    /// afterwards.
     ///
     /// # Errors
     /// The first deviation from the format.

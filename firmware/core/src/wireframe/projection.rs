@@ -1,7 +1,8 @@
 //! The projection of moved segments to the screen.
 //!
-//! A point P is projected from the eye E to the view plane z = a: x' = Ex − (Ez − a)·(Ex − x)/(Ez − z), and y' the same. The window
-//! then fills the picture. Both steps together are one quotient for each axis of the screen, with 8 fraction bits:
+//! A point P is projected from the eye E to the view plane z = a: x' = Ex − (Ez − a)·(Ex − x)/(Ez − z), and y' by the same
+//! formula. The window then fills the picture. Combined, projection and scaling need one quotient for each axis of the screen,
+//! with 8 fraction bits:
 //!
 //! ```text
 //! right = 256·W·((Ex − xl)·(Ez − z) − (Ez − a)·(Ex − x)) / ((xh − xl)·(Ez − z))
@@ -14,8 +15,8 @@ use super::program::Viewing;
 use crate::fixed::{Q5_11, Q12_20};
 use crate::picture::Size;
 
-/// A line on the screen: its two ends, each with the distance from the left and from the top border, in units of 2^−8 pixels,
-/// within ±[`GUARD`].
+/// A line on the screen: the distances of its two ends from the left and the top border, in units of 2^−8 pixels, within
+/// ±[`GUARD`].
 pub type ScreenLine = [[i32; 2]; 2];
 
 /// The guard band: the largest distance of an end from the top left corner, 2047 pixels in units of 2^−8 pixels.
@@ -24,7 +25,7 @@ pub const GUARD: i32 = 2047 << 8;
 /// A coordinate with 20 fraction bits.
 type Moved = [Q12_20; 3];
 
-/// The constants of a frame that project segments.
+/// The constants for projection in a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Projection {
     /// The eye, with 20 fraction bits.
@@ -40,16 +41,16 @@ pub struct Projection {
 /// Constants of one axis of the screen. Lengths have 11 fraction bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Axis {
-    /// Distance of the eye from the side of the window at 0, along the axis.
+    /// Distance along the axis from the window's side at screen coordinate 0 to the eye.
     offset: i64,
     /// Extent of the window, positive.
     span: i64,
-    /// Extent of the picture in units of 2^−8 pixels. Its sign is that of the axis in the world: negative for down.
+    /// Extent of the picture in units of 2^−8 pixels. It is negative for the axis down, which is opposite to the world's y axis.
     extent: i64,
 }
 
 impl Projection {
-    /// The projection of a program's viewing parameters to a picture.
+    /// Makes the projection from a program's viewing parameters to a picture.
     pub fn new(viewing: &Viewing, size: Size) -> Self {
         let bits = |x: Q5_11| i64::from(x.to_bits());
         let [ex, ey, ez] = viewing.eye.map(bits);
@@ -79,8 +80,8 @@ impl Projection {
     /// Projects a moved segment, whose coordinates are within ±56. `None` if no part of it is behind the view plane and within the
     /// guard band.
     ///
-    /// The part in front of the view plane is cut off; the cut is rounded to nearest with 20 fraction bits. A part beyond the guard
-    /// band is cut off exactly. Each end is then rounded once, to nearest, half units up.
+    /// The part in front of the view plane is cut off; the cut point is rounded to nearest with 20 fraction bits. A part beyond
+    /// the guard band is cut off exactly. Each end is then rounded once, to nearest, half units up.
     pub fn line(&self, segment: [Moved; 2]) -> Option<ScreenLine> {
         let [a, b] = self.behind(segment.map(|point| point.map(|x| i64::from(x.to_bits()))))?;
         let (a, b) = (self.fractions(a), self.fractions(b));
@@ -98,18 +99,18 @@ impl Projection {
         }
     }
 
-    /// The point in which a segment crosses the view plane, from its end behind the plane to that in front of it.
+    /// Computes the point in which a segment from a point behind the view plane to a point in front of it crosses the plane.
     fn cut(&self, [x, y, z]: [i64; 3], [x2, y2, z2]: [i64; 3]) -> [i64; 3] {
         // All differences are below 2^27.
         let along = |from, to| from + nearest((to - from) * (self.plane - z), z2 - z);
         [along(x, x2), along(y, y2), self.plane]
     }
 
-    /// The two quotients of a point behind the view plane.
+    /// Computes the two screen coordinates, as quotients, of a point behind the view plane.
     ///
-    /// With coordinates within ±56 and Q5.11 constants, each difference is below 2^16 units of 2^−11 or 72·2^20 units of 2^−20. So a
-    /// denominator is below 2^42.2, a numerator in a picture 1280 wide below 2^61.5, and the sum of the numerator and of the
-    /// guard band's multiple of the denominator below 2^62.4.
+    /// With coordinates within ±56 and Q5.11 constants, each difference is below 2^16 units of 2^−11 or 72·2^20 units of 2^−20.
+    /// Therefore a denominator is below 2^42.2, a numerator for a picture 1280 pixels wide below 2^61.5, and numerator +
+    /// GUARD·denominator below 2^62.4.
     fn fractions(&self, point: [i64; 3]) -> [Fraction; 2] {
         let ([x, y, z], [ex, ey, ez]) = (point, self.eye);
         let distance = ez - z;
@@ -129,24 +130,24 @@ struct Fraction {
 }
 
 impl Fraction {
-    /// The distances from both sides of the guard band, times the denominator: negative beyond the side.
+    /// The distances from both sides of the guard band, times the denominator; negative outside.
     const fn inside(self) -> [i64; 2] {
         let guard = GUARD as i64 * self.denominator;
         [guard + self.numerator, guard - self.numerator]
     }
 
-    /// The quotient of a fraction within the guard band, to nearest.
+    /// Computes the quotient, rounded to nearest, of a fraction within the guard band.
     fn value(self) -> i32 {
         // The quotient is within ±GUARD, so it fits.
         nearest(self.numerator, self.denominator) as i32
     }
 }
 
-/// The visible end of a segment on the side of its end `a`: the end itself, or the point in which the segment enters the guard
-/// band. `None` if the segment is beyond the guard band.
+/// Clips the segment's end `a` to the guard band: returns `a`, or the point in which the segment enters the guard band. `None` if
+/// the whole segment is outside.
 ///
-/// For each side that `a` is beyond and `b` is not, the crossing has an exact position on the other axis. The crossing that lies
-/// within the guard band is the end; rounding follows last.
+/// For each side of the guard band between `a` and `b`, the position of the crossing on the other axis is exact. The crossing
+/// that lies within the guard band becomes the end; it is rounded last.
 fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     if a.iter().all(|axis| axis.inside().iter().all(|&d| d >= 0)) {
         return Some(a.map(Fraction::value));
@@ -174,8 +175,8 @@ fn end(a: [Fraction; 2], b: [Fraction; 2]) -> Option<[i32; 2]> {
     None
 }
 
-/// The position on one axis, to nearest, at which a segment from `a` to `b` crosses a plane, from its distances to the plane:
-/// `out` < 0 at `a` and `within` ≥ 0 at `b`. `None` beyond the guard band.
+/// Computes the position on one axis, rounded to nearest, at which a segment from `a` to `b` crosses a plane, from the ends'
+/// distances to the plane: `out` < 0 at `a` and `within` ≥ 0 at `b`. `None` outside the guard band.
 fn crossing((a, b): (Fraction, Fraction), within: i128, out: i128) -> Option<i32> {
     // The point is (a·within − b·out)/(within − out). The common divisor cancels; both sums are below 2^125.
     let blend = |a: i64, b: i64| i128::from(a) * within - i128::from(b) * out;

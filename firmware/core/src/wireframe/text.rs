@@ -1,4 +1,4 @@
-//! The text form of a program: one instruction a line.
+//! The text form of a program: one instruction per line.
 //!
 //! ```text
 //! # a comment to the end of the line
@@ -9,8 +9,8 @@
 //! end
 //! ```
 //!
-//! Numbers are decimals, rounded to the nearest Q5.11. Blank lines have no meaning. The text form of a program and back is
-//! exact.
+//! Numbers are decimals, rounded to the nearest Q5.11. Blank lines have no meaning. The conversion of a program to the text form
+//! and back is exact.
 
 use core::fmt;
 

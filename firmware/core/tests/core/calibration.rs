@@ -106,7 +106,7 @@ fn whatever_moves_is_refused_with_its_reason() {
     }
 }
 
-/// A mean between two numbers is stated as the farther one from 0, on both sides.
+/// A mean between two integers is rounded away from 0 for both signs.
 #[test]
 fn a_mean_that_is_too_large_is_rounded_away_from_zero() {
     for (sign, stated) in [(1, 657), (-1, -657)] {

@@ -32,7 +32,8 @@ fn basis(view: &View) -> [Vector; 3] {
     rows(view).map(|row| row.map(Q2_23::to_num))
 }
 
-/// Returns how far a view's basis is from an orthonormal right-handed one: the largest of |a·a − 1|, |a·b| and |u × v − n|.
+/// Returns the deviation of a view's basis from an orthonormal right-handed basis: the largest of |a·a − 1|, |a·b| and |u × v −
+/// n|.
 fn deviation(view: &View) -> f64 {
     let [u, v, n] = basis(view);
     [
@@ -53,8 +54,8 @@ fn radians(angle: u32) -> f64 {
     f64::from(angle) / 2f64.powi(32) * TAU
 }
 
-/// Returns the multiples of an eighth of a turn with their neighbours, and `count` further angles spread over the circle, in
-/// units of 2^−32 turns.
+/// Returns test angles in units of 2^−32 turns: the multiples of an eighth of a turn, their neighbours, and `count` further
+/// angles over the circle.
 fn angles(count: u32) -> impl Iterator<Item = u32> + Clone {
     let edges = (0..8_u32)
         .flat_map(|octant| [u32::MAX, 0, 1].map(|offset| (octant << 29).wrapping_add(offset)));
@@ -135,7 +136,7 @@ fn the_free_camera_is_what_it_should_be() {
     assert!(largest <= 2f64.powi(-20), "{largest}");
 }
 
-/// A vector of random directions and lengths, with `size` components in [−1, 1).
+/// A vector with random direction and length, with `size` components in [−1, 1).
 fn vectors(count: u32) -> impl Iterator<Item = [Q32_32; 3]> {
     (1..=count).map(|k| {
         let mut state = u64::from(k).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -188,7 +189,7 @@ fn a_gaze_along_up_takes_another_axis() {
     assert_eq!(rows([0.0, 0.0, -5.0], z), basis(&above));
     assert_eq!(rows([0.0, 0.0, 0.3], z)[1], [-1.0, 0.0, 0.0]);
     assert_eq!(rows([7.0, 0.0, 0.0], [-1.0, 0.0, 0.0])[1], [0.0, -1.0, 0.0]);
-    // Just inside and just outside of the limit of 2^-10.
+    // Sines just below and just above the limit 2^-10.
     let near = |offset: f64| rows([0.0, offset, -1.0], z)[1];
     assert!(difference(near(0.000_97), [-1.0, 0.0, 0.0]) < 1e-6);
     assert!(difference(near(0.000_98), [0.0, -1.0, 0.0]) < 1e-3);
@@ -296,7 +297,7 @@ fn known_places_are_exact() {
     assert_eq!(look(level, level, quarter).u(), [zero, zero, one]);
 }
 
-/// Returns the numbers of a valid camera (eye, basis, half width, near plane), of which each test changes one.
+/// Returns the numbers of a valid camera (eye, basis, half width, near plane); each test changes one of them.
 fn numbers() -> ([Q32_32; 3], [[Q2_23; 3]; 3], U8_28, U4_28) {
     let view = View::look(
         [Q32_32::ONE; 3],

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 proptest! {
     #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The distance alone is that of the sample, even at points of equal coordinates.
+    /// `distance` equals the distance in `sample`, even at points with equal coordinates.
     #[test]
     fn the_distance_alone_is_that_of_the_sample(depth in 1..=6_u8, point in prop::array::uniform3(-1 << 21..1_i32 << 21), same in any::<bool>()) {
         let point = if same { [point[0], !point[0], point[2]] } else { point };
@@ -101,7 +101,7 @@ fn mistakes_say_what_was_expected() {
     }
 }
 
-/// A flat solid is what its constants in the gateware's registers say.
+/// A flat solid is restored from its constants in the gateware's registers.
 #[test]
 fn flat_solids_follow_from_their_constants() {
     let mut kinds = vec![];

@@ -1,4 +1,4 @@
-//! Flash images: encoding, and every kind of damage.
+//! Tests of flash images: encoding, and detection of every kind of damage.
 
 use glint_core::flash::{
     CONTENTS, Contents, EncodeError, FIRMWARE, FlashError, Image, Kind, MAX_BYTES, MAX_FIRMWARE,
@@ -55,14 +55,14 @@ fn an_image_has_its_parts_again() {
     let lamp = image.contents.find(Kind::Scene, "lamp").unwrap();
     assert_eq!(lamp.text(), Ok("size 640 360\nfield sphere:0.6\n"));
     assert_eq!(image.contents.find(Kind::List, "lamp"), None);
-    // A board sees the whole flash, with erased bytes after the contents.
+    // A board reads the whole flash, which has erased bytes after the contents.
     let mut flash = bytes.clone();
     flash.resize(MAX_BYTES, 0xff);
     let contents = Contents::new_checked(&flash[CONTENTS..]).unwrap();
     assert_eq!(contents, image.contents);
 }
 
-/// The header before the firmware is what LiteX's BIOS reads: the length, and the CRC-32 that its `crc32.c` computes, which is zlib's.
+/// The header before the firmware contains the length and the zlib CRC-32 that LiteX's BIOS checks.
 #[test]
 fn the_firmware_has_the_header_of_flash_boot() {
     let bytes = image();
@@ -89,13 +89,13 @@ fn every_damaged_byte_outside_the_gaps_is_found() {
     for place in starts.into_iter().flatten() {
         let mut bytes = good.clone();
         bytes[place] ^= 0x20;
-        // Bytes of a bitstream other than its word carry no checksum here; the FPGA checks its own.
+        // The image has no checksum for the bitstream except its synchronisation word, because the FPGA checks the bitstream.
         let is_gap = place < 64 || bytes_between_items(&good, place);
         assert_eq!(Image::new_checked(&bytes).is_ok(), is_gap, "{place:#x}");
     }
 }
 
-/// Whether the byte fills the gap after an item.
+/// Whether the byte is in the gap after an item.
 fn bytes_between_items(good: &[u8], place: usize) -> bool {
     let end = CONTENTS + 16 + 3 * 48;
     (end + 40..end + 48).contains(&place) || {

@@ -37,13 +37,13 @@ fn free_look_is_look_where_the_angles_are_the_same() {
     let zero = View::look(ORIGIN, Turns(0), Turns(0), Turns(0)).expect("near");
     assert_eq!(level, zero);
     for yaw in [-170.0, -30.0, 15.5, 90.0] {
-        // A positive rotation about up turns left; the yaw of `look` turns right.
+        // A positive rotation about the up axis turns left; a positive yaw of `look` turns right.
         let seen = free_look(ORIGIN, attitude(yaw, 0.0, 0.0), mounting).expect("near");
         let look = View::look(ORIGIN, degrees(-yaw), Turns(0), Turns(0)).expect("near");
         assert!(apart(&seen, &look) < 3e-7);
     }
     for angle in [-80.0, 25.0, 60.0] {
-        // A positive rotation about x, the right axis, looks up; the pitch of `look` looks down.
+        // A positive rotation about the right axis x turns up; a positive pitch of `look` turns down.
         let seen = free_look(ORIGIN, attitude(0.0, 0.0, angle), mounting).expect("near");
         let look = View::look(ORIGIN, Turns(0), degrees(-angle), Turns(0)).expect("near");
         assert!(apart(&seen, &look) < 3e-7);
@@ -79,7 +79,7 @@ fn every_mounting_is_right_handed_and_orthonormal() {
 }
 
 /// The sensor's pitch passes −90° and +90°, without and with yaw and roll, and some of the cameras pass the zenith and the nadir.
-/// A step of 0.01° changes each number of a camera by little more than the arc that the step causes.
+/// A step of 0.01° changes each number of a camera by little more than the arc length of the step.
 #[test]
 fn the_camera_never_jumps() {
     let step = 0.01_f64;
@@ -139,7 +139,7 @@ fn recentring_takes_the_heading_and_leaves_the_horizon() {
     for (a, b) in up(camera).iter().zip(up(tilted)) {
         assert!((a - b).abs() < 16, "{a} {b}");
     }
-    // The heading is defined for a camera that looks straight up, too.
+    // The heading is also defined for a camera that looks straight up.
     let mut steering = Steering::default();
     steering.follow(attitude(0.0, 90.0, 40.0));
     steering.recentre();

@@ -1,4 +1,4 @@
-//! Cameras that show whole meshes, compared with computations in f64.
+//! Tests of cameras that show whole meshes, against computations in f64.
 
 use glint_core::camera::{HALF_WIDTH, View};
 use glint_core::fixed::{Q8_24, Q32_32, Turns};
@@ -14,7 +14,7 @@ fn mesh(points: &[[i16; 3]]) -> Vec<u8> {
         position,
         ..Vertex::default()
     });
-    // A vertex that no triangle uses would be left out.
+    // The encoder leaves out vertices without a triangle, so each vertex gets one.
     let triangles = (0..points.len() as u32).map(|i| IndexedTriangle {
         indices: [i; 3],
         ..IndexedTriangle::default()
@@ -41,7 +41,7 @@ fn dot(a: Vector, b: Vector) -> f64 {
     (0..3).map(|i| a[i] * b[i]).sum()
 }
 
-/// The centre of the box around points, and the distance of the farthest of them from it.
+/// The centre of the bounding box of points, and the distance of the farthest point from the centre.
 fn exact(points: &[Vector]) -> (Vector, f64) {
     let centre = [0, 1, 2].map(|i| {
         let values = points.iter().map(|point| point[i]);
@@ -64,7 +64,7 @@ fn check(view: &View, (centre, radius): (Vector, f64), up: Axis) -> f64 {
     assert!((dot(to, n) - distance).abs() < 1e-5 && length(eye) < 7.91);
     let axis = [Axis::X, Axis::Y, Axis::Z].map(|other| f64::from(u8::from(other == up)));
     assert!(dot(axis, u).abs() < 1e-6, "{u:?}");
-    // 60° from the axis that is up.
+    // The angle from the up axis is 60°.
     assert!((dot(axis, n) + 0.5).abs() < 1e-6 && dot(axis, v) < 0.0);
     let half_height = view.half_width().to_num::<f64>() * 9.0 / 16.0;
     let part = radius / (distance.powi(2) - radius.powi(2)).sqrt() / half_height;
@@ -93,7 +93,7 @@ proptest! {
         let sphere = sphere(&[(&bytes, matrix)]).expect("points");
         let exact = exact(&placed);
         let framed = sphere.framed(up, Turns(turned), None);
-        // An eye has room outside of the sphere.
+        // Some allowed position of the eye is outside of the sphere.
         let has_room = length(exact.0) + exact.1 + 0.2 < 7.899;
         prop_assert!(framed.is_ok() == has_room || (length(exact.0) + exact.1 - 7.7).abs() < 0.01);
         if let Ok(view) = framed {
@@ -173,7 +173,7 @@ fn all_meshes_are_within_the_sphere_and_some_spheres_are_refused() {
         refused(8).unwrap_err(),
         "meshes in a sphere of radius 0.500 about (8.500, 0.000, 0.000): expected an eye outside of it within 7.9 of the origin"
     );
-    // The least and the largest coordinates, which no arithmetic may overflow.
+    // The smallest and the largest coordinates must not cause overflow.
     let corners = mesh(&[[-32_768; 3], [32_767; 3]]);
     let place = Matrix::scale([16; 3].map(Q8_24::from_num)).unwrap();
     let place = place.then(&moved(32)).unwrap();
@@ -181,7 +181,7 @@ fn all_meshes_are_within_the_sphere_and_some_spheres_are_refused() {
     for angle in [None, Some(Turns(1)), Some(Turns(u32::MAX))] {
         assert!(large.framed(Axis::Y, Turns(5), angle).is_err());
     }
-    // A point is shown with the least field of view.
+    // A single point gets the smallest field of view.
     let point = sphere(&[(&mesh(&[[0; 3]]), Matrix::IDENTITY)]).unwrap();
     let view = point.framed(Axis::Z, Turns(0), None).unwrap();
     assert_eq!(view.half_width(), HALF_WIDTH[0]);

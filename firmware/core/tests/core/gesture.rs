@@ -1,4 +1,4 @@
-//! Tests of the camera's control by a hand.
+//! Tests of the control of the camera by a hand.
 
 use glint_core::fixed::{Q4_28, Q32_32, Turns, U16_16};
 use glint_core::gesture::{
@@ -43,7 +43,7 @@ const EMPTY: Statistics = Statistics {
     is_whole: true,
 };
 
-/// A control with frames at a steady rate, unless one is stated to come later.
+/// A control that gets frames at a steady rate, except for frames with a stated delay.
 struct Run {
     control: Control,
     /// Time of the last frame in µs.
@@ -86,7 +86,7 @@ fn the_centre_is_the_mean_of_the_pixels() {
     let blob = rectangle([10, 20], [11, 229]).blob().expect("a hand");
     assert_eq!(blob.centre.map(|x| x.to_num::<f64>()), [10.5, 124.5]);
     assert_eq!(blob.count, 420);
-    // The largest frame, with as many pixels as a hand may have.
+    // The largest frame, with the largest number of pixels of a hand.
     let size = [1_280, 720];
     let blob = Statistics {
         size,
@@ -142,7 +142,7 @@ fn frames_without_a_hand_are_refused() {
     ] {
         assert_eq!(statistics.blob(), Err(doubt), "{what}");
     }
-    // Two hands, or noise, fill little of their bounds.
+    // Two hands, or noise, fill only a small part of their bounds.
     let scattered = Statistics {
         bounds: Region {
             first: [10, 20],
@@ -166,10 +166,10 @@ fn place_and_width_become_a_place_on_the_sphere() {
             "{found:?} is not {expected:?}"
         );
     };
-    // A hand of a quarter of the width and of the height in the middle.
+    // A hand in the middle, with a quarter of the frame's width and height.
     let middle = rectangle([120, 90], [199, 149]);
     near(at(&middle), [0.0, 0.25, 5.0 - 8.0 * (0.25 - 0.0625)]);
-    // At the borders, and beyond the limits of the width.
+    // A hand at the borders, and hands outside the limits of the width.
     let pole = POLE.to_num::<f64>();
     let corner = rectangle([0, 0], [9, 9]);
     near(at(&corner), [5.0 / 320.0 - 0.5, pole.max(5.0 / 480.0), 5.0]);
@@ -280,10 +280,10 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
     let region = run.control.setting();
     run.frames(5, &EMPTY);
     assert_eq!(run.control.presence(), Presence::Held);
-    // The hand may have left the region of a hand at rest, so that for a hand in motion is around it.
+    // The hand may have left the region for a hand at rest, so the region for a hand in motion is searched.
     let larger = Setting::moving(&region.region, SIZE);
     assert_eq!((run.pose(), run.control.setting()), (held, larger));
-    // Back within the region: at once, without a jump.
+    // The hand comes back within the region: the camera follows at once, without a jump.
     assert!(run.frame(&hand(70, 60, 20)).is_ok());
     assert_eq!(
         (run.control.presence(), run.pose()),
@@ -297,7 +297,7 @@ fn a_lost_hand_holds_the_camera_and_the_return_is_smooth() {
         (Presence::Absent, Setting::SEARCHING)
     );
     let held = run.pose();
-    // Back at the other side: the camera goes the shorter way around, over 180°.
+    // The hand comes back at the other side: the camera takes the shorter arc, across 180°.
     let mut last = held;
     let mut largest: f64 = 0.0;
     for _ in 0..240 {
@@ -323,12 +323,12 @@ fn a_jump_of_the_area_holds_until_it_lasts() {
     let held = run.pose();
     assert_eq!(run.frame(&hand(160, 120, 12)), Err(Doubt::Jump));
     assert_eq!((run.control.presence(), run.pose()), (Presence::Held, held));
-    // The same area again.
+    // The hand has its earlier area again.
     assert!(run.frame(&hand(160, 120, 20)).is_ok());
     assert_eq!(run.control.presence(), Presence::Tracked);
     // The next frame counts shorter runs, so any area is accepted.
     assert!(run.frame(&hand(160, 120, 20)).is_ok());
-    // The new area remains: accepted after the patience and three frames.
+    // The new area persists: it is accepted after [`PATIENCE`] and three frames.
     run.frames(PATIENCE.div_ceil(FRAME) + 4, &hand(160, 120, 12));
     assert_eq!(run.control.presence(), Presence::Tracked);
     let before = run.pose();
@@ -348,7 +348,7 @@ fn a_pause_of_the_frames_ends_tracking() {
     };
     let patience = u64::from(PATIENCE);
     assert_eq!(after(patience).0, Presence::Tracked);
-    // 2^32 cycles at 81.25 MHz, and times that are short in 32 bits.
+    // Pauses of 2^32 cycles at 81.25 MHz, and pauses whose low 32 bits are small.
     for pause in [
         patience + 1,
         2 * patience,

@@ -33,7 +33,7 @@ fn a_shown_hand_gives_the_windows_of_its_colour() {
     assert_eq!(calibrated.inside, 100);
     // The hand is larger than the box.
     assert!(calibrated.outside < 20, "{calibrated:?}");
-    // One colour without noise gets the least window.
+    // A single colour without noise gets the smallest window.
     let flat =
         calibrate(40, 30, picture(|_| [2, 254], |_| [128, 128]).into_iter()).expect("a hand");
     let window = |lower, upper| Window { lower, upper };
@@ -68,7 +68,7 @@ fn pictures_without_a_hand_are_refused() {
     );
 }
 
-/// More samples than 16 bits count, and more than 2^32/100 of them outside of the box.
+/// More than 2^16 samples, of which more than 2^32/100 are outside the box.
 #[test]
 fn large_pictures_are_counted() {
     let calibrated = |columns: u16, rows: u16, rest: [u8; 2]| {

@@ -30,7 +30,7 @@ impl Shared {
         Self(Rc::new(RefCell::new(Line { device, now, sda })))
     }
 
-    /// A driver of the chip by software that moves the wires.
+    /// A driver of the chip over a software I2C master.
     fn driver(&self) -> ImageSensor<TwoWires<Self, Self>> {
         ImageSensor::new(TwoWires::new(self.clone(), self.clone()))
     }
@@ -39,7 +39,7 @@ impl Shared {
         run(self.driver().start(size, &mut self.clone()))
     }
 
-    /// The traffic so far, whose transactions must be those of SCCB: no repeated start, and one register at a time.
+    /// Checks that the transactions so far conform to SCCB (no repeated start, one register at a time), and returns them.
     fn log(&self, model: Model) -> Vec<String> {
         let line = self.0.borrow();
         assert_eq!(line.device.violations, [""; 0]);
@@ -76,7 +76,7 @@ impl DelayNs for Shared {
     }
 }
 
-/// A bus that is stuck.
+/// A bus whose wires do not change.
 struct Stuck;
 
 impl ErrorType for Stuck {
@@ -205,7 +205,7 @@ fn a_chip_that_was_without_supply_has_lost_its_settings() {
         line.0.borrow_mut().device.chip = chip(model);
         assert_eq!(keeps(FrameSize::Qvga), Ok(false));
         assert_eq!(line.0.borrow().device.chip.writes, 0);
-        // Another chip in its place.
+        // Another chip replaces the first chip.
         line.0.borrow_mut().device.chip = chip(other);
         assert!(keeps(FrameSize::Qvga).is_err());
     }

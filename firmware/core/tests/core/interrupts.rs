@@ -1,8 +1,9 @@
-//! Transfers that a new conversation or a key ends.
+//! Tests of transfers that a new session or Ctrl-C cancels.
 
 use glint_core::wire::{self, Failure, MAX_FRAME, Reason, Receiver, Sender, State, Timing};
 
-/// A receiver of 300 bytes in the middle of a transfer whose sender is gone: after its first frames and a part of the next one.
+/// A receiver of 300 bytes in the middle of a transfer whose sender has stopped, after the first frames and a part of the next
+/// frame.
 fn left_alone(buffer: &mut [u8]) -> Receiver<'_> {
     let data = [0x5A; 300];
     let mut sender = Sender::new(&data, 0, Timing::HOST, 0);
@@ -27,7 +28,7 @@ fn a_new_conversation_ends_a_transfer_that_was_left() {
     let length = wire::reset(&mut reset);
     let reset = &reset[..length];
     let (mut small, mut large) = ([0; 10], [0; 300]);
-    // Before the first frame, and in the middle of one.
+    // Ctrl-C before the first frame, and within a frame.
     for mut receiver in [
         Receiver::new(&mut small, None, Timing::CONSOLE, 0),
         left_alone(&mut large),
@@ -59,7 +60,7 @@ fn ctrl_c_alone_ends_a_transfer_and_in_a_frame_does_not() {
         receiver.poll(150, &mut frame);
         assert_eq!(receiver.state(), INTERRUPTED);
     }
-    // The code byte of a frame may be that of the key; the rest of the frame follows at once.
+    // A frame may contain the byte of Ctrl-C, but then its next bytes follow at once.
     let mut receiver = left_alone(&mut large);
     receiver.on_bytes(100, b"\0\x03");
     receiver.on_bytes(101, b"x");

@@ -29,7 +29,7 @@ fn shone(ambient: Rgb, lights: &[([f64; 3], Rgb)], faces: &[Rgb; 6]) -> [[f64; 3
 }
 
 fn lights() -> impl Strategy<Value = Vec<([i64; 3], Rgb)>> {
-    // The shift gives directions of all magnitudes.
+    // The random shift generates directions of all magnitudes.
     let number = (any::<i64>(), 0..63_u32).prop_map(|(x, shift)| x >> shift);
     let direction = [number.clone(), number.clone(), number]
         .prop_filter("a direction", |direction| *direction != [0; 3]);
@@ -97,8 +97,8 @@ fn plain_light_leaves_colours_as_they_are() {
     }
 }
 
-/// All faces of a material have different lit colours, except those that only the ambient light reaches: between faces of the
-/// same colour no edge would be visible.
+/// All faces of a material must have different lit colours, except faces in ambient light only, because no edge is visible
+/// between faces of equal colour.
 #[test]
 fn every_face_of_a_material_looks_different() {
     for material in Material::ALL {

@@ -1,6 +1,6 @@
-//! Tests of the crate's public functions against f64, models and stated texts.
+//! Tests of the crate's public functions against f64, models and expected texts.
 //!
-//! One program has them all, because each program is linked on its own.
+//! All tests are in one program, because linking further programs takes time.
 
 mod calibration;
 mod camera;

@@ -1,4 +1,4 @@
-//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: a box, a lattice of cubes, and the room between a floor and a ceiling.
+//! `box:X,Y,Z`, `cubes:PERIOD,HALF` and `planes:HALF`: a box, a lattice of cubes, and the space between a floor and a ceiling.
 
 use core::fmt;
 
@@ -22,7 +22,7 @@ pub struct Cuboid {
 pub struct Cubes {
     /// Distance between the centres of neighbouring cubes, in world units.
     pub period: Q32_32,
-    /// Half the side of a cube in world units, less than half the period by a unit of coordinates or more.
+    /// Half the side of a cube in world units; less than half the period by at least one unit of coordinates.
     pub half: Q32_32,
 }
 
@@ -125,7 +125,7 @@ impl Shape for Planes {
 /// A box, a lattice of boxes, or a room (the space inside a box, with the solid around it), in field units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FixedBox {
-    /// Half the length of each side, u10.12; `None` along an axis on which the box has no end.
+    /// Half the length of each side, u10.12; `None` along an axis on which the box is unbounded.
     half: [Option<i32>; 3],
     /// Whether the box is a room, which means that the solid is outside the box.
     room: bool,
@@ -149,7 +149,8 @@ impl FlatSolid for FixedBox {
             }
         };
         let p = Folded::of(point.map(wrap)).map(|x| x.negated_if(x.value < 0));
-        // The distance along an axis on which the box has no end: it is less than every distance to a face, and fits 23 bits.
+        // The distance along an axis on which the box is unbounded: less than every distance to a face, so the maximum ignores
+        // it; fits 23 bits.
         let nowhere = -1 << (10 + FRACTION);
         let outside =
             [0, 1, 2].map(|i: usize| self.half[i].map_or(nowhere, |half| p[i].value - half));

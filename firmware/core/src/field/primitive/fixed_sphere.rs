@@ -58,7 +58,7 @@ impl FixedSpheres {
         };
         let count = if SPHERES.is_built { self.count } else { 0 };
         for (number, sphere) in (0..).zip(self.list.iter().take(count)) {
-            // The distance before saturation to `MOST` is below 2^23.
+            // Before saturation to `MOST`, the distance is below 2^23.
             let distance = length(self.from(sphere, point)) - sphere.radius;
             if distance < nearest.distance {
                 nearest = Sample {

@@ -70,8 +70,8 @@ pub struct FixedSponge {
 impl FlatSolid for FixedSponge {
     const CODE: u8 = 0;
 
-    /// Evaluates the levels from the largest cubes to the smallest. Each level folds space by mirrors, which map all cubes of its
-    /// side S onto one cube about the origin, and its holes onto the outside of this cube.
+    /// Evaluates the levels from the largest cubes to the smallest. Each level folds space by mirrors: they map all cubes of the
+    /// level's side S onto one cube about the origin, and the level's holes onto the outside of this cube.
     ///
     /// Every coordinate x is replaced by S − |x|, which is above S/2 if x is in the middle third. A point is in a hole if at
     /// least two coordinates are in the middle third. Therefore the largest new coordinate is mirrored at S/2: all points outside
@@ -94,7 +94,8 @@ impl FlatSolid for FixedSponge {
         }
     }
 
-    /// Folds like `sample`, but without the directions of the coordinates: their order then has no effect, so each level sorts them.
+    /// Folds like `sample`, but without the directions of the coordinates. The order of the coordinates then has no effect, so
+    /// each level sorts them.
     #[inline]
     fn distance(&self, point: [i32; 3]) -> i32 {
         let mut p = point;

@@ -51,8 +51,8 @@ impl Spheres {
     /// Makes a field from 1 to [`MAX_SPHERES`] spheres, after checking them.
     ///
     /// # Errors
-    /// The number of spheres is out of range, or the radius or a coordinate of a sphere is out of range. The first
-    /// wrong number is reported.
+    /// The number of spheres is out of range, or the radius or a coordinate of a sphere is out of range. The error names the
+    /// first such number.
     pub fn new(spheres: &[Sphere]) -> Result<Self, FieldError<'static>> {
         let mut list = [Sphere::default(); MAX_SPHERES];
         let count = spheres.len();
@@ -76,7 +76,7 @@ impl Spheres {
 pub struct Lattice {
     /// Distance between the centres of neighbouring spheres, in world units.
     pub period: Q32_32,
-    /// Radius of each sphere in world units, less than half the period by a unit of coordinates or more.
+    /// Radius of each sphere in world units; less than half the period by at least one unit of coordinates.
     pub radius: Q32_32,
 }
 

@@ -46,7 +46,7 @@ proptest! {
         let _ = Command::parse(&line).map_err(|error| error.to_string());
     }
 
-    /// The printed form of a place makes the same place again.
+    /// The printed form of a placement is parsed to the same placement.
     #[test]
     fn places_come_back_bit_for_bit(entries in any::<[[i32; 3]; 3]>(), by in any::<[i32; 3]>(), colour in any::<Option<u16>>()) {
         let number = |bits: i32, shift| Q8_24::from_bits(bits >> shift);

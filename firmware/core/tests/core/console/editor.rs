@@ -58,7 +58,7 @@ impl Screen {
     }
 }
 
-/// Types bytes into the editor. Returns the lines and other events that the editor reports, and the screen.
+/// Sends bytes to the editor. Returns the reported lines and other events, and the screen.
 fn type_in(bytes: &[u8]) -> (Vec<String>, Screen) {
     let (mut editor, mut screen, mut events) = (LineEditor::new(), Screen::default(), Vec::new());
     for &byte in bytes {
@@ -168,7 +168,7 @@ fn tab_completes_commands_and_the_words_of_their_arguments() {
     assert_lines(b"mounting -x -\tz\r", &["mounting -x -z"]);
     assert_lines(b"stereo \t\r", &["stereo off "]);
     assert_lines(b"background s\t\r", &["background sky "]);
-    // Completion at the cursor keeps the rest of the line.
+    // Completion at the cursor keeps the text after the cursor.
     assert_lines(b" on\x01cul\t\r", &["cull  on"]);
     // Only the text that all candidates have in common is inserted.
     assert_lines(b"b\ten\t\r", &["bench "]);

@@ -1,4 +1,4 @@
-//! What commands do to the picture.
+//! Tests of the effects of commands on the picture.
 
 use glint_core::console::{Command, Effect};
 

@@ -2,7 +2,7 @@
 
 use glint_core::console::Command;
 
-/// Lines, and below each the error that names its mistake.
+/// Invalid lines, each followed by the expected error.
 const MISTAKES: &str = r#"
     help cube
         help: COMMAND is "cube" (column 6): expected a command, `help` lists them
