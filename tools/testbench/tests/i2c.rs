@@ -410,8 +410,8 @@ fn a_stuck_device_is_clocked_free() {
 
 #[test]
 fn a_device_left_in_a_byte_is_freed_wherever_it_is() {
-    // Resets the engine during a transfer, after 100 clocks, 197 clocks and so on. The transfers are a read of 0 bytes, which
-    // keep SDA low, and a write.
+    // Resets the engine during a transfer, after 100 clocks, 197 clocks and so on. The transfers are a read of bytes 0x00, which
+    // hold SDA low, and a write.
     for commands in [transfer(&[0x00], 3), transfer(&[0x19, 0x00], 0)] {
         let mut length = 0;
         for clocks in (100..).step_by(97) {

@@ -1,5 +1,5 @@
-//! Compares frames that the triangle engine draws from a mesh in memory with those of glint-model: pixels and depths are
-//! equal. The model clips triangles for the engine, as the firmware does on the board.
+//! Compares the triangle engine's frames from a mesh in memory with glint-model's: pixels and depths are equal. The model clips
+//! triangles for the engine, like the firmware on the board.
 
 mod bench;
 mod expected;
@@ -31,8 +31,8 @@ fn converted(name: &str, options: convert::Options) -> Vec<u8> {
     converted.expect("a mesh").0
 }
 
-/// Draws every scene at one size, in either frame buffer: at the smallest size with depths and without, at a larger one with or without
-/// them in turn, because writing depths triples the time.
+/// Draws every scene at one size, in a random frame buffer. The smallest size is drawn with and without depths, larger sizes
+/// alternately with or without, because writing depths triples the time.
 fn all_scenes(size: (u32, u32)) {
     let mut bench = Bench::new(size.0, 0.0);
     let mut random = Pcg64Mcg::new(size.0.into());
@@ -71,14 +71,14 @@ fn scenes_at_1280x720() {
     all_scenes(SIZES[2]);
 }
 
-/// Draws frames in orthographic projection and in perspective in turn, with stalls of the memory and without.
+/// Draws frames alternately in orthographic and perspective projection, with and without memory stalls.
 #[test]
 fn scenes_in_orthographic_projection() {
     let (mut pixels, mut clipped) = (0, 0);
     for (number, stalls) in (0..).zip([0.0, 0.4]) {
         let mut bench = Bench::new(30 + number, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
-            // Skips large meshes, which take long and test nothing more.
+            // Skips large meshes, which take long and add no coverage.
             if mesh.len() > 1 << 20 {
                 continue;
             }
@@ -99,13 +99,13 @@ fn scenes_in_orthographic_projection() {
     assert!(clipped > 20 && pixels > 100_000);
 }
 
-/// Draws frames with smooth and with flat shading in turn, with stalls of the memory and without.
+/// Draws frames alternately with smooth and flat shading, with and without memory stalls.
 #[test]
 fn scenes_with_smooth_shading() {
     for stalls in [0.0, 0.4] {
         let mut bench = Bench::smooth(5, stalls);
         for (name, mesh, view, cull) in scenes(generated) {
-            // Skips large meshes, which take long and test nothing more.
+            // Skips large meshes, which take long and add no coverage.
             if mesh.len() > 1 << 20 {
                 continue;
             }
@@ -124,8 +124,8 @@ fn scenes_with_smooth_shading() {
     }
 }
 
-/// Draws random lists of triangles with random stalls of the memory, on which a frame must not depend. The environment
-/// variable `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
+/// Draws random lists of triangles with random memory stalls, on which a frame must not depend. The environment variable
+/// `GLINT_RTL_LISTS` sets the number of frames, 25 by default.
 #[test]
 fn random_lists_with_random_stalls() {
     let lists = std::env::var("GLINT_RTL_LISTS").map_or(25, |text| text.parse().unwrap());
@@ -138,7 +138,7 @@ fn random_lists_with_random_stalls() {
         } else {
             Bench::new(seed, stalls)
         };
-        // Only some frames have depths, as writing depths triples the time.
+        // Only some frames write depths, which triples the time.
         bench.with_depth = seed % 5 == 0;
         let count = random.random_range(1..200);
         let size = [0.01, 0.1, 0.5, 2.0][random.random_range(0..4)];
@@ -159,8 +159,8 @@ fn random_lists_with_random_stalls() {
     }
 }
 
-/// After a frame, the frame buffer holds that frame whatever it held before, although the engine writes only words that
-/// can differ.
+/// After a frame, the frame buffer holds exactly this frame, although the engine writes only words that can differ from the
+/// previous content.
 #[test]
 fn frames_after_each_other() {
     for seed in 0..4_u32 {
@@ -179,7 +179,7 @@ fn frames_after_each_other() {
                 5 => bench.scribble(),
                 _ => {}
             }
-            // There are few triangles, so that most lines are empty and the other lines change from frame to frame.
+            // Few triangles: most lines are empty, and the other lines change from frame to frame.
             let count = random.random_range(0..8);
             let extent = [0.02, 0.3, 1.0][random.random_range(0..3)];
             let mesh = meshes::mesh(&meshes::random(&mut random, count, extent), 65_535);
@@ -245,8 +245,8 @@ fn nothing_new_is_not_written() {
     }
 }
 
-/// When a pass has ended, all its words are in memory, even the last lengths of lists. The engine writes nothing
-/// afterwards, so its clock may stop.
+/// At the end of a pass, all its words are in memory, even the last lengths of lists. The engine writes nothing after the end, so
+/// its clock may stop.
 #[test]
 fn all_is_in_memory_when_a_pass_has_ended() {
     for (stalls, mesh) in [0.0, 0.3, 0.6, 0.9].into_iter().flat_map(|stalls| {
@@ -278,7 +278,7 @@ fn all_is_in_memory_when_a_pass_has_ended() {
     }
 }
 
-/// A cancelled frame does not change the next one.
+/// A cancelled frame does not change the next frame.
 #[test]
 fn a_cancelled_frame_leaves_a_working_engine() {
     let mesh = generated("icosphere:4");
@@ -317,7 +317,7 @@ fn bad_meshes_and_full_lists_are_reported() {
     let mesh = generated("icosphere:4");
     let expected = expected(&mesh, &inside(), SIZES[0], false);
     let mut bench = Bench::new(8, 0.3);
-    // The chunk header follows the mesh header of 32 bytes, then come vertices and triangles.
+    // The mesh header of 32 bytes is followed by the chunk header, the vertices and the triangles.
     let damaged = |at: usize, value: u32| {
         let mut mesh = mesh.clone();
         mesh[at..at + 4].copy_from_slice(&value.to_le_bytes());
@@ -352,7 +352,7 @@ fn bad_meshes_and_full_lists_are_reported() {
     }
 }
 
-/// Draws frames from random descriptors and lists: such a frame ends, with an error if a descriptor or a list is invalid,
+/// Draws frames from random descriptors and lists. Such a frame ends (with an error if a descriptor or a list is invalid) and
 /// writes only its own memory, and the next frame is correct.
 #[test]
 fn frames_end_with_random_memory() {
@@ -365,7 +365,7 @@ fn frames_end_with_random_memory() {
         let expected = expected(&mesh, &inside(), size, false);
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| random.random()).collect();
         if seed % 4 > 0 {
-            // Keeps the columns of groups, in the bits from 344 on, within the picture; columns outside of it are an error.
+            // Keeps the group columns, in the bits from 344 up, within the picture; other columns are an error.
             let last = (size.0 / 8 - 1) as u8;
             for descriptor in descriptors.as_chunks_mut::<48>().0 {
                 let mut groups: [u8; 3] = std::array::from_fn(|_| random.random_range(0..=last));
@@ -384,9 +384,9 @@ fn frames_end_with_random_memory() {
     }
 }
 
-/// Checks the pixels drawn per clock on a sphere that fills 96 % of the picture's height, without memory stalls, where
-/// the previous frame was the same. There are two lower bounds: `alone`, over the clocks of both passes of a frame, and
-/// `overlapped`, over those of the longer pass, as for frames whose passes overlap.
+/// Checks the pixels drawn per clock on a sphere of 96 % of the picture's height, without memory stalls, after an identical
+/// frame. Two lower bounds: `alone`, over the clocks of both passes of a frame, and `overlapped`, over the clocks of the longer
+/// pass, as for frames with overlapping passes.
 #[test]
 fn a_sphere_is_drawn_fast() {
     for (name, size, smooth, alone, overlapped, most_read) in [
@@ -434,7 +434,7 @@ fn a_sphere_is_drawn_fast() {
     }
 }
 
-/// Reads are issued ahead, so that 64 clocks more latency of the memory cost a frame only a few times 64 clocks.
+/// Reads are issued ahead: 64 more clocks of memory latency cost a frame only a few times 64 clocks.
 #[test]
 fn latency_of_memory_is_hidden() {
     for (name, size) in [("icosphere:6", SIZES[0]), ("icosphere:12", SIZES[2])] {
@@ -450,7 +450,7 @@ fn latency_of_memory_is_hidden() {
             bench.draw(name, &mesh, &expected).raster
         });
         println!("{name} at {size:?}: {raster:?} clocks for the raster");
-        // The reads of lengths, lists and descriptors wait for each other in the first band, and a few times later.
+        // The reads of lengths, lists and descriptors depend on each other in the first band, and a few times later.
         assert!(raster[1] < raster[0] + 8 * 64, "{name}: {raster:?}");
     }
 }
@@ -468,8 +468,8 @@ fn empty_bands_are_passed_fast() {
     assert!(raster < 60 * 30 + 100, "{raster} clocks");
 }
 
-/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory stalls, in the order of
-/// `glint convert` and in that of a scanner's file.
+/// Checks the clocks of the geometry pass for a mesh of many small triangles, without memory stalls, in `glint convert`'s order
+/// and in the order of a scanner's file.
 #[test]
 fn a_scan_is_drawn_fast() {
     for (keep_order, most) in [(false, 5.0), (true, 9.6)] {

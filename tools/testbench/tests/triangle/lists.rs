@@ -1,4 +1,4 @@
-//! Tests of the binner, which writes to memory, for each band, the list of its triangles.
+//! Tests of the binner, which writes the triangle list of each band to memory.
 
 use glint_model::triangle::descriptor::{band_rows, list_word};
 use glint_testbench::{Bits, Layout, Memory, Module, Sink, Source, Stalls, exchange};
@@ -76,7 +76,7 @@ impl Bench {
         self.module.clock();
     }
 
-    /// Waits until all inputs are taken, then makes the module write the lengths of the lists.
+    /// Waits until all inputs are taken, then requests the module to write the lengths of the lists.
     fn finish(&mut self) {
         let start = self.module.cycles();
         let all_in = |bench: &Self| bench.descriptors.is_empty() && bench.exceptions.is_empty();
@@ -100,8 +100,8 @@ impl Bench {
     }
 }
 
-/// Makes descriptors with random rows (lines of the picture) and random other bits. Returns for each descriptor the first row,
-/// the row past the last, and all bits.
+/// Makes descriptors with random rows (picture lines) and other bits. Returns for each descriptor its first row, the row after
+/// its last, and its bits.
 fn descriptors(
     random: &mut Pcg64Mcg,
     layout: &Layout,
@@ -181,7 +181,7 @@ fn full_lists_are_reported() {
         record.with("top", 5).with("bottom", 6).bits()
     };
     let mut random = Pcg64Mcg::new(1);
-    // Number of entries that a list holds. The cases are: number of descriptors, limit, and the expected output `full`.
+    // Capacity of a list in entries. The cases are: number of descriptors, limit, and the expected output `full`.
     let room = 4 << LIST_SHIFT;
     for (count, limit, full) in [
         (room, 1000, 0),

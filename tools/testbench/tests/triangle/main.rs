@@ -1,4 +1,4 @@
-//! Compares the triangle engine's modules with the model, each alone and all together, and tests the control of its passes.
+//! Compares the triangle engine's modules, each alone and all together, with the model, and tests the control of the passes.
 
 mod control;
 mod engine;

@@ -1,4 +1,4 @@
-//! Compares the rasterizer with glint-model: the groups of pixels that it draws, band by band, must make the model's picture.
+//! Compares the rasterizer with glint-model: its pixel groups, band by band, must compose the model's picture.
 
 mod bench;
 mod triangles;
@@ -28,7 +28,7 @@ fn random_triangles() {
     }
 }
 
-/// Draws smooth and flat triangles in one frame, at all depths that a frame can have.
+/// Draws smooth and flat triangles in one frame, over the whole range of depths.
 #[test]
 fn random_triangles_smooth() {
     for (seed, source_stalls, sink_stalls) in [(4, 0.0, 0.0), (5, 0.5, 0.2), (6, 0.1, 0.7)] {
@@ -50,8 +50,7 @@ fn random_triangles_smooth() {
     }
 }
 
-/// Draws triangles whose light goes from 0 to the largest value, and triangles with constant light, over several ranges of
-/// depths. Each triangle is drawn alone.
+/// Draws triangles with light from 0 to the maximum, and with constant light, over several ranges of depths. Each triangle is drawn alone.
 #[test]
 fn extreme_light() {
     let (near, far) = (((1 << 18) - 4) * 64, 228 * 64);
@@ -94,7 +93,7 @@ fn shapes_at(depths: [u32; 3]) -> [[ScreenVertex; 3]; 3] {
     })
 }
 
-/// Moves a vertex that is too far away to the farthest depth of a frame.
+/// Clamps the depth of a vertex to the farthest depth of a frame.
 fn visible(corner: ScreenVertex) -> ScreenVertex {
     ScreenVertex {
         w: corner.w.max(228 * 64),
@@ -102,7 +101,7 @@ fn visible(corner: ScreenVertex) -> ScreenVertex {
     }
 }
 
-/// Draws each triangle alone, so that no other triangle hides it.
+/// Draws each triangle alone, unhidden by other triangles.
 #[test]
 fn difficult_triangles() {
     let far = f64::from(GUARD) / 256.0;
@@ -206,7 +205,7 @@ fn difficult_triangles() {
     ];
     let mut bench = Bench::new(11, [0.3, 0.3]);
     for (name, corners) in shapes {
-        // Draws each triangle with its corners in three orders, which have both orientations, and mirrored left to right.
+        // Draws each triangle with three orders of its corners (both orientations), and mirrored left to right.
         let [a, b, c] = corners;
         let flipped = [a, b, c].map(|v| ScreenVertex {
             x: 256 * 320 - v.x,
@@ -254,7 +253,7 @@ fn whole_pictures() {
         let counts = bench.check("all of it", size, &triangles);
         assert_eq!(counts.pixels, u64::from(size.0 * size.1));
         println!("{size:?}: {counts:?}");
-        // The rasterizer visits few groups beyond those with a covered pixel.
+        // The rasterizer visits few groups without covered pixels.
         assert!(counts.walked < counts.pixels / 8 * 11 / 10);
 
         let mut random = Random::new(6);
@@ -269,7 +268,7 @@ fn whole_pictures() {
     }
 }
 
-/// The rasterizer drops a triangle without a line in the band, and draws the next one.
+/// The rasterizer drops a triangle without a line in the band, and draws the next triangle.
 #[test]
 fn triangles_outside_of_the_band() {
     let mut bench = Bench::new(15, [0.0, 0.0]);
@@ -296,7 +295,7 @@ fn mesh(name: &str) -> Vec<u8> {
         .0
 }
 
-/// Makes a camera in which the mesh's bounding sphere fills 96 % of the picture's height.
+/// Makes a camera from which the mesh's bounding sphere fills 96 % of the picture's height.
 fn filling(mesh: &Mesh) -> View {
     let degrees = |degrees| Turns::from_degrees(Q32_32::from_num(degrees));
     let camera = View::spherical(Q32_32::from_num(3), degrees(30), degrees(60)).unwrap();
@@ -313,7 +312,7 @@ fn filling(mesh: &Mesh) -> View {
     .unwrap()
 }
 
-/// Measures the pixels per clock, over the clocks in which the rasterizer walks, on a sphere of small triangles.
+/// Measures the pixels per walking clock of the rasterizer on a sphere of small triangles.
 #[test]
 fn a_sphere_is_walked_efficiently() {
     for (frequency, size, least) in [(6, SMALL, 3.3), (12, LARGE, 4.5)] {

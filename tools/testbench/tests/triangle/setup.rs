@@ -26,7 +26,7 @@ struct Input {
     light: [Light; 3],
 }
 
-/// Types of the parts of a triangle at the module's ports.
+/// Types of a triangle's members at the module's ports.
 struct Types {
     vertices: Layout,
     vertex: Layout,
@@ -45,7 +45,7 @@ impl Types {
         }
     }
 
-    /// Packs a vertex on the screen.
+    /// Packs a vertex in screen coordinates.
     fn vertex(&self, vertex: ScreenVertex) -> Record {
         let record = self.vertex.record();
         record
@@ -54,7 +54,7 @@ impl Types {
             .with("w", vertex.w)
     }
 
-    /// Packs the light of a vertex on the visible side: the back side if it has light, else the front side.
+    /// Packs the light of a vertex's visible side: of the back side if lit, else of the front side.
     fn light(&self, light: Light) -> Record {
         let back = light.back != Lit::default();
         let Lit([r, g, b]) = if back { light.back } else { light.front };
@@ -81,7 +81,7 @@ impl Types {
     }
 }
 
-/// Returns the two payloads (ports) of the descriptor that the module must produce; `None` for a culled triangle.
+/// Returns the two payloads (ports) of the expected descriptor; `None` for a culled triangle.
 fn expected(frame: &Frame, input: &Input) -> Option<[Bits; 2]> {
     let oriented = Oriented::new(input.vertices)?;
     let facing = oriented.facing;
@@ -171,7 +171,7 @@ impl Bench {
         for input in inputs {
             if let Some(expected) = expected(frame, input) {
                 let mut descriptor = found.next().map(|item| [item[0], item[1]]);
-                // The planes of a flat triangle have no meaning, except the bit `smooth`.
+                // The planes of a flat triangle are unused, except the bit `smooth`.
                 if let (Some([_, planes]), Shading::Flat) = (&mut descriptor, frame.shading) {
                     let smooth = planes_type.record_of(*planes).get("smooth");
                     *planes = planes_type.record().with("smooth", smooth).bits();
@@ -179,7 +179,7 @@ impl Bench {
                 assert_eq!(descriptor, Some(expected), "{input:?} in {frame:?}");
             }
         }
-        assert_eq!(found.next(), None, "a triangle too many in {frame:?}");
+        assert_eq!(found.next(), None, "an unexpected descriptor in {frame:?}");
         let visible = inputs
             .iter()
             .filter(|i| expected(frame, i).is_some())
@@ -200,7 +200,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     ];
     for place in &mut places {
         *place = match kind {
-            // Vertices anywhere in the guard band, or at the ends and in the middle of its range.
+            // Vertices anywhere in the guard band, or at the ends and the middle of its range.
             0 | 1 => [0; 2].map(|_| random.random_range(-GUARD..=GUARD)),
             2 => [0; 2].map(|_| [-GUARD, GUARD, 0, 128][random.random_range(0..4)]),
             // Triangles about as large as the picture.
@@ -213,7 +213,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
             _ => centre.map(|x| x + random.random_range(-60_000..60_000)),
         };
     }
-    // Slivers: the last vertex is near the line through the other two.
+    // Slivers: the last vertex is near the line through the other vertices.
     if kind == 8 {
         let (t, [a, b, last]) = (random.random_range(0..=256), &mut places);
         for i in 0..2 {
@@ -249,7 +249,7 @@ fn triangle(random: &mut Pcg64Mcg, (width, height): (u32, u32)) -> Input {
     }
 }
 
-/// Makes random light of a vertex that shows its front side or its back side, or is seen edge on.
+/// Makes random light of a vertex seen from the front, from the back or edge on.
 fn light(random: &mut Pcg64Mcg) -> Light {
     let colour = [0, u16::MAX, random.random()][random.random_range(0..3)];
     let intensity = [0, 1, 256, random.random_range(0..=256)][random.random_range(0..4)];
@@ -297,8 +297,8 @@ fn random_triangles_of(ability: Shading) {
     );
 }
 
-/// Sends triangles whose extents are below 3 pixels, half of them with vertices on pixel centres and corners, where the rule of top
-/// and left edges decides.
+/// Sends triangles smaller than 3 pixels, half of them with vertices on pixel centres and corners, where the top-left rule
+/// decides coverage.
 #[test]
 fn tiny_triangles() {
     let mut random = Pcg64Mcg::new(9);
@@ -400,8 +400,7 @@ fn corners(shading: Shading) {
     }
 }
 
-/// If all vertices are beyond the same side of the picture, the bounds of the triangle are empty, so the setup needs no
-/// separate test for this.
+/// A triangle with all vertices beyond one side of the picture has empty bounds, so the setup needs no separate test.
 #[test]
 fn off_the_picture_is_without_a_centre() {
     let mut random = Pcg64Mcg::new(5);

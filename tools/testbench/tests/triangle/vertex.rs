@@ -6,7 +6,7 @@ use glint_model::{MeshSetup, Projected, SIZES, ScreenVertex};
 use glint_testbench::{Bits, Layout, Module, Pipe, Record};
 use glint_vectors::{Camera, Random};
 
-/// Computes the expected output of the vertex stage with the model; x and y are saturated to s12.8.
+/// Computes the vertex stage's expected output with the model; x and y are saturated to s12.8.
 fn expected(layout: &Layout, frame: &MeshSetup, position: [i16; 3]) -> Record {
     let projected = project(frame, &transform(frame, position));
     let ScreenVertex { x, y, w } = projected.place().copied().unwrap_or_default();
@@ -51,7 +51,7 @@ impl Bench {
         Self { pipe, vertex }
     }
 
-    /// Sends the vertices of a frame through the stage, compares the results and returns the number of clocks.
+    /// Sends the vertices of a frame through the vertex stage, compares the results and returns the number of clocks.
     fn check(&mut self, frame: &MeshSetup, positions: &[[i16; 3]]) -> u64 {
         set_frame(&mut self.pipe.module, frame);
         for position in positions {
@@ -78,7 +78,7 @@ fn camera(random: &mut Random, round: u32) -> Camera {
         3 => 114.0,
         _ => random.logarithmic(0.05, 4.0),
     };
-    // A narrow camera needs a farther near plane.
+    // A narrow field of view needs a farther near plane.
     let nearest = if round % 8 == 2 { 0.0625 } else { 0.01 };
     let near = match round % 6 {
         0 => nearest,
@@ -112,7 +112,7 @@ fn random_cameras_and_vertices() {
     let mut random = Random(1);
     let shares = [[0.0, 0.0], [0.5, 0.5], [0.0, 0.95], [0.95, 0.0]];
     let mut benches = [0, 1, 2, 3].map(|seed| Bench::new(seed, shares[seed as usize]));
-    // Numbers of the tested vertices that are behind the near plane, beyond the guard band, and visible.
+    // Numbers of tested vertices before the near plane, beyond the guard band, and visible.
     let mut seen = [0; 3];
     for round in 0..600 {
         let (width, height) = SIZES[round as usize % 3];
@@ -137,7 +137,7 @@ fn random_cameras_and_vertices() {
     assert!(seen.iter().all(|&count| count > 2000));
 }
 
-/// Tests frame constants whose near plane, depth scale or translation puts a vertex at a limit.
+/// Tests frame constants by which near plane, depth scale or translation put a vertex at a limit.
 #[test]
 fn edges() {
     let mut random = Random(2);
@@ -151,7 +151,7 @@ fn edges() {
         let at = position(&mut random);
         let z = transform(&frame, at).z;
 
-        // Puts the near plane through the vertex, one unit of the last place in front of it and behind it, and farther away.
+        // Puts the near plane through the vertex, one unit in the last place before and behind it, and farther away.
         if (least + 1..1 << 38).contains(&z) {
             near_planes += 1;
             for off in [-1, 0, 1, -(1 << 20), 1 << 20] {
@@ -165,7 +165,7 @@ fn edges() {
             continue;
         }
 
-        // Scales depths such that the vertex's depth w is at its limit or near it.
+        // Scales depths to put the vertex's depth w at or near its limit.
         let depth = frame.depth;
         for exponent in -5..=5 {
             frame.depth.exponent = exponent;
@@ -176,7 +176,7 @@ fn edges() {
         }
         frame.depth = depth;
 
-        // Chooses the translation such that x or y of the vertex is near an end of the guard band.
+        // Chooses a translation that puts x or y of the vertex near an end of the guard band.
         let axis = random.integer(0, 1) as usize;
         let side = if random.coin() { 1 } else { -1 };
         let centre = [width, height][axis] as i64 / 2;
@@ -198,7 +198,7 @@ fn edges() {
             guard_edges += u32::from(edge.abs() <= 2);
             bench.check(&frame, &[at]);
         }
-        // With the largest translations, the position on the screen and X', from which it is computed (docs/formats/triangle.md), saturate.
+        // With the largest translations, the screen position and its intermediate result X' (docs/formats/triangle.md) saturate.
         for far in [(1 << 42) - 1, -(1 << 42), 1 << 41] {
             frame.translation[axis] = far;
             bench.check(&frame, &[at]);
@@ -210,8 +210,8 @@ fn edges() {
     assert!(near_planes > 100 && guard_edges > 1000 && full_depths > 100);
 }
 
-/// Tests frame constants in orthographic projection that put a vertex at a limit: the near plane, the guard band, and depths and
-/// places on both sides of a rounding limit, for every depth scale and scale shift.
+/// Tests frame constants in orthographic projection that put a vertex at a limit: at the near plane, at the guard band, and on
+/// both sides of a rounding limit of depth and position, for every depth scale and scale shift.
 #[test]
 fn orthographic_edges() {
     let mut random = Random(6);
@@ -234,7 +234,7 @@ fn orthographic_edges() {
             2 => random.integer(1, (1 << 24) - 1) * unit + random.integer(-1, 1),
             _ => random.integer(frame.near, range - 1),
         };
-        // Units of 1/256 pixel, half of them, and the end of the guard band.
+        // Positions near midpoints of the grid of 1/256 pixel: inside the picture, at the ends of the guard band, and far beyond.
         let pixel = 1_i64 << (6 + frame.scale_shift);
         let mut place = |size: u32| {
             let centre = 256 * i64::from(size) / 2;
@@ -260,9 +260,8 @@ fn orthographic_edges() {
     assert!(scales == [[true; 12]; 12] && seen.iter().all(|&count| count > 300));
 }
 
-/// The camera coordinates of a vertex at the origin are the translation. The tested translations cover mantissas of Z at
-/// both ends of the range of each seed (table entry) of the reciprocal, and X' (docs/formats/triangle.md) on both sides of rounding
-/// limits.
+/// A vertex at the origin has the translation as camera coordinates. The tested translations cover mantissas of Z at both ends of
+/// each seed interval (table entry) of the reciprocal, and X' (docs/formats/triangle.md) on both sides of rounding limits.
 #[test]
 fn mantissas_and_shifts() {
     let mut random = Random(4);

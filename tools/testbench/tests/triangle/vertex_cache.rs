@@ -1,4 +1,4 @@
-//! Tests of the vertex cache between a model of the memory and a model of the vertex stage.
+//! Tests of the vertex cache between models of the memory and the vertex stage.
 
 use std::collections::VecDeque;
 
@@ -9,13 +9,13 @@ use rand_pcg::Pcg64Mcg;
 
 type Triangle = [u16; 3];
 
-/// Makes the 68 bits of a processed vertex, such that they identify the vertex and its chunk.
+/// Makes 68 bits of a processed vertex that identify the vertex and its chunk.
 fn vertex(chunk: u32, index: u16) -> Bits {
     let mixed = (u64::from(chunk) << 16 | u64::from(index)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     Bits::from_words(&[mixed as u32, (mixed >> 32) as u32, mixed as u32 >> 7 & 15])
 }
 
-/// Makes 96 bits of data that go with a triangle, such that they identify the triangle and its chunk.
+/// Makes 96 bits of a triangle's data that identify the triangle and its chunk.
 fn side(chunk: u32, number: usize) -> Bits {
     Bits::from_words(&[number as u32, chunk, !(number as u32)])
 }
@@ -33,12 +33,12 @@ struct Bench {
     fetches: Sink,
     projected: Source,
     out: Sink,
-    /// Fetched vertices that have not arrived yet, each with the clock in which it arrives.
+    /// Fetched vertices in flight, each with the clock of its arrival.
     on_the_way: VecDeque<(u64, Bits)>,
-    /// Fetches that are still expected: chunk and index of the vertex.
+    /// Fetches still expected: chunk and index of the vertex.
     expected_fetches: VecDeque<(u32, u16)>,
     latency: u64,
-    /// Number of clocks between two vertices from the vertex stage.
+    /// Number of clocks between two output vertices of the vertex stage.
     pace: u64,
     clear: Port,
     idle: Port,
@@ -78,7 +78,7 @@ impl Bench {
         );
         for item in self.fetches.take() {
             let expected = self.expected_fetches.pop_front();
-            let (chunk, index) = expected.expect("a fetch of a vertex that is there");
+            let (chunk, index) = expected.expect("a fetch of a cached vertex");
             assert_eq!(item[0], Bits::from(u64::from(index)), "chunk {chunk}");
             let last = self.on_the_way.back().map_or(0, |&(due, _)| due);
             let due = (now + self.latency).max(last + self.pace);
@@ -86,8 +86,8 @@ impl Bench {
         }
     }
 
-    /// Sends chunks through the cache, and compares the vertices at its output. The cache is cleared as soon as it has
-    /// taken the last triangle of a chunk. Returns the number of clocks.
+    /// Sends chunks through the cache, and compares the output vertices. The cache is cleared as soon as it has taken the last
+    /// triangle of a chunk. Returns the number of clocks.
     fn check(&mut self, first: u32, chunks: &[Vec<Triangle>]) -> u64 {
         let start = self.module.cycles();
         let total: usize = chunks.iter().map(Vec::len).sum();
@@ -134,8 +134,7 @@ impl Bench {
     }
 }
 
-/// Makes triangles of one random kind: along a strip, with vertices that share a few slots of the cache, with few
-/// vertices, or with any vertices.
+/// Makes triangles of one random kind: along a strip, with vertices in a few slots of the cache, with few vertices, or with any vertices.
 fn triangles(random: &mut Pcg64Mcg, count: usize) -> Vec<Triangle> {
     let kind = random.random_range(0..4);
     let base: u16 = random.random();
@@ -175,15 +174,15 @@ fn triangles_come_in_order_with_their_own_vertices() {
     }
 }
 
-/// A chunk hits no vertex of earlier chunks, even when the cache's epochs, which tell the chunks apart, start over.
+/// A chunk hits no vertex of earlier chunks, even when the epochs, the cache's tags of chunks, wrap around.
 #[test]
 fn every_chunk_begins_empty() {
     let mut bench = Bench::new(20, [0.0; 4], 5, 1);
-    // The first chunk fills the cache. Each later chunk has few vertices, and must not hit what the first one left.
+    // The first chunk fills the cache. Each later chunk has few vertices, and must not hit the first chunk's.
     let mut chunks = vec![(0..512).map(|i| [i, i, i]).collect::<Vec<Triangle>>()];
     chunks.extend((1..400).map(|chunk| vec![[chunk * 37 % 512; 3], [chunk * 41 % 512; 3]]));
     bench.check(1, &chunks);
-    // A chunk without a triangle also takes an epoch, the time between two clears of the cache.
+    // A chunk without triangles also takes an epoch, the time between two clears of the cache.
     for _ in 0..100 {
         bench.check(1000, &[vec![]]);
     }
@@ -204,7 +203,7 @@ fn a_triangle_in_three_clocks_when_all_is_there() {
 fn the_latency_of_memory_is_hidden() {
     let mut bench = Bench::new(40, [0.0; 4], 150, 6);
     let apart: Vec<Triangle> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    // Before the first chunk the cache empties all its slots one by one, so this chunk is not measured.
+    // The first chunk is not measured, because the cache first clears all its slots one by one.
     bench.check(1, &[vec![[0; 3]]]);
     let clocks = bench.check(2, &[apart]);
     assert!(clocks <= 18 * 300 + 200, "{clocks} clocks for 900 misses");

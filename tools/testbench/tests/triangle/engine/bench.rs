@@ -9,8 +9,8 @@ use glint_testbench::{Bits, Counters, Memory, Module, ReadPort, Stalls, WritePor
 
 use super::expected::{Expected, SIZES};
 
-// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: the engine writes the first one,
-// and the clipper (firmware on the board, here the model) the second one.
+// Addresses in memory, in words of 16 bytes. `LISTS` and `DESCRIPTORS` are two areas each: one for the engine, one for the
+// clipper (firmware on the board, here the model).
 const FRAMES: [u32; 2] = [0, 0x6_0000];
 const DEPTH: u32 = 0x2_0000;
 pub const LISTS: [u32; 2] = [0x8_0000, 0xc_0000];
@@ -20,10 +20,10 @@ pub const MESH: u32 = 0x1c_0000;
 const WORDS: usize = 0x20_0000;
 /// Logarithm to base 2 of the words per list.
 pub const LIST_SHIFT: u32 = 11;
-/// Number of words after a picture that are checked not to change: more than a bank of the band buffer holds.
+/// Number of words after a picture that must not change: more than the size of a bank of the band buffer.
 const BEHIND: usize = 4096;
-/// Largest number of exceptions (triangles left to the clipper) that the engine may write. There is also room for this number
-/// of descriptors of three words each; a descriptor for smooth shading takes six.
+/// Largest number of exceptions (triangles left to the clipper) that the engine may write. The descriptor area has the size of
+/// this number of flat descriptors, of three words each; a smooth descriptor takes six words.
 const LIMIT: u32 = 80_000;
 
 /// Returns the byte address of a word of 16 bytes.
@@ -64,17 +64,16 @@ pub struct Bench {
     pub memory: Memory,
     pub reads: [ReadPort; 3],
     writes: [WritePort; 4],
-    /// Whether frames are drawn with depths, which are then compared too.
+    /// Whether frames are drawn, and compared, with depths.
     pub with_depth: bool,
-    /// Number of the frame buffer to draw in.
+    /// Index of the frame buffer to draw in.
     pub slot: usize,
-    /// For each frame buffer, the size and clear colour of its last frame; `None` before the first frame, which the
-    /// engine writes whole without a request.
+    /// For each frame buffer, the size and clear colour of its last frame; `None` before the first frame, which the engine always
+    /// writes whole.
     left: [Option<((u32, u32), u16)>; 2],
 }
 
-/// Cost of drawing a frame: clocks of the two passes, number of words that the raster pass read, and number of words of
-/// colours and depths written.
+/// Cost of a frame: clocks of the two passes, words read by the raster pass, and words of colours and depths written.
 pub struct Clocks {
     pub geometry: u64,
     pub raster: u64,
@@ -83,7 +82,7 @@ pub struct Clocks {
 }
 
 impl Bench {
-    /// Creates a bench with the module for flat shading; each port of the memory stalls in the share `stalls` of the clocks.
+    /// Creates a bench with the module for flat shading; each memory port stalls in the share `stalls` of the clocks.
     pub fn new(seed: u32, stalls: f64) -> Self {
         Self::of("triangle_engine", Shading::Flat, seed, stalls)
     }
@@ -103,7 +102,7 @@ impl Bench {
         Self::of("triangle_engine_fields_alone", Shading::Flat, seed, stalls)
     }
 
-    /// As [`fields_alone`](Self::fields_alone), without the memory of depths.
+    /// As [`fields_alone`](Self::fields_alone), without the depth buffer.
     pub fn no_depths(seed: u32, stalls: f64) -> Self {
         Self::of("triangle_engine_no_depths", Shading::Flat, seed, stalls)
     }
@@ -131,12 +130,12 @@ impl Bench {
         self.module.set(port, value);
     }
 
-    /// Returns the number on a port.
+    /// Returns the value of a port.
     pub fn read(&self, path: &str) -> u64 {
         self.module.read(path)
     }
 
-    /// Returns the count of an event of the engine.
+    /// Returns the value of an event counter of the engine.
     pub fn count(&self, event: &str) -> u64 {
         self.counters.get(event)
     }
@@ -166,7 +165,7 @@ impl Bench {
             let clocks = self.module.cycles() - start;
             assert!(
                 clocks < 2_000_000,
-                "nothing for {clocks} clocks: given {:?} written {} groups {}",
+                "no end after {clocks} clocks: given {:?} written {} groups {}",
                 self.reads.each_ref().map(|read| read.given),
                 self.frame_words(),
                 self.count("groups")
@@ -208,7 +207,7 @@ impl Bench {
             .position(|&size| size == (frame.width, frame.height))
             .unwrap() as u64;
         for (path, value) in [
-            // The engine gets the address after the mesh's header, which has two words.
+            // The engine's address skips the mesh's header of two words.
             ("geometry.mesh", bytes(MESH + 2)),
             (
                 "geometry.mesh_bytes",
@@ -284,7 +283,7 @@ impl Bench {
             .drive_all("raster.descriptors", DESCRIPTORS.map(bytes));
     }
 
-    /// Draws a frame and compares it with the expected one.
+    /// Draws a frame and compares it with the expected frame.
     pub fn draw(&mut self, name: &str, mesh: &[u8], expected: &Expected) -> Clocks {
         self.configure(mesh, expected);
         self.wait_for("status.ready");
@@ -311,7 +310,7 @@ impl Bench {
         self.draw_lists(name, expected, geometry)
     }
 
-    /// Draws the frame of the lists of geometry passes, which took `geometry` clocks, and compares it with the expected one.
+    /// Draws a frame from the lists of geometry passes that took `geometry` clocks, and compares it with the expected frame.
     pub fn draw_lists(&mut self, name: &str, expected: &Expected, geometry: u64) -> Clocks {
         self.configure_raster(expected);
         write_clipped(&mut self.memory, expected, self.ability);
@@ -336,14 +335,14 @@ impl Bench {
         }
     }
 
-    /// The numbers of the exceptions that geometry passes have listed.
+    /// The indices of the exceptions listed by geometry passes.
     pub fn exceptions(&self) -> Vec<u32> {
         let count = self.read("results.exception_count") as u32;
         let entry = |index| self.memory.entry(EXCEPTIONS, index);
         (0..count).map(entry).collect()
     }
 
-    /// Waits for the end of the raster pass, and compares its frame with the expected one. Returns the number of clocks.
+    /// Waits for the end of the raster pass, and compares its frame with the expected frame. Returns the number of clocks.
     pub fn finish(&mut self, name: &str, expected: &Expected) -> u64 {
         let clocks = self.wait_for("status.raster_done");
         self.left[self.slot] = Some((expected.size, expected.options.clear));
@@ -352,8 +351,8 @@ impl Bench {
         clocks
     }
 
-    /// Draws a frame from any descriptors and lists, valid or not. The list of every band has the entries `list`; `lengths`
-    /// is the table of the lists' lengths, one for each band.
+    /// Draws a frame from valid or invalid descriptors and lists. Every band's list has the entries `list`; `lengths` has the
+    /// length of each band's list.
     ///
     /// # Panics
     /// When the frame does not end, or a word after the picture changes.
@@ -388,19 +387,19 @@ impl Bench {
             assert_eq!(
                 found,
                 Bits::from_words(&[0x7777_7777; 4]),
-                "{name}: word {word} behind the picture"
+                "{name}: word {word} after the picture"
             );
         }
     }
 
-    /// Overwrites the frame buffer, and forgets its last frame.
+    /// Overwrites the frame buffer: its last frame counts as unknown.
     pub fn scribble(&mut self) {
         self.memory
             .write(FRAMES[self.slot], &[0x99; 1280 * 720 * 2]);
         self.left[self.slot] = Some(((0, 0), 0));
     }
 
-    /// Compares the frame in memory with the expected one.
+    /// Compares the frame in memory with the expected frame.
     fn compare(&self, name: &str, expected: &Expected) {
         for i in 0..expected.colour.len() as u32 {
             let (x, y) = (i % expected.size.0, i / expected.size.0);

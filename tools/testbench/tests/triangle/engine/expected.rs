@@ -1,4 +1,4 @@
-//! Frames that the model draws, which the triangle engine must draw equally.
+//! Frames drawn by the model, which the triangle engine must reproduce.
 
 use glint_core::camera::View;
 use glint_core::mesh::{Mesh, Rgb565};
@@ -12,7 +12,7 @@ pub const CLEAR: u16 = 0x1234;
 /// A frame drawn by the model.
 pub struct Expected {
     pub size: (u32, u32),
-    /// Frame constants and options of the mesh, or of the first one if there are several.
+    /// Frame constants and options of the first or only mesh.
     pub frame: MeshSetup,
     pub options: Options<'static>,
     pub colour: Vec<u16>,
@@ -27,7 +27,7 @@ pub fn expected(mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expec
     expected_on(CLEAR, mesh, view, size, cull)
 }
 
-/// Draws a frame with the model; pixels without a triangle have the colour `clear`.
+/// Draws a frame with the model on the background colour `clear`.
 pub fn expected_on(clear: u16, mesh: &[u8], view: &View, size: (u32, u32), cull: bool) -> Expected {
     let options = Options {
         cull,
@@ -63,7 +63,7 @@ pub fn expected_with(
     expected_parts(size, &[(mesh, frame, options)])
 }
 
-/// Draws a frame of several meshes with the model, from the frame constants and the options of each.
+/// Draws a frame of several meshes with the model, from each mesh's frame constants and options.
 pub fn expected_parts(size: (u32, u32), parts: &[(Mesh, MeshSetup, Options<'static>)]) -> Expected {
     let pixels = (size.0 * size.1) as usize;
     let (mut colour, mut depth) = (vec![0; pixels], vec![0; pixels]);
@@ -121,7 +121,7 @@ fn setup(triangle: &DrawnTriangle, (width, height): (u32, u32)) -> (Setup, Rgb56
     (setup, triangle.colour)
 }
 
-/// Makes an expected frame of colours and depth codes that were drawn otherwise, without triangles.
+/// Makes an expected frame without triangles from colours and depth codes of another source.
 pub fn picture(size: (u32, u32), view: &View, colour: Vec<u16>, depth: Vec<u32>) -> Expected {
     Expected {
         size,

@@ -1,5 +1,5 @@
-//! Tests of the triangle engine's build without triangles, which draws what a raymarcher sends. The model stands for the
-//! raymarcher: it sends the pixels of each band in a random order.
+//! Tests of the triangle engine's build without triangles, which draws only a raymarcher's pixels. The model replaces the
+//! raymarcher, and sends the pixels of each band in a random order.
 
 use glint_core::appearance::Appearance;
 use glint_core::field::Field;
@@ -22,7 +22,7 @@ use super::expected::{CLEAR, Expected, picture};
 /// The picture of a field, and the pixels of each band.
 struct Picture {
     expected: Expected,
-    /// Value of `compose`: how the luminances of two eyes become colours.
+    /// Value of `compose`: the conversion of two eyes' luminances to colours.
     compose: u64,
     bands: Vec<Vec<Pixel>>,
 }
@@ -85,7 +85,7 @@ fn start(bench: &mut Bench, picture: &Picture) {
     bench.pulse("raster_start");
 }
 
-/// Sends pixels, each in the first clock in which the engine is ready, and pauses before some.
+/// Sends pixels, each in the first clock in which the engine is ready, with occasional pauses.
 fn send(bench: &mut Bench, random: &mut Pcg64Mcg, eyes: bool, pixels: &[Pixel]) {
     let member = |name: &str| format!("field_source.{name}");
     for pixel in pixels {
@@ -146,7 +146,7 @@ fn fields_are_drawn_without_triangles() {
         let read = bench.reads.each_ref().map(|port| port.given);
         assert_eq!(read, [0; 3], "words read");
     }
-    // Without the memory of depths the colours are the same, and depths are written as 0.
+    // Without the depth buffer the colours are unchanged, and depths are written as 0.
     let mut bench = Bench::no_depths(3, 0.4);
     for (name, picture) in &mut pictures {
         picture.expected.depth.fill(0);

@@ -10,7 +10,7 @@ use super::bench::{Bench, DESCRIPTORS, LIST_SHIFT, LISTS, MESH};
 use super::expected::{CLEAR, Expected, picture};
 
 impl Expected {
-    /// A frame with nothing drawn.
+    /// An empty frame.
     pub fn clear(size: (u32, u32)) -> Self {
         let pixels = (size.0 * size.1) as usize;
         picture(size, &ahead(1.0, 0.1), vec![CLEAR; pixels], vec![0; pixels])
@@ -21,7 +21,7 @@ impl Expected {
         self.depth.iter().copied().max().unwrap_or(0)
     }
 
-    /// Draws segments over the frame, each with its depth test.
+    /// Draws segments over the frame with the depth test.
     pub fn draw_segments(&mut self, segments: &[Segment]) {
         let mut target = FrameBuffer {
             width: self.size.0,
@@ -34,7 +34,7 @@ impl Expected {
         }
     }
 
-    /// Draws the pixels of another frame over the frame, with the depth test.
+    /// Draws another frame's pixels over the frame with the depth test.
     pub fn draw_over(&mut self, other: &Self) {
         for (i, &code) in other.depth.iter().enumerate() {
             if code > 0 && code >= self.depth[i] {
@@ -44,7 +44,7 @@ impl Expected {
     }
 }
 
-/// Descriptors, in words, and band lists of several passes.
+/// Descriptors, as words, and band lists of several passes.
 pub struct Gathered {
     descriptors: Vec<Bits>,
     lists: [Vec<u32>; 64],
@@ -60,7 +60,7 @@ impl Default for Gathered {
 }
 
 impl Bench {
-    /// Sets the engine up for a pass that makes descriptors of segments.
+    /// Sets the engine up for a geometry pass of segments.
     pub fn configure_lines(&mut self, segments: &[Segment], expected: &Expected) {
         self.configure(&[], expected);
         let header = Segment::header(segments.len() as u32);
@@ -77,8 +77,8 @@ impl Bench {
         self.set("geometry_flags.lines", 1);
     }
 
-    /// Runs the geometry pass for which the engine is set up, which has room for all its descriptors, and returns its clocks. The
-    /// descriptors and lists are appended to `gathered`.
+    /// Runs the configured geometry pass, with enough memory for all its descriptors, and returns its clocks. Appends its
+    /// descriptors and lists to `gathered`.
     pub fn gather(&mut self, name: &str, gathered: &mut Gathered) -> u64 {
         self.wait_for("status.ready");
         self.pulse("geometry_start");
@@ -101,7 +101,7 @@ impl Bench {
         clocks
     }
 
-    /// Draws a frame from the descriptors and lists of several passes, and compares it with the expected one. Returns the clocks.
+    /// Draws a frame from the descriptors and lists of several passes, and compares it with the expected frame. Returns the clocks.
     pub fn draw_gathered(&mut self, name: &str, gathered: &Gathered, expected: &Expected) -> u64 {
         self.start_gathered(gathered, expected);
         self.finish(name, expected)
@@ -128,7 +128,7 @@ impl Bench {
         self.pulse("raster_start");
     }
 
-    /// Overwrites the number of words of the segments in memory.
+    /// Overwrites the word count of the segments in memory.
     pub fn overwrite_words(&mut self, words: u32) {
         self.memory
             .store(MESH, Bits::from_words(&[1, words, 0, 0]), u16::MAX);

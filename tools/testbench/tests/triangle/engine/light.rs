@@ -1,4 +1,4 @@
-//! Frames in light from a direction or at the camera, with a colour, and with ambient light.
+//! Tests of frames with directional light or light at the camera, in colours, and with ambient light.
 
 use glint_core::camera::View;
 use glint_core::fixed::Q32_32;
@@ -12,8 +12,8 @@ use super::bench::Bench;
 use super::expected::{CLEAR, Expected, SIZES, expected_with};
 use super::generated;
 
-/// Draws a frame with the model in the given lighting, with `shading`. Engine and model have the same pictures if back faces are culled,
-/// the shading is flat or there is no ambient light.
+/// Draws a frame with the model with this lighting and `shading`. Engine and model produce equal pictures if back faces are
+/// culled, the shading is flat, or the ambient light is 0.
 fn expected_lit(
     lighting: &MeshLighting,
     shading: Shading,
@@ -32,7 +32,7 @@ fn expected_lit(
     expected_with(options, mesh, view, size)
 }
 
-/// Draws each scene flat and smooth, each time in another light.
+/// Draws each scene with flat and smooth shading, in changing light.
 #[test]
 fn scenes_in_any_light() {
     let mut random = Pcg64Mcg::new(9);

@@ -1,4 +1,4 @@
-//! Tests of the line engine in the passes of the triangle engine: frames of lines alone, and of lines and triangles.
+//! Tests of the line engine within the triangle engine: frames of lines, and of lines and triangles.
 
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
@@ -13,10 +13,10 @@ use super::expected::{Expected, SIZES, expected};
 use super::gathered::Gathered;
 use super::generated;
 
-/// Number of clocks of a frame at 60 frames per second and 81.25 MHz.
+/// Number of clocks per frame at 60 frames per second and 81.25 MHz.
 const FRAME_CLOCKS: u64 = 81_250_000 / 60;
 
-/// Draws segments, and compares the frame with the model's. Returns the clocks of both passes.
+/// Draws segments, and compares the frame with the model's frame. Returns the clocks of both passes.
 fn draw(bench: &mut Bench, name: &str, size: (u32, u32), segments: &[Segment]) -> [u64; 2] {
     let mut expected = Expected::clear(size);
     expected.draw_segments(segments);
@@ -51,7 +51,7 @@ fn difficult_segments() {
     }
 }
 
-/// Segments of 50 pixels: a frame of 10,000 takes less than a sixtieth of a second, and both passes of a frame work at the same time.
+/// A frame of 10,000 segments of 50 pixels takes less than 1/60 s, as both passes run concurrently.
 #[test]
 fn ten_thousand_segments_of_50_pixels() {
     for (size, &picture) in SIZES.iter().enumerate() {
@@ -64,15 +64,15 @@ fn ten_thousand_segments_of_50_pixels() {
     }
 }
 
-/// A step of a frame.
+/// A drawing step of a frame.
 enum Step {
-    /// A rectangle across the picture, in one colour, at a distance from the eye.
+    /// A rectangle parallel to the picture plane: distance from the eye, and colour.
     Face(f64, u16),
     /// Segments.
     Lines(Vec<Segment>),
 }
 
-/// The depth code that the face at a distance has at all its pixels.
+/// The depth code of all pixels of a face at this distance.
 fn code(distance: f64) -> u32 {
     expected(&face(distance, 0), &ahead(1.0, 0.1), SIZES[0], false).nearest()
 }
@@ -90,7 +90,7 @@ fn face(distance: f64, colour: u16) -> Vec<u8> {
     meshes::mesh(&[triangle([0, 1, 2]), triangle([0, 2, 3])], 100)
 }
 
-/// Lines and faces of one list keep their order, even where their depths are equal.
+/// Lines and faces of a list keep their order, even at equal depths.
 #[test]
 fn lines_and_faces_in_turn() {
     let mut numbers = Pcg64Mcg::new(23);
@@ -161,7 +161,7 @@ fn full_lists_and_damaged_segments_are_reported() {
         assert_eq!(run(&mut bench), errors, "{port} {value}");
         draw(&mut bench, "with room", SIZES[0], &segments);
     }
-    // Half a segment at the end has no effect.
+    // An incomplete segment at the end has no effect.
     for words in [1, 119] {
         bench.configure_lines(&segments, &clear);
         bench.overwrite_words(words);
@@ -171,7 +171,7 @@ fn full_lists_and_damaged_segments_are_reported() {
     }
 }
 
-/// A cancelled frame of lines does not change the next frame, of lines or of triangles.
+/// A cancelled frame of lines does not change the next frame of lines or of triangles.
 #[test]
 fn a_cancelled_frame_leaves_a_working_engine() {
     let segments = of_50_pixels(0, 60);
@@ -196,7 +196,7 @@ fn a_cancelled_frame_leaves_a_working_engine() {
     }
 }
 
-/// Draws frames from random pieces: such a frame ends and writes only its own memory, and the next frame is correct.
+/// Draws frames from random pieces. Such a frame ends and writes only its own memory, and the next frame is correct.
 #[test]
 fn frames_end_with_random_pieces() {
     let mut bench = Bench::lines(26, 0.1);
@@ -207,7 +207,7 @@ fn frames_end_with_random_pieces() {
         let clear = Expected::clear(size);
         let mut descriptors: Vec<u8> = (0..48 * 300).map(|_| numbers.random()).collect();
         for descriptor in descriptors.as_chunks_mut::<48>().0 {
-            // The mark of a piece is in the bits 366 and 367.
+            // Bits 366 and 367 mark a descriptor as a piece.
             descriptor[45] |= 0xc0;
         }
         let list: Vec<_> = (0..40).map(|_| numbers.random_range(0..300)).collect();

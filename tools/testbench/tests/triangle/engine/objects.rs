@@ -1,4 +1,4 @@
-//! Frames of several objects: a geometry pass for each, which continues the lists of the previous pass.
+//! Tests of frames of several objects: a geometry pass for each object continues the lists of the previous pass.
 
 use glint_core::camera::View;
 use glint_core::colour::Rgb565;
@@ -22,7 +22,7 @@ struct Thing {
     options: Options<'static>,
 }
 
-/// The frame constants of all objects.
+/// The frame constants of each object.
 fn setups(things: &[Thing], view: &View, (width, height): (u32, u32)) -> Vec<MeshSetup> {
     let camera = MeshSetup::new(view, width, height, 0).unwrap();
     let placed = things.iter().map(|thing| {
@@ -32,7 +32,7 @@ fn setups(things: &[Thing], view: &View, (width, height): (u32, u32)) -> Vec<Mes
     placed.collect()
 }
 
-/// Makes a random object: turned, of one scale, mirrored or not, of another colour or not.
+/// Makes a random object: rotated and uniformly scaled, perhaps mirrored or recoloured.
 fn some_thing(random: &mut Pcg64Mcg, shading: Shading) -> Thing {
     let mesh = match random.random_range(0..4) {
         0 => generated("icosphere:4"),
@@ -66,7 +66,7 @@ fn some_thing(random: &mut Pcg64Mcg, shading: Shading) -> Thing {
     }
 }
 
-/// Draws a frame of objects, compares the exceptions of each, and the picture.
+/// Draws a frame of objects; compares each object's exceptions, and the picture.
 fn draw(bench: &mut Bench, name: &str, things: &[Thing], setups: &[MeshSetup]) -> Expected {
     let things: Vec<_> = things
         .iter()
@@ -101,7 +101,7 @@ fn draw(bench: &mut Bench, name: &str, things: &[Thing], setups: &[MeshSetup]) -
     expected
 }
 
-/// Frames of random objects, with stalls of the memory and without, alternately with frames of one mesh.
+/// Draws frames of random objects alternately with frames of one mesh, with and without memory stalls.
 #[test]
 fn frames_of_objects() {
     let (mut clipped, mut drawn, mut mirrored) = (0, 0, 0);
@@ -134,7 +134,7 @@ fn frames_of_objects() {
     assert!(drawn > 5000 && clipped > 500 && mirrored > 20);
 }
 
-/// A pass that appends begins empty lists after a cancelled pass, so it never continues lists at unknown addresses.
+/// After a cancelled pass, an appending pass begins with empty lists instead of lists at unknown addresses.
 #[test]
 fn nothing_is_appended_to_a_cancelled_frame() {
     let mut random = Pcg64Mcg::new(600);

@@ -1,4 +1,4 @@
-//! Test bench of the rasterizer: draws one band after the other, and makes the picture from the groups at the output.
+//! Test bench of the rasterizer: draws band after band, and composes the picture from the output groups.
 
 use glint_model::triangle::descriptor::{Descriptor, band_rows};
 use glint_model::triangle::raster::draw;
@@ -13,18 +13,18 @@ pub struct Pixel {
     pub depth: u32,
 }
 
-/// Counts of the clocks, groups, pixels and triangles of a drawing.
+/// Numbers of clocks, groups, pixels and triangles of a drawing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counts {
     pub clocks: u64,
     /// Number of clocks in which the rasterizer visited a group (`cycles_walking`).
     pub walked: u64,
-    /// Number of clocks among `walked` without a group to draw (`cycles_empty`).
+    /// Number of clocks of `walked` that output no group (`cycles_empty`).
     pub empty: u64,
     /// Number of groups at the output.
     pub groups: u64,
     pub pixels: u64,
-    /// Number of triangles, each counted once per band that it is drawn in.
+    /// Number of triangles, counted once per band.
     pub entries: u64,
 }
 
@@ -38,7 +38,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// Creates a bench of the module variant for flat triangles, which are identified by their colours.
+    /// Creates a bench of the module variant for flat triangles, identified by their colours.
     pub fn new(seed: u32, stalls: [f64; 2]) -> Self {
         Self::of("triangle_raster", seed, stalls)
     }
@@ -63,7 +63,7 @@ impl Bench {
         }
     }
 
-    /// Draws a band, which ends when the rasterizer is idle; returns its groups.
+    /// Draws a band until the rasterizer is idle; returns the band's groups.
     pub fn band<'a>(
         &mut self,
         [y0, rows, stride]: [u32; 3],
@@ -88,7 +88,7 @@ impl Bench {
         pipe.sink.take()
     }
 
-    /// Draws triangles in all bands that they touch, and compares the picture with the model's.
+    /// Draws triangles in all their bands, and compares the picture with the model's.
     pub fn check(&mut self, name: &str, size: (u32, u32), triangles: &[Triangle]) -> Counts {
         let (width, height) = size;
         let blank = Pixel {
@@ -96,7 +96,7 @@ impl Bench {
             depth: 0,
         };
         let mut picture = vec![blank; (width * height) as usize];
-        // Number of the triangle that was drawn last at each pixel.
+        // Index of the last triangle drawn at each pixel.
         let mut last = vec![None; picture.len()];
         let all_flat = triangles.iter().all(|t| t.setup.light.is_none());
         self.counts = Counts::default();

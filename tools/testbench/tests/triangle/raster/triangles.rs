@@ -1,4 +1,4 @@
-//! Triangles on the screen, for tests; each flat triangle has its number as its colour.
+//! Test triangles in screen coordinates; a flat triangle's colour is its index.
 
 use glint_core::colour::Rgb565;
 use glint_model::ScreenVertex;
@@ -15,7 +15,7 @@ pub const LANES: usize = 8;
 
 pub type Corners = [ScreenVertex; 3];
 
-/// A triangle to draw. The colour of a flat triangle is the triangle's number.
+/// A triangle to draw. The colour of a flat triangle is its index.
 pub struct Triangle {
     pub corners: Corners,
     pub setup: Setup,
@@ -23,7 +23,7 @@ pub struct Triangle {
 }
 
 impl Triangle {
-    /// Sets up a triangle; returns `None` if the triangle has no area or is off the picture.
+    /// Sets up a triangle; returns `None` if it has no area or is outside the picture.
     pub fn new(corners: Corners, (width, height): (u32, u32), number: usize) -> Option<Self> {
         let oriented = Oriented::new(corners)?;
         let bounds = Bounds::new(&oriented.vertices, width, height)?;
@@ -34,7 +34,7 @@ impl Triangle {
         })
     }
 
-    /// Returns this triangle with the light `lit` at its vertices, for smooth shading.
+    /// Returns the triangle for smooth shading with the light `lit` at its vertices.
     pub fn with_light(mut self, lit: &[Lit; 3]) -> Self {
         let oriented = Oriented::new(self.corners).unwrap();
         self.setup = Setup::smooth(&oriented, self.setup.bounds, lit);
@@ -42,7 +42,7 @@ impl Triangle {
     }
 }
 
-/// Sets up and numbers the triangles that have an area and are not off the picture.
+/// Sets up and numbers the triangles with an area inside the picture.
 pub fn numbered(size: (u32, u32), all: impl IntoIterator<Item = Corners>) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for corners in all {
@@ -56,7 +56,7 @@ pub fn corner([x, y]: [i32; 2], w: u32) -> ScreenVertex {
     ScreenVertex { x, y, w }
 }
 
-/// Makes the corners of a triangle from places in pixels; each corner has a different depth.
+/// Makes a triangle's corners from positions in pixels, each corner with another depth.
 pub fn pixels(corners: [[f64; 2]; 3]) -> Corners {
     let mut w = 0;
     corners.map(|place| {
@@ -116,7 +116,7 @@ impl Random {
             3 | 4 => [0; 3].map(|_| self.near(place, 20, 1)),
             5 => [0; 3].map(|_| self.near(place, 2, 1)),
             6 => [0; 3].map(|_| self.near(place, 1, 16)),
-            // Vertices on pixel centres and pixel edges, and so some horizontal and vertical triangle edges.
+            // Vertices on pixel centres and pixel edges, with some horizontal and vertical triangle edges.
             7 => [0; 3].map(|_| self.near(place, 12, 128)),
             8 => {
                 let wide = [place[0] / 8 * 8, place[1]];

@@ -4,7 +4,7 @@ use glint_model::{MeshLight, SIZES, Shading};
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
-/// Frame constants: the picture's size, culling of back faces, whether the mesh is mirrored, the light, and the shading.
+/// Frame constants: picture size, culling of back faces, mirroring of the mesh, light, and shading.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     pub size: (u32, u32),
@@ -14,7 +14,7 @@ pub struct Frame {
     pub shading: Shading,
 }
 
-/// A light in the direction opposite to z; white and without ambient light.
+/// White light in the direction −z, without ambient light.
 pub const WHITE: MeshLight = MeshLight {
     row: [0, 0, 1 << 23],
     forward: [0, 0, 1 << 23],
