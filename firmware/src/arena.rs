@@ -1,4 +1,5 @@
-//! Memory for uploads, or for copies of meshes, side by side. The largest gap between uploads is the staging memory.
+//! Arenas: memory divided into regions for uploads, or for copies of meshes. The largest gap between the regions of uploads is the staging
+//! memory.
 
 use core::ops::Range;
 use core::ptr;
@@ -6,15 +7,15 @@ use core::slice;
 
 use glint_core::regions::{Region, Regions};
 
-/// Largest number of uploads: the meshes, a program, and one that replaces another.
+/// Largest number of uploads: the meshes, a program, and a new upload that is to replace one of them.
 const UPLOADS: usize = 18;
 
-/// Memory that a task fills or sends over several turns. Nothing else refers to it until it is given back.
+/// Memory that a task fills or sends over several turns. Until it is given back, no other reference to it exists.
 pub struct Loan {
     bytes: &'static mut [u8],
     /// The part of the bytes that is used.
     part: Range<usize>,
-    /// The region of the arena that has lent it; `NONE` for other memory.
+    /// The region of the lending arena; `NONE` for memory of no arena.
     region: Region,
 }
 
@@ -35,12 +36,12 @@ impl Loan {
         }
     }
 
-    /// Whether it is memory of an arena.
+    /// Whether the memory belongs to an arena.
     pub fn is_of_arena(&self) -> bool {
         self.region != Region::NONE
     }
 
-    /// Uses this part of the bytes, or nothing if they have no such part.
+    /// Restricts the loan to this part of its bytes, or to nothing if the part is out of range.
     pub const fn narrow(&mut self, part: Range<usize>) {
         self.part = part;
     }
@@ -62,7 +63,7 @@ impl AsMut<[u8]> for Loan {
 pub struct Arena {
     memory: *mut [u8],
     regions: Regions<UPLOADS>,
-    /// Number of regions that are lent. Regions stay in place meanwhile.
+    /// Number of regions that are lent. While it is above 0, no region is moved.
     lent: usize,
 }
 
@@ -89,8 +90,8 @@ impl Arena {
     /// The largest gap, which is separate from all regions.
     pub fn staging(&mut self) -> &mut [u8] {
         let gap = self.regions.gap();
-        // SAFETY: the gap is in the memory, which `new` took for good, and apart from all regions. The result borrows the arena, so
-        // that meanwhile no region is made of the gap and nothing else is lent for writing.
+        // SAFETY: the gap is in the memory, which `new` borrowed for `'static`, and overlaps no region. The result borrows the arena
+        // mutably, so that no region is made of the gap and no other mutable reference to it exists.
         unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(gap.start), gap.len()) }
     }
 
@@ -106,9 +107,9 @@ impl Arena {
         let region = self.keep(length)?;
         let start = self.regions.range(region).start;
         self.lent += 1;
-        // SAFETY: the region has at least `length` bytes of the memory, which `new` took for good. Only the loan knows the region's number,
-        // so no other reference to its bytes is made before the loan ends; it overlaps no other region, and stays in place because
-        // `close_gaps` moves nothing while a region is lent.
+        // SAFETY: the region has at least `length` bytes of the memory, which `new` borrowed for `'static`. Only the loan has the region's
+        // number, so no other reference to its bytes is made before the loan ends. The region overlaps no other region, and stays in place
+        // because `close_gaps` moves nothing while a region is lent.
         let bytes =
             unsafe { slice::from_raw_parts_mut(self.memory.cast::<u8>().add(start), length) };
         Some(Loan {
@@ -117,40 +118,40 @@ impl Arena {
         })
     }
 
-    /// The region of a loan of this arena, which ends.
+    /// Ends a loan of this arena and returns its region.
     pub fn keep_lent(&mut self, loan: Loan) -> Region {
         self.lent -= usize::from(loan.is_of_arena());
         loan.region
     }
 
-    /// Ends a loan of this arena and makes its region part of the gaps, which keep the bytes.
+    /// Ends a loan of this arena and frees its region; the bytes stay unchanged.
     pub fn give_back(&mut self, loan: Loan) {
         let region = self.keep_lent(loan);
         self.release(region);
     }
 
-    /// The first `length` bytes of a region; nothing if it is shorter.
+    /// The first `length` bytes of a region; empty if the region is shorter.
     pub fn bytes(&self, region: Region, length: usize) -> &[u8] {
         let range = self.regions.range(region);
         let length = if length > range.len() { 0 } else { length };
-        // SAFETY: the region is in the memory, and is written by `close_gaps` only, which borrows the arena for writing.
+        // SAFETY: the region is in the memory, and is only written by `close_gaps`, which borrows the arena mutably.
         unsafe { slice::from_raw_parts(self.memory.cast::<u8>().add(range.start), length) }
     }
 
-    /// Makes a region part of the gaps.
+    /// Frees a region.
     pub fn release(&mut self, region: Region) {
         self.regions.release(region);
     }
 
-    /// Moves all regions together, so that one gap remains, unless a region is lent.
+    /// Moves all regions so that one gap remains; does nothing while a region is lent.
     pub fn close_gaps(&mut self) {
         if self.lent > 0 {
             return;
         }
         let memory = self.memory.cast::<u8>();
         self.regions.close_gaps(|from, to| {
-            // SAFETY: both ranges are in the memory, and the second one reaches no region but the moved one. This method borrows
-            // the arena for writing, so nothing is lent.
+            // SAFETY: both ranges are in the memory, and the target overlaps no region except the moved one. This method borrows the arena
+            // mutably, and no region is lent.
             unsafe { ptr::copy(memory.add(from.start), memory.add(to), from.len()) };
         });
     }

@@ -1,4 +1,4 @@
-//! Benchmarks on the soft core: clock cycles of kernels, which are small functions such as sine and cosine.
+//! Benchmarks on the soft core: clock cycles of kernels (small functions such as sine and cosine).
 
 use glint_core::fixed::Turns;
 use glint_core::trig::sin_cos_q30;

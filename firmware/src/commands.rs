@@ -1,6 +1,6 @@
 //! Execution of console commands, in one module for each subject.
 //!
-//! A reply is text, and after it `ok` or `error: …`. A line of the text that programs read has a key and its value.
+//! A reply is text, followed by `ok` or `error: …`. A line of machine-readable text is a key and its value.
 
 mod bench;
 mod demo;
@@ -25,11 +25,11 @@ use crate::error::CommandError;
 use crate::job::{Job, Reply};
 use crate::machine::Machine;
 
-/// Executes a line of the console as a command. Returns the command's reply; `None` for a blank line. A command that sets the picture
-/// or changes the uploads stops the demo.
+/// Executes a line of the console as a command. Returns the command's reply; `None` for a blank line. A command that changes the picture
+/// or the uploads stops the demo.
 ///
 /// # Errors
-/// The line is not a command, or the command fails.
+/// The line is not a valid command, or the command fails.
 // Not inlined, because the code of the main loop would otherwise grow by several KiB.
 #[inline(never)]
 pub fn execute<'l>(
@@ -40,7 +40,7 @@ pub fn execute<'l>(
         return Ok(None);
     };
     let reply = command.execute(machine)?;
-    // An upload changes nothing until it has been accepted.
+    // An upload has no effect until it has been accepted.
     if command.effect() != Effect::None && !matches!(reply, Reply::After(Job::Transfer(_))) {
         machine.demo.stop();
     }

@@ -92,7 +92,7 @@ const fn corner_at(index: usize, size: i16) -> [i16; 3] {
     position
 }
 
-/// Writer that appends records to the bytes of the mesh.
+/// Writer of records to the bytes of the mesh.
 struct Writer {
     bytes: [u8; LENGTH],
     at: usize,
@@ -117,8 +117,8 @@ impl Writer {
             1 << ((axis + 1) % 3),
             1 << ((axis + 2) % 3),
         );
-        // Seen from the positive side the axes b and c turn counter-clockwise; seen from the negative side they turn
-        // clockwise, so b and c change places.
+        // The turn from axis b to axis c is counter-clockwise seen from the positive side, and clockwise from the negative side, so there
+        // b and c are exchanged.
         let (b, c) = if plus { (b, c) } else { (c, b) };
         let mut normal = [0; 3];
         normal[axis] = if plus { ONE } else { -ONE };

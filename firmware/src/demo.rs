@@ -1,4 +1,4 @@
-//! The demo: a board that runs alone shows the scenes of a list in turn.
+//! The demo: a board without a host shows the scenes of a list in turn.
 
 use glint_core::demo::{Demo as Turns, Move};
 use glint_core::feature::DEMO;
@@ -11,20 +11,20 @@ use crate::scenes::{Library, List};
 const NEXT: u8 = 1 << 0;
 /// Button 1: the previous scene.
 const PREVIOUS: u8 = 1 << 1;
-/// Button 2, where no motion sensor steers the camera: keep the scene, or continue.
+/// Button 2, if no motion sensor steers the camera: hold the scene, or continue.
 const HOLD: u8 = 1 << 2;
 
-/// Number of the error that the contents of the flash are damaged (docs/boards.md).
+/// Error number for damaged contents of the flash (docs/boards.md).
 const CONTENTS: u8 = 1;
-/// Number of the error that a list of the flash is damaged.
+/// Error number for a damaged list of the flash.
 const ITEM: u8 = 2;
 
-/// The list of scenes, whose turn it is, and the last error.
+/// The list of scenes, the current scene, and the last error.
 pub struct Demo {
-    /// Whose turn it is.
+    /// The current position in the list.
     pub turns: Turns,
     list: List,
-    /// The turn of the camera that the shown scene has begun.
+    /// The orbit of the camera in the shown scene.
     pub orbit: Option<Orbit>,
     error: Option<u8>,
 }
@@ -41,7 +41,7 @@ impl Default for Demo {
 }
 
 impl Demo {
-    /// Starts after reset, if the flash has a list or damaged contents. Returns the damage.
+    /// Starts the demo after reset, if the flash has a list or damaged contents. Returns the damage.
     pub fn power_up(&mut self, library: &Library) -> Option<(&'static str, FlashError)> {
         if let Some(error) = library.error() {
             self.start(library);
@@ -55,7 +55,7 @@ impl Demo {
         Some((list.name, error))
     }
 
-    /// Starts with the first scene of the first list of the flash, or of the built-in list.
+    /// Starts the demo with the first scene of the first list of the flash, or of the built-in list.
     pub fn start(&mut self, library: &Library) {
         let list = library.first_list().and_then(|list| list.text().ok());
         self.list = list.map_or_else(List::built_in, List::Flash);
@@ -75,7 +75,7 @@ impl Demo {
         DEMO.is_built && self.turns.is_on()
     }
 
-    /// The name of the scene whose turn it is.
+    /// The name of the current scene.
     pub fn scene(&self) -> Option<&'static str> {
         self.list.name(self.turns.number()?)
     }
@@ -85,12 +85,12 @@ impl Demo {
         self.error
     }
 
-    /// Stores the number of an error. Returns whether it is another one than before.
+    /// Stores an error number. Returns whether it differs from the stored number.
     pub fn set_error(&mut self, number: u8) -> bool {
         self.error.replace(number) != Some(number)
     }
 
-    /// Acts on pressed buttons, one bit each. `steers` is whether the motion sensor steers the camera, which has buttons 2 and 3.
+    /// Handles pressed buttons, one bit each. `steers` states whether the motion sensor steers the camera; it then uses buttons 2 and 3.
     pub fn press(&mut self, pressed: u8, steers: bool, now: u64) {
         if pressed & NEXT != 0 {
             self.turns.go(Move::Next);

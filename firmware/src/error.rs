@@ -27,7 +27,7 @@ use crate::shapes::Shapes;
 pub enum CommandError<'l> {
     /// The line is not a command.
     Parse(ParseError<'l>),
-    /// This build leaves out what the command needs.
+    /// The build does not include a feature that the command needs.
     LeftOut(Feature),
     /// The line is longer than [`LINE_MAX`].
     Overlong,
@@ -37,18 +37,18 @@ pub enum CommandError<'l> {
     Key(&'l str),
     /// The name is not a mesh or a scene.
     Scene(&'l str),
-    /// The flash is damaged where the scene, list or mesh of this name is.
+    /// The scene, list or mesh of this name in the flash is damaged.
     Flash {
         /// The name.
         name: &'l str,
         /// The deviation from the format.
         error: FlashError,
     },
-    /// The text of a scene in the flash is not that of a scene.
+    /// The text of a scene in the flash has an invalid line.
     Line {
         /// The scene.
         name: &'l str,
-        /// The first such line.
+        /// The first invalid line.
         error: LineError<'static>,
     },
     /// A scene shows a mesh that the board does not have.
@@ -69,7 +69,7 @@ pub enum CommandError<'l> {
     Blocks {
         /// The scene.
         name: &'l str,
-        /// The blocks, a bit for each.
+        /// The missing blocks, one bit each.
         lacks: u32,
     },
     /// This build lacks parts of the firmware that a scene needs.
@@ -105,7 +105,7 @@ pub enum CommandError<'l> {
     Unload {
         /// The name.
         name: &'l str,
-        /// The number of the object that has the mesh, from 1; `None` for an unknown name.
+        /// The number, from 1, of the object that uses the mesh; `None` for an unknown name.
         object: Option<u32>,
     },
     /// A transfer failed.
@@ -133,7 +133,7 @@ pub enum CommandError<'l> {
     SelfTest(u32),
     /// The calibration of the sensor failed.
     Calibration(CalibrationError),
-    /// The sensor gives no samples.
+    /// The sensor sends no samples.
     Sensor(SensorError),
     /// The SoC has no gesture engine.
     NoGesture,
@@ -141,7 +141,7 @@ pub enum CommandError<'l> {
     GestureOff,
     /// The image sensor cannot be set up.
     ImageSensor(SetUpError),
-    /// The image sensor gave no whole frame in time.
+    /// The image sensor sent no whole frame in time.
     NoSensorFrame,
     /// The windows of the hand's colour were not found.
     HandColour(GestureCalibrationError),
@@ -156,7 +156,7 @@ pub enum CommandError<'l> {
 }
 
 impl CommandError<'_> {
-    /// The number of the error on the display of digits, where the demo cannot show a scene (docs/boards.md).
+    /// The error number that the digits show if the demo cannot show a scene (docs/boards.md).
     pub const fn number(&self) -> u8 {
         match self {
             Self::Flash { .. } => 2,

@@ -1,4 +1,4 @@
-//! Formats of values in replies.
+//! Formatting of values in replies.
 
 use core::fmt::{self, Display};
 

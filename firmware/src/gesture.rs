@@ -1,7 +1,7 @@
-//! The hand in front of the image sensor: its frames, and how it steers the camera.
+//! Gesture control: processes the frames of the image sensor, so that a hand steers the camera.
 //!
-//! The interrupt at the end of an image sensor's frame notes the time. The main loop then reads the statistics of this frame,
-//! computes the camera's position, and sets what the engine counts in the next frame.
+//! The interrupt at the end of an image sensor's frame stores the time. The main loop then reads the statistics of the frame, computes the
+//! camera's position, and sets the pixels that the engine counts in the next frame.
 
 use core::cell::Cell;
 use core::time::Duration;
@@ -21,7 +21,7 @@ use litex_pac::cpu;
 
 use crate::mark::Mark;
 
-/// Windows of Cr and Cb before a calibration: skin in the light of lamps or of day.
+/// Windows of Cr and Cb before a calibration: skin in lamplight or daylight.
 const SKIN: [Window; 2] = [
     Window {
         lower: 137,
@@ -33,21 +33,21 @@ const SKIN: [Window; 2] = [
     },
 ];
 
-/// Time in clock cycles at which the last frame ended, until the main loop takes it.
+/// End of the last frame, in clock cycles; `None` after the main loop has processed it.
 static FRAME: Mutex<Cell<Option<u64>>> = Mutex::new(Cell::new(None));
 
-/// Notes that a frame has ended. Call this in its interrupt.
+/// Stores the time at which a frame has ended. Call this in the frame's interrupt.
 pub fn on_interrupt() {
     let now = cpu::cycles();
     critical_section::with(|token| FRAME.borrow(token).set(Some(now)));
 }
 
-/// Clock cycles of the work for one frame, and from the end of a frame to its picture.
+/// Cost per frame, and latency from the end of a frame to its picture, in clock cycles.
 #[derive(Clone, Copy, Default)]
 pub struct Cycles {
     /// Number of frames so far.
     pub frames: u32,
-    /// Number of cycles of the soft core for all frames, with interrupts during this work.
+    /// Number of cycles that the soft core has used for all frames, including interrupts.
     pub total: u64,
     /// Number of cycles from the end of the last frame that moved the camera to the end of the drawing of its picture.
     pub latency: u64,
@@ -55,15 +55,15 @@ pub struct Cycles {
     pub worst: u64,
 }
 
-/// Time between two looks at an image sensor that is on.
+/// Time between two checks of an active image sensor.
 const LOOK: Duration = Duration::from_millis(50);
-/// The same after a set-up that failed: the set-ups of a damaged sensor hold the main loop for at most a tenth of the time.
+/// Time to the next check after a failed set-up: set-ups of a damaged sensor block the main loop for at most a tenth of the time.
 const PAUSE: Duration = Duration::from_millis(500);
 
-/// Watches an image sensor that is on: it may be unplugged, and lose its registers.
+/// Periodic check of an active image sensor, which may be unplugged and lose its registers.
 struct Watch {
     look: Deadline,
-    /// Whole and dropped frames at the last look.
+    /// Counts of whole and of dropped frames at the last check.
     frames: [u32; 2],
 }
 
@@ -72,22 +72,22 @@ pub struct Gesture {
     engine: GestureEngine,
     clock: Clock,
     size: FrameSize,
-    /// The image sensor, while it is on, or the reason why it is not.
+    /// The active image sensor, or its error; `None` while it is off.
     sensor: Option<Result<Model, SetUpError>>,
-    /// While `gesture on` was successful.
+    /// The periodic check; `None` unless `gesture on` was successful.
     watch: Option<Watch>,
     windows: [Window; 2],
     control: Control,
-    /// The place to which the camera was moved last.
+    /// The last position to which the camera was moved.
     steered: Option<Pose>,
-    /// Time in clock cycles at which the last frame that moved the camera ended, until its picture is drawn.
+    /// End of the last frame that moved the camera, in clock cycles; `None` after its picture has been drawn.
     waiting: Option<u64>,
     is_marked: bool,
     cycles: Cycles,
 }
 
 impl Gesture {
-    /// A hand that does not steer yet: the image sensor is off.
+    /// Makes gesture control with the image sensor off.
     pub fn new(mut engine: GestureEngine, clock: Clock) -> Self {
         engine::set_windows(&mut engine, SKIN);
         Self {
@@ -105,7 +105,7 @@ impl Gesture {
         }
     }
 
-    /// Sets the image sensor up for a size, which takes some 50 ms, and lets the hand steer the camera.
+    /// Sets up the image sensor for a size, which takes some 50 ms, and lets the hand steer the camera.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -122,7 +122,7 @@ impl Gesture {
         started
     }
 
-    /// The image sensor that is on. If it is off, this sets one up, which takes some 50 ms, and turns it off again.
+    /// The active image sensor. If none is active, sets the sensor up, which takes some 50 ms, and turns it off again.
     ///
     /// # Errors
     /// There is no image sensor, or it does not accept its set-up.
@@ -134,7 +134,7 @@ impl Gesture {
         })
     }
 
-    /// Looks at the image sensor after this time.
+    /// Schedules the next check of the image sensor after this time.
     fn look_after(&mut self, span: Duration) {
         let counters = self.engine.counters();
         self.watch = Some(Watch {
@@ -143,9 +143,9 @@ impl Gesture {
         });
     }
 
-    /// Checks whether the image sensor sends whole frames. If not, and it has lost its registers, it was unplugged, or had no supply: it
-    /// is set up again as soon as it answers, and the control continues with the camera's position. The gyroscope's samples wait in their
-    /// queue meanwhile.
+    /// Checks whether the image sensor sends whole frames. If not, and if it has lost its registers, it was unplugged or lost power: it is
+    /// set up again as soon as it answers, and control continues from the camera's position. During the set-up, the gyroscope's samples
+    /// wait in their queue.
     #[cold]
     #[inline(never)]
     fn watch(&mut self) {
@@ -189,7 +189,7 @@ impl Gesture {
         self.waiting = None;
     }
 
-    /// Takes the statistics of a frame if one has ended; otherwise polls the image sensor from time to time.
+    /// Processes the statistics of a frame that has ended; otherwise checks the image sensor periodically.
     #[inline(never)]
     pub fn poll(&mut self) -> Turn {
         let Some(ended) = critical_section::with(|token| FRAME.borrow(token).take()) else {
@@ -197,7 +197,7 @@ impl Gesture {
             return Turn::Wait;
         };
         let start = cpu::cycles_low();
-        // Statistics that the next frame replaces meanwhile are dropped: this frame has an interrupt of its own.
+        // Statistics that the next frame replaces during the reading are dropped: the next frame has its own interrupt.
         if let Some(statistics) = engine::statistics(&self.engine) {
             let before = self.control.pose();
             let time = self.clock.frequency().microseconds(ended);
@@ -212,7 +212,7 @@ impl Gesture {
         Turn::Again
     }
 
-    /// The position to which the camera moves; `None` if it has arrived.
+    /// The new position of the camera; `None` if it is unchanged.
     pub fn move_to(&mut self) -> Option<Pose> {
         let pose = self.control.pose();
         let is_new = matches!(self.sensor, Some(Ok(_))) && self.steered != Some(pose);
@@ -222,7 +222,7 @@ impl Gesture {
         })
     }
 
-    /// Notes that a picture was drawn after the last call of [`move_to`](Self::move_to).
+    /// Measures the latency after a picture was drawn for the last call of [`move_to`](Self::move_to).
     pub fn on_drawn(&mut self) {
         if self.steered == Some(self.control.pose())
             && let Some(ended) = self.waiting.take()
@@ -232,12 +232,12 @@ impl Gesture {
         }
     }
 
-    /// Notes that the camera's move is too small for another picture.
+    /// Ends the latency measurement if the camera's move is too small for another picture.
     pub const fn on_unchanged(&mut self) {
         self.waiting = None;
     }
 
-    /// The mark of the hand's position, if it is to be drawn.
+    /// The marker of the hand's position, if it is to be drawn.
     pub fn mark(&self) -> Option<Mark> {
         let blob = self.seen().and_then(Result::ok);
         self.is_marked.then(|| {
@@ -267,7 +267,7 @@ impl Gesture {
         self.size.pixels().map(|length| length >> step)
     }
 
-    /// A small picture has 40×30 colours or 160×120 marks. This is the exponent of its step in pixels.
+    /// Base-2 logarithm of the sampling step of a small picture in pixels, for 40×30 colours or 160×120 marks.
     const fn step(&self, is_colour: bool) -> u8 {
         let enlarged = matches!(self.size, FrameSize::Vga) as u8;
         enlarged + if is_colour { 3 } else { 1 }
@@ -278,7 +278,7 @@ impl Gesture {
         self.engine.picture()
     }
 
-    /// Finds the windows of the hand's colour from the small picture of colours; `None` if its frame has not ended.
+    /// Finds the windows of the hand's colour from the small picture of colours; `None` if the picture's frame has not ended.
     pub fn calibrate(&mut self) -> Option<Result<Calibrated, CalibrationError>> {
         let [columns, rows] = self.picture_size(true);
         let chroma = self.engine.picture()?.map(|colour| {
@@ -298,7 +298,7 @@ impl Gesture {
         &self.engine
     }
 
-    /// The image sensor, while it is on, or the reason why it is not.
+    /// The active image sensor, or its error; `None` while it is off.
     pub const fn sensor(&self) -> Option<Result<Model, SetUpError>> {
         self.sensor
     }
@@ -313,7 +313,7 @@ impl Gesture {
         self.control.presence()
     }
 
-    /// Content of the last frame; `None` while the image sensor is off.
+    /// The hand in the last frame; `None` while the image sensor is off.
     pub fn seen(&self) -> Option<Result<Blob, Doubt>> {
         matches!(self.sensor, Some(Ok(_))).then(|| self.control.seen())
     }
@@ -328,7 +328,7 @@ impl Gesture {
         self.control.pose()
     }
 
-    /// Clock cycles of the work for one frame, and from the end of a frame to its picture.
+    /// Cost per frame, and latency from the end of a frame to its picture, in clock cycles.
     pub const fn cycles(&self) -> Cycles {
         self.cycles
     }

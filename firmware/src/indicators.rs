@@ -12,7 +12,7 @@ use crate::panel;
 use crate::picture::Picture;
 use crate::sensor;
 
-/// Time between two changes of the blinking LED, and of what the digits show.
+/// Time between two updates of the blinking LED and of the digits.
 const HEARTBEAT: Duration = Duration::from_millis(500);
 
 /// LEDs and digits, which show the state of the board.
@@ -25,7 +25,7 @@ pub struct Indicators {
 }
 
 impl Indicators {
-    /// Indicators that change at the first turn.
+    /// Makes indicators that update in their first turn.
     pub fn new(clock: Clock) -> Self {
         Self {
             clock,
@@ -34,7 +34,7 @@ impl Indicators {
         }
     }
 
-    /// Shows the state of the board, when it is time: the LEDs only with `heartbeat`.
+    /// Shows the state of the board, if an update is due; on the LEDs only with `heartbeat`.
     pub fn poll(
         &mut self,
         devices: &mut Option<Devices>,

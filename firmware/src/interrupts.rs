@@ -13,7 +13,7 @@ use crate::terminal::ConsoleUart;
 /// The UART, shared by its interrupt and the program.
 pub static UART: ConsoleUart = ConsoleUart::new();
 
-/// Parts of the SoC that this build has.
+/// Parts of the SoC that this build supports.
 pub struct Present {
     /// I2C and timer.
     pub devices: bool,
@@ -89,8 +89,8 @@ fn handle() {
             timer::acknowledge();
             sensor::advance(start);
         }
-        // The interrupt of the buttons, and those of parts that this build leaves out, are never enabled. If one comes nevertheless, its
-        // line is disabled.
+        // The interrupts of the buttons, and of parts that this build does not support, are never enabled. If such an interrupt still
+        // occurs, its line is disabled.
         Interrupt::Buttons | Interrupt::Gesture | Interrupt::I2c | Interrupt::Timer0 => {
             interrupt::disable(interrupt.bit())
         }

@@ -56,7 +56,7 @@ pub enum Job {
 }
 
 impl Job {
-    /// Whether the next line ends the job. It waits until any other job has ended.
+    /// Whether the next line ends the job. A line waits until any other job has ended.
     pub const fn ends_by_line(&self) -> bool {
         match self {
             Self::Orbit(_) | Self::Sensor(_) | Self::Replay(_) => true,
@@ -74,8 +74,8 @@ impl Job {
         }
     }
 
-    /// Whether the demo may show another scene meanwhile. It stands still during jobs that print, and during the upload of a log: the
-    /// attitudes stay in the staging memory, so no mesh of the flash may be placed after the log.
+    /// Whether the demo may show another scene during the job. It pauses during jobs that print, and during the upload of a log: the
+    /// attitudes will be in the staging memory, so no mesh of the flash may be placed after the log.
     pub const fn allows_demo(&self) -> bool {
         match self {
             Self::Transfer(transfer) => match transfer.purpose {
@@ -90,7 +90,7 @@ impl Job {
 
 /// A job that waits for a small picture of the image sensor.
 pub struct GestureJob {
-    /// Whether the picture has colours, for a calibration, or marks, to be sent.
+    /// Whether the picture has colours, for a calibration, or marks, for a download.
     pub is_colour: bool,
     /// Time at which the job fails.
     pub end: Deadline,
@@ -105,7 +105,7 @@ pub enum SensorJob {
     },
     /// Print samples.
     Stream {
-        /// Number of samples still to print; `None` is no limit.
+        /// Number of samples still to print; `None` for no limit.
         left: Option<u32>,
         /// Number of the last printed sample.
         last: u32,

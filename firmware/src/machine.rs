@@ -34,7 +34,7 @@ pub struct Identity {
 }
 
 impl Identity {
-    /// Whether the gateware has the registers that the firmware was built for.
+    /// Whether the registers of the gateware are those for which the firmware was built.
     pub const fn matches(&self) -> bool {
         self.firmware == self.gateware
     }
@@ -64,11 +64,11 @@ pub struct Machine {
     pub uart: &'static ConsoleUart,
     /// The console on the UART.
     pub terminal: Terminal,
-    /// Everything that the next picture depends on.
+    /// The scene: all state that determines the next picture.
     pub scene: Scene,
     /// The last picture.
     pub picture: Picture,
-    /// The built-in meshes and wireframe program, the uploaded ones and the staging memory.
+    /// The meshes and wireframe program, built-in and uploaded, and the staging memory.
     pub models: Models,
     /// Scenes, lists and meshes of the flash.
     pub library: Library,
@@ -78,11 +78,11 @@ pub struct Machine {
     pub renderer: Renderer,
     /// The sensor's samples, attitude and calibration.
     pub imu: Imu,
-    /// The hand that steers the camera; `None` without the gesture engine.
+    /// Gesture control; `None` without the gesture engine.
     pub gesture: Option<Gesture>,
     /// The devices; `None` if the build ids differ.
     pub devices: Option<Devices>,
-    /// The buttons, and the requests of the wireframe's keys.
+    /// The buttons, and the pending requests of the wireframe's keys.
     pub keypad: Keypad,
     /// The switches.
     pub switches: Switches,
@@ -92,7 +92,7 @@ pub struct Machine {
     pub heartbeat: bool,
     /// The sender of transfers to the host.
     pub downloads: Downloads,
-    /// The replay of the log in the staging memory, if there is one.
+    /// The replay of the log in the staging memory, if any.
     pub replay: Option<Replay>,
 }
 

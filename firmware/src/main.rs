@@ -1,7 +1,7 @@
-//! The program on Glint's soft core: start, console, drawing and display.
+//! The program of Glint's soft core: start, console, drawing and display.
 //!
-//! Pictures are computed by `glint-model` and the gateware, everything else by `glint-core`. In this diagram a module
-//! imports only modules below it:
+//! Pictures are computed by `glint-model` and the gateware, everything else by `glint-core`. In this diagram a module only imports modules
+//! below it:
 //!
 //! ```text
 //! start, main_loop (tasks), indicators (LEDs and digits)

@@ -1,7 +1,7 @@
-//! The main loop: tasks take turns, and the CPU sleeps while all of them wait.
+//! The main loop: tasks take turns, and the CPU sleeps while all tasks wait.
 //!
-//! No task waits in its turn: interrupts fill queues, and each task takes the contents of its queues. A command whose reply needs a frame,
-//! samples or a transfer leaves a [`Job`], a task like the others; input waits in the UART's queue until this job has ended.
+//! No task blocks in its turn: interrupts fill queues, and each task processes the contents of its queues. A command whose reply needs a
+//! frame, samples or a transfer starts a [`Job`], which is polled like a task; input waits in the UART's queue until the job has ended.
 
 use core::future::pending;
 use core::pin::pin;
@@ -96,7 +96,7 @@ impl MainLoop {
         }
     }
 
-    /// Starts the demo, if the flash has a list. The first picture is then that of its first scene.
+    /// Starts the demo, if the flash has a list. The first picture then shows the list's first scene.
     fn power_up(&mut self) {
         let machine = &mut self.machine;
         if let Some((name, error)) = machine.demo.power_up(&machine.library) {
@@ -107,7 +107,7 @@ impl MainLoop {
         self.run_demo();
     }
 
-    /// Goes on with the demo: begins the next turn when it is time, and turns the camera where the scene does.
+    /// Continues the demo: shows the next scene when it is due, and moves the camera in scenes with an orbit.
     fn run_demo(&mut self) -> Turn {
         let machine = &mut self.machine;
         let is_allowed = self.job.as_ref().is_none_or(Job::allows_demo);
@@ -147,7 +147,7 @@ impl MainLoop {
     }
 
     /// Executes the line that the terminal has received, if it is complete and can be executed now: the gateware has drawn its frame, and
-    /// the job has ended, or ends by the line.
+    /// the job has ended, or the line ends it.
     fn answer(&mut self) -> Turn {
         let is_free = self.job.as_ref().is_none_or(Job::ends_by_line);
         if !is_free || self.machine.renderer.is_busy() {
@@ -157,7 +157,7 @@ impl MainLoop {
             return Turn::Wait;
         };
         if self.job.is_some() {
-            // The prompt follows the reply to the line, which is already on the screen.
+            // The prompt follows the reply; the line itself is already on the screen.
             self.end_job(Ok(()));
         }
         match input {
@@ -173,7 +173,7 @@ impl MainLoop {
         Turn::Again
     }
 
-    /// Computes the camera's position from a frame of the image sensor.
+    /// Computes the camera's position from a new frame of the image sensor.
     fn follow_hand(&mut self) -> Turn {
         match &mut self.machine.gesture {
             Some(gesture) if GESTURE.is_built => gesture.poll(),
@@ -193,7 +193,7 @@ impl MainLoop {
             && let Some(gesture) = &mut machine.gesture
         {
             if let Some(Pose { r, theta, phi }) = gesture.move_to() {
-                // The control keeps the distance in its range.
+                // Gesture control keeps the distance in range.
                 let _ = scene.set_sphere(Sphere { r, theta, phi });
                 if !picture.is_outdated(scene, &machine.models) {
                     gesture.on_unchanged();
@@ -215,7 +215,7 @@ impl MainLoop {
         turn
     }
 
-    /// Moves the wireframe by the request of one key, if a frame can be drawn: each frame has at most one step.
+    /// Moves the wireframe by one key request, if a frame can be drawn: each frame has at most one step.
     fn step(&mut self) -> Turn {
         let machine = &mut self.machine;
         if !WIREFRAME.is_built
@@ -261,11 +261,11 @@ impl MainLoop {
                 renderer.drop_pending();
             }
             if job.is_none() && !self.quiet.passed() {
-                // No interrupt comes at the end of this short time.
+                // No interrupt signals the end of this short time.
                 return Turn::Again;
             }
         }
-        // The turns that other tasks get while the CPU draws.
+        // Turns of other tasks while the CPU draws.
         let mut progress = || {
             if let Some(Job::Transfer(transfer)) = job {
                 transfer.poll(terminal, *clock);
@@ -290,7 +290,7 @@ impl MainLoop {
         Turn::Again
     }
 
-    /// Continues the job that a command has left, if there is one, and ends the reply of this command when the job has ended.
+    /// Continues the job of a command, if any, and ends the command's reply when the job has ended.
     fn poll_job(&mut self) -> Turn {
         let machine = &mut self.machine;
         let Some(job) = &mut self.job else {
@@ -300,7 +300,7 @@ impl MainLoop {
         let result = match job {
             Job::Transfer(transfer) => {
                 turn = transfer.poll(&mut machine.terminal, machine.clock);
-                // An upload may take the place of a mesh that is being drawn.
+                // An upload may overwrite a mesh that is being drawn.
                 if transfer.is_over() && !machine.renderer.is_busy() {
                     Poll::Ready(commands::finish(machine, transfer))
                 } else {
@@ -355,7 +355,7 @@ impl MainLoop {
         }
     }
 
-    /// Acts on buttons and switches that have changed since the last turn.
+    /// Handles buttons and switches that have changed since the last turn.
     fn poll_panel(&mut self) -> Turn {
         let Machine {
             devices,
@@ -387,7 +387,7 @@ impl MainLoop {
             &machine.picture,
             machine.heartbeat,
         );
-        // The interrupt of the vertical blanking wakes the tasks that wait for a time. A SoC without scan-out has no such interrupt.
+        // The vertical blanking interrupt wakes the tasks that wait for a time. A SoC without scan-out does not have this interrupt.
         if machine.renderer.display.is_visible() {
             turn
         } else {
@@ -396,8 +396,8 @@ impl MainLoop {
     }
 }
 
-/// Acts on buttons that were pressed since the last poll. While the wireframe is shown they are its keys, but with the demo on only if
-/// the switch [`HOLD`] is on. Otherwise they choose scenes of the demo, if it is on, and serve the sensor.
+/// Handles buttons that were pressed since the last poll. While a wireframe is shown they are its keys; if the demo is on, only with the
+/// switch [`HOLD`] on. Otherwise they select scenes of the demo, if it is on, and control the sensor.
 fn poll_buttons(
     devices: &Option<Devices>,
     keypad: &mut Keypad,
@@ -414,7 +414,7 @@ fn poll_buttons(
     }
     let pressed = keypad.sample(devices.buttons.read(), clock);
     if pressed == 0 {
-        // No interrupt tells when the level of a button has settled.
+        // No interrupt signals that the level of a button has settled.
         return Turn::worked(keypad.is_changing());
     }
     let switches = devices.switches.read();

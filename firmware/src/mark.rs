@@ -1,4 +1,4 @@
-//! The position of the hand, drawn small in the lower right corner of a picture.
+//! The marker of the hand's position, in the lower right corner of a picture.
 
 use glint_core::fixed::U20_12;
 use glint_core::picture::Size;
@@ -10,10 +10,10 @@ const STEERS: u16 = 0x07e0;
 /// Colour of a hand that does not steer the camera, in RGB565.
 const STANDS: u16 = 0xad55;
 
-/// Width of the picture in widths of the mark.
+/// Width of the picture divided by the width of the marker.
 const PARTS: u32 = 8;
 
-/// The mark of the hand's position in a frame of the image sensor.
+/// The marker of the hand's position in a frame of the image sensor.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct Mark {
     /// Coordinates x and y of the hand's centre in 1/256 of the frame, if there is a hand.
@@ -22,7 +22,7 @@ pub struct Mark {
 }
 
 impl Mark {
-    /// The mark of a hand with this centre in a frame of `size` pixels; `steers` says whether it steers the camera.
+    /// Makes the marker for a hand with this centre in a frame of `size` pixels; `steers` states whether the hand steers the camera.
     pub fn new(centre: Option<[U20_12; 2]>, size: [u16; 2], steers: bool) -> Self {
         let part = |axis: usize, centre: [U20_12; 2]| {
             let place = centre[axis].to_num::<u32>();
@@ -35,12 +35,12 @@ impl Mark {
         }
     }
 
-    /// Draws the mark into a picture: a dark rectangle of the frame's shape, and in it the hand.
+    /// Draws the marker into a picture: a dark rectangle with the frame's aspect ratio, and the hand in it.
     pub fn draw(self, colours: &mut [u16], size: Size) {
         let [columns, rows] = size.pixels();
         let (width, height) = (columns / PARTS, columns / PARTS * 3 / 4);
         let [left, top] = [columns - width - width / 8, rows - height - width / 8];
-        // The hand is a square of a tenth of the mark.
+        // The hand is a square, a tenth of the marker wide.
         let half = (width / 20).max(1);
         let hand = self
             .place

@@ -1,4 +1,4 @@
-//! The windows of main memory, which are regions that the linker script `memory.x` reserves, as typed slices.
+//! Windows of main memory: regions reserved by the linker script `memory.x`, as typed slices.
 
 use core::mem::MaybeUninit;
 use core::ptr;
@@ -19,7 +19,7 @@ pub struct Memory {
     pub eye: &'static mut [u16],
     /// Depth codes, one per pixel.
     pub depth: &'static mut [u32],
-    /// Memory for a copy of a picture that is downloaded.
+    /// Memory for a copy of a picture during its download.
     pub copy: &'static mut [u8],
     /// Memory for projected vertices, used by the CPU backend.
     pub scratch: Scratch,
@@ -63,7 +63,7 @@ unsafe extern "C" {
     static _fast_loaded: u8;
 }
 
-/// The end of the windows. Tools find this value by its symbol.
+/// The end of the windows. Tools find this value by the name of the symbol.
 #[unsafe(no_mangle)]
 static GLINT_WINDOWS_END: AtomicPtr<u8> = AtomicPtr::new(&raw mut _windows_end);
 

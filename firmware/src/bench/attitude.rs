@@ -1,4 +1,4 @@
-//! Benchmark of methods that integrate the rates of a gyroscope to an attitude: clock cycles per sample.
+//! Benchmark of methods that integrate a gyroscope's rates to an attitude: clock cycles per sample.
 
 use core::cell::RefCell;
 
@@ -54,7 +54,7 @@ pub fn attitude(report: Report) {
     measure(report, "parabola", rate, |rate| {
         parabola.borrow_mut().advance_order::<3>(rate, STEP, [0; 3]);
     });
-    // Measures the method that the machine uses for its sensor, by the code that replays logs.
+    // Measures the machine's own method, through the code that replays logs.
     let tilt = || Some(Tilt::new(Units::MPU_6050.per_g, TIME_CONSTANT));
     for (name, jitter, tilt) in [
         ("cubic", 0, None),
@@ -78,7 +78,7 @@ pub fn attitude(report: Report) {
                 riscv::interrupt::free(|| replay::track(&mut tracker, &mut time, &mut records));
             (cycles / u64::from(RUN)) as u32
         };
-        // Runs without measurement until the time constant of the tilt correction has passed: until then its gain varies.
+        // Runs without measurement for the time constant of the tilt correction, because the gain of the correction varies until then.
         for _ in 0..=TIME_CONSTANT / STEP / RUN {
             run();
         }
@@ -94,7 +94,7 @@ fn rate(phase: u32) -> [i32; 3] {
 
 /// Integrates one sample to first order: q + ½·q·ω·dt, normalised by one Newton step, with 30 fraction bits.
 fn first_order(q: &mut [i32; 4], rate: [i32; 3]) {
-    // Half of the angle by which a rate of 2^−8 LSB turns in 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
+    // Half the angle of a rotation at 2^−8 LSB for 2^20 µs: 2^50·π/360/16.4/256/10^6 units of 2^−30 rad.
     const HALF: i64 = 2_340;
     let [x, y, z] = rate.map(|rate| (i64::from(rate) * i64::from(STEP) * HALF) >> 20);
     let [w0, x0, y0, z0] = q.map(i64::from);

@@ -1,4 +1,4 @@
-//! Kernels of the geometry with several word lengths, for comparison with those in use.
+//! Geometry kernels with several word lengths, for comparison with the kernels in use.
 
 use glint_core::fixed::{Q8_24, Turns};
 use glint_core::matrix::{Axis, Matrix};
@@ -39,7 +39,7 @@ pub fn geometry(report: Report) {
 
     let short = rows.each_ref().map(cofactors);
     let exact = matrices.each_ref().map(Matrix::normals);
-    // Vectors of about the length 1 with `bits` fraction bits.
+    // Vectors of length about 1, with `bits` fraction bits.
     let normal = |phase: u32, bits: u32| {
         [0, 10, 20].map(|turn| (phase.rotate_left(turn).cast_signed() >> (31 - bits)) as i16)
     };

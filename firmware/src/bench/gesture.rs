@@ -1,4 +1,4 @@
-//! Benchmark of the camera's control by a hand: clock cycles per camera frame.
+//! Benchmark of gesture control: clock cycles per frame of the image sensor.
 
 use core::cell::RefCell;
 
@@ -11,7 +11,7 @@ use super::measure::{Report, measure};
 /// The time between two frames in µs.
 const FRAME: u32 = 16_667;
 
-/// Measures the control, its part from statistics to the hand, and filters of one channel, under the names that `cargo xtask report
+/// Measures the whole control, its hand detection from statistics, and filters of one channel, under the names that `cargo xtask report
 /// gesture` gives them.
 pub fn gesture(report: Report) {
     measure(report, "blob", statistics, |statistics| statistics.blob());

@@ -1,4 +1,4 @@
-//! Reciprocals, roots, lengths, quotients and colours, by methods from cheap to exact.
+//! Reciprocals, roots, lengths, quotients and colours, each by several methods, from cheap to exact.
 
 use glint_variants::{colour, division, inverse_root, length, reciprocal, root, unit};
 

@@ -1,11 +1,11 @@
 //! Measurement of a kernel's clock cycles.
 //!
 //! A kernel, the measured function, is called with [`INPUTS`] inputs spread over its range. Its code and tables are in
-//! the caches, and interrupts are disabled. The cycles of the measuring code are measured in the same way and subtracted.
+//! the caches, and interrupts are disabled. The overhead of the measuring code is measured in the same way and subtracted.
 //!
-//! The instruction cache is direct-mapped, and a miss costs more than a kernel. If the measuring code shared cache
-//! lines with the kernel, their conflict would be measured. The measuring code therefore exists at two places in memory,
-//! and the place with fewer misses is used.
+//! The instruction cache is direct-mapped, and a miss costs more than a kernel. If measuring code and kernel mapped to the same cache
+//! lines, the misses would distort the result. The measuring code therefore exists at two addresses, and the copy with fewer misses is
+//! used.
 
 use core::arch::asm;
 use core::hint::black_box;
@@ -15,7 +15,7 @@ use litex_pac::cpu;
 /// Number of inputs with which each kernel is measured.
 const INPUTS: usize = 256;
 
-/// Number of inputs with which the two places of the measuring code are compared.
+/// Number of inputs for the comparison of the two copies of the measuring code.
 const TRIALS: usize = 16;
 
 /// Clock cycles of one call of a kernel: statistics over all inputs.
@@ -30,7 +30,7 @@ pub struct Cycles {
 }
 
 impl Cycles {
-    /// Minimum, median and maximum of measurements, which are sorted in place. All figures are 0 without measurements.
+    /// Minimum, median and maximum of measurements, which this function sorts in place. Without measurements all three are 0.
     pub fn of(cycles: &mut [u32]) -> Self {
         cycles.sort_unstable();
         let at = |index: usize| cycles.get(index).copied().unwrap_or(0);
@@ -80,12 +80,12 @@ pub fn measure<I: Copy, O>(
     report(name, Cycles::of(&mut cycles));
 }
 
-/// Clock cycles of one call of the kernel, including one reading of the cycle counter. For each value of `PLACE`, 0 and 1,
-/// there is a separate copy of this code; the two copies are half a cache apart.
+/// Clock cycles of one call of the kernel, including one read of the cycle counter. The two values of `PLACE`, 0 and 1, make two copies of
+/// this code, half a cache apart.
 #[inline(never)]
 #[allow(unsafe_code)]
 fn timed<const PLACE: usize, K: Fn(I) -> O, I, O>(kernel: &K, input: I) -> u32 {
-    // SAFETY: jumps over unused space and has no other effect.
+    // SAFETY: jumps over unused bytes and has no other effect.
     unsafe {
         asm!("j 1f", ".space {}", "1:", const PLACE * 2048 + 4, options(nomem, nostack, preserves_flags))
     };

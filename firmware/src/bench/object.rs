@@ -1,4 +1,4 @@
-//! The constants of an object, which the soft core computes once a frame for each object.
+//! Benchmark of the frame constants of an object, which the soft core computes for each object of each frame.
 
 use core::cell::RefCell;
 
@@ -13,7 +13,7 @@ use super::measure::{Report, measure};
 /// Radius of the mesh, 14 fraction bits: 0.5.
 const RADIUS: u32 = 1 << 13;
 
-/// Measures the frame constants of objects, turned and of one scale or of three.
+/// Measures the frame constants of rotated objects with uniform and with non-uniform scale.
 pub fn object(report: Report) {
     let [width, height] = Size::W640.pixels();
     let view = View::spherical(Q32_32::lit("3"), Turns(1 << 29), Turns(1 << 29));
@@ -39,7 +39,7 @@ pub fn object(report: Report) {
             name,
             |phase| (phase >> 30) as usize,
             |number| {
-                // The constants are not moved, as when a frame is drawn.
+                // The constants are computed in place, as in the drawing of a frame.
                 let mut own = own.borrow_mut();
                 let placement: Option<&Placement> = placements.get(number);
                 placement.map(|placement| placement.update(&mut own, &view, &camera, RADIUS))

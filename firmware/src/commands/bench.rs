@@ -16,15 +16,15 @@ const KERNELS: &[&str] = &[
     "sine", "object", "attitude", "geometry", "gesture", "kernels", "triangle", "field",
 ];
 
-/// Number of frames that the gateware draws back to back for a measurement, unless the command has another.
+/// Default number of frames that the gateware draws back to back for a measurement.
 const FRAMES: u32 = 8;
 
-/// Measures a kernel and prints its cycles. `benchmark` is its name, and a number of frames for a kernel that draws some. Without it,
-/// measures sine and cosine, and the drawing of frames if the SoC has a triangle engine.
+/// Measures a kernel and prints its cycles. `benchmark` is the kernel's name, with a number of frames for a kernel that draws frames.
+/// Without `benchmark`, measures sine and cosine, and the drawing of frames if the SoC has a triangle engine.
 ///
 /// # Errors
-/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, or the kernel needs another scene; or a number of
-/// frames follows a kernel that draws none.
+/// The name is unknown, the kernel needs a triangle engine that the SoC lacks, the kernel needs another scene, or a number of frames
+/// follows a kernel that draws no frames.
 pub fn run<'l>(
     machine: &mut Machine,
     benchmark: Option<(&'l str, Option<u32>)>,
@@ -75,7 +75,7 @@ pub fn run<'l>(
     Ok(())
 }
 
-/// Measures the drawing of `count` frames of the present scene, back to back: the geometry pass of a frame runs during
+/// Measures the drawing of `count` frames of the current scene, back to back: the geometry pass of a frame runs during
 /// the raster pass of the previous frame. The frames are not shown.
 fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>> {
     let Machine {
@@ -86,7 +86,7 @@ fn frames<'l>(machine: &mut Machine, count: u32) -> Result<(), CommandError<'l>>
         ..
     } = machine;
     models.update_objects(scene, &mut || {});
-    // No frame can be drawn while a drawn frame still waits to be shown, so this loop waits.
+    // Waits while a drawn frame is not shown yet, because no other frame can then be drawn.
     let rendered = loop {
         if let Some(rendered) = renderer.repeat(models, scene, count) {
             break rendered.map_err(CommandError::Engine)?;

@@ -1,4 +1,4 @@
-//! The command `demo`: scenes in turn.
+//! The command `demo`: shows the scenes of a list in turn.
 
 use glint_core::console::{DemoAction, DemoCommands};
 use glint_core::demo::Move;

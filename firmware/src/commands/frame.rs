@@ -31,8 +31,8 @@ impl<'l> FrameCommands<'l> for Machine {
     }
 }
 
-/// Begins to send a copy of the last frame to the host: its depth codes if `depth` is true, otherwise its colours. The picture goes on
-/// meanwhile.
+/// Begins to send a copy of the last frame to the host: its depth codes if `depth` is true, otherwise its colours. The display continues
+/// during the transfer.
 ///
 /// # Errors
 /// No frame was drawn, or its drawing failed.
@@ -49,7 +49,7 @@ pub fn begin_download(machine: &mut Machine, depth: bool) -> Outcome<'static> {
         .drawn()
         .ok_or(CommandError::NoFrame)?
         .map_err(CommandError::Render)?;
-    // Frames from now on need no depth codes in memory.
+    // From now on, frames need no depth codes in memory.
     picture.wants_depth = false;
     // The triangle engine writes to memory and not to the CPU's data cache, which may hold older data.
     cpu::flush_data_cache();

@@ -1,4 +1,4 @@
-//! The command `gesture`: state of the hand, steering, calibration, and the mask as a picture.
+//! The command `gesture`: state of the hand, camera control, calibration, and download of the mask.
 
 use core::task::Poll;
 use core::time::Duration;
@@ -13,7 +13,7 @@ use crate::gesture::Gesture;
 use crate::job::{GestureJob, Job, JobResult, Outcome, Reply};
 use crate::machine::Machine;
 
-/// Longest time until a small picture is complete.
+/// Timeout for a small picture.
 const WAIT: Duration = Duration::from_millis(500);
 
 /// Capacity for a mask in bytes: 160×120 marks.
@@ -46,7 +46,7 @@ impl<'l> GestureCommands<'l> for Machine {
     }
 }
 
-/// Sets the image sensor up, and lets the hand steer the camera.
+/// Sets up the image sensor, and lets the hand steer the camera.
 ///
 /// # Errors
 /// There is no image sensor, or it does not accept its set-up.
@@ -55,7 +55,7 @@ fn start<'l>(gesture: &mut Gesture, size: FrameSize) -> Result<(), CommandError<
     started.map_err(CommandError::ImageSensor).map(|_| ())
 }
 
-/// Continues a job that waits for a small picture: calibrates with it, or sends it.
+/// Continues a job that waits for a small picture: calibrates with the picture, or sends it.
 pub fn poll(machine: &mut Machine, job: &GestureJob) -> JobResult {
     let Machine {
         terminal,

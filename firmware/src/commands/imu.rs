@@ -77,7 +77,7 @@ impl<'l> ImuCommands<'l> for Machine {
     }
 }
 
-/// Continues the job of the sensor: reports the progress of a calibration, or prints new samples.
+/// Continues the sensor's job: reports the progress of a calibration, or prints new samples.
 pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
     if !IMU.is_built {
         return Poll::Ready(Ok(Reply::Done));
@@ -110,8 +110,7 @@ pub fn poll(machine: &mut Machine, job: &mut SensorJob) -> JobResult {
                 return Poll::Ready(Err(CommandError::Sensor(error)));
             }
             let samples = imu.samples();
-            // Prints only the newest sample, when all text has been sent: a slow line gets fewer
-            // samples, not old samples.
+            // Prints only the newest sample, after all text has been sent: a slow line prints fewer samples, not old samples.
             if let Some(sample) = imu.latest()
                 && samples != *last
                 && uart.has_sent()

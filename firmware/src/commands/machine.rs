@@ -37,7 +37,7 @@ impl<'l> MachineCommands<'l> for Machine {
         let meshes = objects.filter_map(|name| models.known(name));
         let counts = |mesh: Mesh| (mesh.vertex_count(), mesh.triangle_count());
         let (vertices, triangles) = if scene.shows_objects() {
-            // At most 16 times 2^21.
+            // The product is at most 16·2^21.
             meshes
                 .map(counts)
                 .fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1))
@@ -126,7 +126,7 @@ impl<'l> MachineCommands<'l> for Machine {
         self.ctrl
             .reset()
             .write(ctrl::Reset::default().with_soc_rst(true));
-        // The program continues for some cycles until the reset takes effect.
+        // The program runs for some more cycles until the reset takes effect.
         loop {
             core::hint::spin_loop();
         }

@@ -1,4 +1,4 @@
-//! Options of the scene, and what the grammar of commands asks of the machine.
+//! Options of the scene, and the queries about the board that setting an option makes.
 
 use glint_core::console::{Executor, ObjectAction, OptionName, Setting};
 use glint_core::feature::Feature;
@@ -18,7 +18,7 @@ struct ThisBoard<'m> {
     models: &'m mut Models,
 }
 
-/// What scenes ask of this board.
+/// Answers the queries of scenes about this board.
 pub const fn board<'m>(renderer: &'m Renderer, models: &'m mut Models) -> impl Board + 'm {
     ThisBoard { renderer, models }
 }

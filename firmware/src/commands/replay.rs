@@ -18,7 +18,7 @@ const PROGRESS: usize = 1_024;
 /// Begins the replay of an uploaded log.
 ///
 /// # Errors
-/// It is not a log; its memory is given back.
+/// The upload is not a log; its memory is given back.
 pub fn begin(machine: &mut Machine, mut memory: Loan) -> Outcome<'static> {
     let opened = log::open(memory.as_mut()).map(|(setup, records)| {
         let tracker = setup.tracker();
@@ -36,7 +36,7 @@ pub fn begin(machine: &mut Machine, mut memory: Loan) -> Outcome<'static> {
     }
 }
 
-/// Continues the replay of the log in `memory` by a slice of its samples.
+/// Replays the next samples of the log in `memory`.
 pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
     let Machine {
         terminal,
@@ -49,7 +49,7 @@ pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
     };
     replay.advance(memory.as_mut());
     if !replay.is_done() {
-        // Reports only when all text has been sent: a slow line gets fewer reports.
+        // Reports progress only after all text has been sent: a slow line gets fewer reports.
         if replay.unreported() >= PROGRESS && uart.has_sent() {
             terminal.print_entry("replaying", &replay.report());
         }
@@ -70,7 +70,7 @@ pub fn poll(machine: &mut Machine, memory: &mut Loan) -> JobResult {
     Poll::Ready(Ok(Reply::Done))
 }
 
-/// Begins to send the attitudes that the replay of the last log has computed, which the staging memory holds.
+/// Begins to send the attitudes of the last replayed log, which are in the staging memory.
 pub fn send<'l>(machine: &mut Machine) -> Outcome<'l> {
     let Machine {
         terminal,

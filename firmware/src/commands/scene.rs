@@ -88,7 +88,7 @@ impl<'l> SceneCommands<'l> for Machine {
         if self.scene.mesh == name {
             self.scene.set_mesh(CUBE);
         }
-        // The staging memory is another one from now on, and the other uploads may have moved.
+        // From now on the staging memory is at another address, and the other uploads may have moved.
         self.replay = None;
         self.renderer.edges.clear();
         Ok(Reply::Done)
@@ -155,10 +155,10 @@ fn list(machine: &mut Machine) {
     terminal.print(format_args!("scene {DEFAULT} there\n"));
 }
 
-/// Shows the scene at start; a scene, whose lines follow on the scene at start; the first scene of a list; or a mesh.
+/// Shows the default scene, a named scene, the first scene of a list, or a mesh.
 ///
 /// # Errors
-/// The scene cannot be shown: the shown one stays. Without a sensor the scene is shown as it is.
+/// The scene cannot be shown; the current scene then stays. If only a sensor is missing, the scene is shown without motion.
 #[inline(never)]
 pub fn show<'l>(machine: &mut Machine, name: &'l str) -> Outcome<'l> {
     if name == DEFAULT {
@@ -204,21 +204,21 @@ fn content<'l>(name: &'l str, found: &Found) -> Result<Shows, CommandError<'l>> 
     shows.map_err(|error| CommandError::Flash { name, error })
 }
 
-/// Executes the lines of the scene `name` on the scene at start. What moves the camera starts when the lines before it are valid.
+/// Executes the lines of the scene `name` on the default scene. A camera motion starts when its line is reached.
 ///
 /// # Errors
-/// A line is not a command of a scene or fails, a mesh is missing, or the gateware lacks a block.
+/// A line is not a scene command or fails, a mesh is missing, or the gateware lacks a block.
 fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> Outcome<'l> {
     let backend = machine.scene.backend;
     machine.scene.reset()?;
-    // Unless the scene states the backend, the gateware needs the blocks that would draw it.
+    // Unless the scene sets the backend, the gateware must have the blocks that draw it.
     machine.scene.backend = Backend::Gateware;
     let (mut is_stated, mut motion) = (false, None);
     for line in lines(text) {
         let (_, line) = line.map_err(|error| CommandError::Line { name, error })?;
         if let Some(mesh) = line.mesh() {
             let is_there = upload::from_flash(machine, mesh)? || machine.models.has(mesh);
-            // A large mesh takes long to check, and more than one may follow.
+            // The check of a large mesh is slow, and several meshes may follow.
             sensor::deliver(&mut machine.imu);
             if !is_there || !MESH.is_built || !machine.models.prepare(mesh) {
                 return Err(CommandError::NoMesh { name, mesh });
@@ -252,7 +252,7 @@ fn show_lines<'l>(machine: &mut Machine, name: &'l str, text: &'static str) -> O
     Ok(motion.unwrap_or(Reply::Done))
 }
 
-/// Checks that the gateware has the blocks that draw the scene `name`, and that of the hand if one steers the camera.
+/// Checks that the gateware has the blocks that draw the scene `name`, and the gesture engine if a hand steers the camera.
 fn check_blocks<'l>(
     machine: &Machine,
     name: &'l str,
@@ -265,7 +265,7 @@ fn check_blocks<'l>(
     }
 }
 
-/// Stops what moves the camera.
+/// Stops all camera motion.
 fn release_camera(machine: &mut Machine) {
     machine.imu.set_follow(None);
     if GESTURE.is_built
@@ -275,10 +275,10 @@ fn release_camera(machine: &mut Machine) {
     }
 }
 
-/// Shows a mesh: an uploaded one, one of the flash, or a built-in one.
+/// Shows an uploaded mesh, a mesh of the flash, or a built-in mesh.
 ///
 /// # Errors
-/// There is no such mesh, or it cannot be taken from the flash.
+/// There is no such mesh, or it cannot be copied from the flash.
 fn show_mesh<'l>(machine: &mut Machine, name: &'l str) -> Result<(), CommandError<'l>> {
     if !MESH.is_built {
         return Err(CommandError::Scene(name));

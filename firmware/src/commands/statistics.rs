@@ -130,7 +130,7 @@ pub fn engine_values(counters: &Counters) -> impl Iterator<Item = (&'static str,
         let name = match name {
             "items_in" => "words_read",
             "items_out" => "words_written",
-            // These two counts are left out, because `frame_values` has them without the pixels of a field.
+            // These two counts are omitted, because `frame_values` prints them without the pixels of a field.
             "pixels_covered" | "pixels_drawn" => return None,
             name => name,
         };

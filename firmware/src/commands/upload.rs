@@ -1,4 +1,4 @@
-//! Data for the staging memory: uploads of the host, and meshes of the flash.
+//! Data for the staging memory: uploads from the host, and meshes of the flash.
 
 use glint_core::feature::{DEMO, MESH};
 use glint_core::wire::Manifest;
@@ -11,8 +11,8 @@ use crate::job::{Job, Outcome, Reply};
 use crate::machine::Machine;
 use crate::transfer::{Purpose, Transfer};
 
-/// Begins to receive the data that `manifest` announces into the staging memory, unless the memory already holds them, which the reply
-/// says with the line `present`. `command` is the name of the command that uploads them.
+/// Begins to receive the data that `manifest` announces into the staging memory. If the memory already holds them, the reply has the line
+/// `present` instead. `command` is the name of the command that uploads them.
 ///
 /// # Errors
 /// The upload is longer than the free memory.
@@ -23,16 +23,16 @@ pub fn begin<'l>(
     manifest: Manifest,
 ) -> Outcome<'l> {
     let memory = lend(machine, command, manifest.length as usize)?;
-    // A tool may have written the data directly, bypassing the cache.
+    // A tool may have written the data directly to memory, bypassing the cache.
     cpu::flush_data_cache();
     let transfer = Transfer::upload(purpose, manifest, memory, &mut machine.terminal);
     Ok(Reply::After(Job::Transfer(transfer)))
 }
 
-/// Uses the data of a transfer that has ended. No frame may be in progress.
+/// Applies the data of a completed transfer. No frame may be in progress.
 ///
 /// # Errors
-/// The transfer has failed, or the data are not what the command needs.
+/// The transfer has failed, or the data are not valid for the command.
 pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> Outcome<'static> {
     let Some((memory, result)) = transfer.take_result() else {
         return Ok(Reply::Done);
@@ -65,10 +65,10 @@ pub fn finish(machine: &mut Machine, transfer: &mut Transfer) -> Outcome<'static
     Ok(reply)
 }
 
-/// Copies the mesh of this name from the flash to the uploads, unless an upload has the name. Returns whether there is such a mesh.
+/// Copies the mesh of this name from the flash to the uploads, unless an upload has this name. Returns whether the mesh exists.
 ///
 /// # Errors
-/// The mesh is damaged, or there is no room for it.
+/// The mesh is damaged, or the free memory is too small.
 pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, CommandError<'l>> {
     if !MESH.is_built || !DEMO.is_built {
         return Ok(false);
@@ -90,14 +90,14 @@ pub fn from_flash<'l>(machine: &mut Machine, name: &'l str) -> Result<bool, Comm
     Ok(true)
 }
 
-/// Lends the staging memory for `length` bytes of the upload `name`.
+/// Lends `length` bytes of the staging memory for the upload `name`.
 ///
 /// # Errors
-/// The free memory is shorter.
+/// The free memory is smaller.
 fn lend<'l>(machine: &mut Machine, name: &'l str, length: usize) -> Result<Loan, CommandError<'l>> {
-    // The upload overwrites the attitudes that an earlier replay has left in the staging memory.
+    // The upload overwrites the attitudes of an earlier replay in the staging memory.
     machine.replay.take_if(|replay| replay.is_done());
-    // Uploads may move, and another mesh may be loaded at the address of the one whose edges the list has.
+    // Uploads may move, so another mesh may be loaded at the address of the mesh in the edge list.
     machine.renderer.edges.clear();
     let memory = machine.models.lend(length);
     memory.ok_or(CommandError::TooLong {

@@ -9,19 +9,19 @@ use glint_model::line::Segment;
 use glint_model::triangle::descriptor::{self, ListCounts, list_shift};
 use glint_model::{Stats, WireframeStats};
 
-/// Numbers of items for which the memory of one frame has room. The CPU draws frames that need more.
+/// Capacity of the memory of one frame. The CPU draws frames that need more.
 #[derive(Clone, Copy)]
 pub struct Capacity {
     /// Largest number of exceptions (triangles that need clipping) of a frame, and of descriptors without smooth shading in a
-    /// set. A descriptor with smooth shading is twice as long, so there is room for half as many of them.
+    /// set. A descriptor with smooth shading is twice as long, so half as many fit.
     descriptors: usize,
     /// Number of 32-bit words of a set of band lists, including the table of their lengths.
     list_words: usize,
 }
 
 impl Capacity {
-    /// The room for each of two frames in `words` 32-bit words; `None` if it is too small. A frame has two sets of lists, each an
-    /// eighth of the memory or up to half as large.
+    /// The capacity for each of two frames in `words` 32-bit words; `None` if it is too small. A frame has two sets of lists, each an
+    /// eighth to a sixteenth of the memory.
     pub fn of(words: usize) -> Option<Self> {
         let list_words = 1 << (words / 8).checked_ilog2()?;
         let descriptors = 1 << (words / 96).checked_ilog2()?;
@@ -43,13 +43,13 @@ pub struct Buffers {
     pub descriptors: &'static mut [u32],
     /// Band lists of these descriptors.
     pub lists: &'static mut [u32],
-    /// Numbers of the exceptions: triangles that the geometry pass leaves to the clipper.
+    /// Numbers of the exceptions: triangles that need clipping, which the geometry pass skips.
     pub exceptions: &'static mut [u32],
     /// Descriptors of clipped triangles, of the lines of a mesh's edges, or the segments of a wireframe.
     pub clipped_descriptors: &'static mut [u32],
     /// Band lists of clipped triangles, or of the lines of a mesh's edges.
     pub clipped_lists: &'static mut [u32],
-    /// Output of the clipper in `clipped_descriptors` and `clipped_lists`, if there is the second one of `sets`.
+    /// Output of the clipper in `clipped_descriptors` and `clipped_lists`, if `sets` has a second set.
     pub clipped_counts: ListCounts,
     /// The sets of lists written by the geometry passes and by the clipper.
     pub sets: [Option<Set>; 2],
@@ -60,7 +60,7 @@ pub struct Buffers {
 }
 
 impl Buffers {
-    /// Splits the memory of a frame off `memory`; `None` if `memory` is too small.
+    /// Splits off the memory of a frame from `memory`; `None` if `memory` is too small.
     pub fn split_off(memory: &mut &'static mut [u32], room: Capacity) -> Option<Self> {
         let mut piece = |length| {
             let (piece, rest) = mem::take(memory).split_at_mut_checked(length)?;
@@ -85,7 +85,7 @@ impl Buffers {
         self.clipped_descriptors.as_chunks().0
     }
 
-    /// The memory of a wireframe's segments, for writing.
+    /// The memory of a wireframe's segments, mutable.
     pub const fn segments_mut(&mut self) -> &mut [[u32; Segment::WORDS]] {
         self.clipped_descriptors.as_chunks_mut().0
     }
@@ -140,16 +140,16 @@ impl Buffers {
     }
 }
 
-/// How much of a wireframe's program is projected to segments.
+/// Progress of the projection of a wireframe's program to segments.
 #[derive(Default)]
 pub struct Projected {
-    /// Number of words of the program.
+    /// Number of projected words of the program.
     pub words: usize,
     /// Counts of these words, without pixels.
     pub stats: WireframeStats,
 }
 
-/// The address by which the engine accesses a region of memory.
+/// The bus address of a region of memory, for the engine.
 pub fn address<T>(memory: &[T]) -> u32 {
     memory.as_ptr().addr() as u32
 }

@@ -17,12 +17,12 @@ use super::renderer::{GatewareRenderer, Output};
 pub struct RightEye {
     /// Its colours.
     pub colour: &'static mut [u16],
-    /// Cost of its frame, while the frame of the left eye is drawn.
+    /// Cost of the right eye's frame, stored while the frame of the left eye is drawn.
     rendered: Option<Rendered>,
 }
 
 impl RightEye {
-    /// A picture in this memory.
+    /// Makes a picture in this memory.
     pub const fn new(colour: &'static mut [u16]) -> Self {
         Self {
             colour,
@@ -52,7 +52,7 @@ impl RightEye {
         Some(left.map(|left| left.plus(right, self.compose(gateware, eyes, output, cpu))))
     }
 
-    /// Draws a stereo picture `count` times. The console does not answer meanwhile.
+    /// Draws a stereo picture `count` times. The console does not answer during this call.
     ///
     /// # Errors
     /// As [`GatewareRenderer::advance`].
@@ -87,7 +87,7 @@ impl RightEye {
             colour: &mut *self.colour,
             depth: None,
         };
-        // The engine remembers for each of the two frame buffers what it has drawn there, and this memory is neither of them.
+        // The renderer tracks the contents of the two frame buffers, and this memory is neither of them.
         if !gateware.is_busy() {
             gateware.invalidate(output.colour);
         }
@@ -96,17 +96,17 @@ impl RightEye {
         Some(drawn)
     }
 
-    /// Makes the picture `left` of the left eye that of both eyes.
+    /// Replaces the picture `left` of the left eye by the picture of both eyes.
     pub fn join(&self, eyes: &Eyes, left: &mut [u16], progress: &mut dyn FnMut()) {
         let pixels = eyes.left.size.pixel_count();
         let left = left.get_mut(..pixels).unwrap_or_default();
-        // Both pictures begin at a word.
+        // Both pictures are aligned to words.
         let left = bytemuck::try_cast_slice_mut(left).unwrap_or_default();
         let right = bytemuck::try_cast_slice(self.colour).unwrap_or_default();
         eyes.compose(left, right, progress);
     }
 
-    /// Composes the picture of both eyes in `output`, which holds that of the left eye. Returns the clock cycles.
+    /// Composes the picture of both eyes in `output`, which holds the left eye's picture. Returns the clock cycles used.
     fn compose(
         &self,
         gateware: &mut GatewareRenderer,

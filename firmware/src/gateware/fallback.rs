@@ -15,22 +15,22 @@ pub enum Fallback {
     Field(Missing),
     /// This gateware is built without smooth shading.
     NoSmoothShading,
-    /// This gateware is built without the memory of depths.
+    /// This gateware is built without a depth buffer.
     NoDepths,
     /// The eye is farther from the origin than the number formats of the triangle engine allow.
     Eye,
-    /// The triangle engine shades smoothly in perspective only.
+    /// The triangle engine supports smooth shading only in perspective.
     Orthographic,
     /// This build of the gateware has no raymarcher.
     NoRaymarcher,
     /// The gateware has no line engine for a wireframe.
     NoLineEngine,
-    /// The soft core cannot make the descriptors of the frame, because this firmware is built without that.
+    /// The soft core cannot make the descriptors of the frame, because of an option that geometry passes do not support.
     Descriptors(Unsupported),
 }
 
 impl Fallback {
-    /// Whether this build of the gateware lacks what the frame needs.
+    /// Whether the cause is a feature missing in this build of the gateware.
     pub const fn is_left_out(&self) -> bool {
         matches!(
             self,
@@ -95,14 +95,15 @@ impl fmt::Display for Fallback {
     }
 }
 
-/// An option of a mesh that geometry passes lack. The CPU makes the descriptors of its frame, and the gateware draws them.
+/// A mesh option that geometry passes do not support. The CPU makes the descriptors of a frame with this option, and the gateware draws
+/// them.
 #[derive(Clone, Copy, Debug)]
 pub enum Unsupported {
     /// Clipping to the view volume.
     Volume,
-    /// The winding by the screen.
+    /// Winding by the position on the screen.
     Winding,
-    /// Ambient light on the dark sides of smooth triangles: the engine keeps one light for a vertex, that of one side.
+    /// Ambient light on the dark sides of smooth triangles: the engine stores the light of only one side of a vertex.
     DarkSides,
     /// Memory for a copy of the object's mesh with transformed normals. Objects count from 1.
     Normals {

@@ -1,9 +1,9 @@
 //! The geometry passes of a frame: one for each mesh, and clipping by the CPU.
 //!
-//! While the pass of a mesh runs, the CPU clips the exceptions of the previous mesh, computes the constants of the mesh after, and
-//! writes them to the registers of the engine, which has copied those of the running pass.
+//! While the pass of a mesh runs, the CPU clips the exceptions of the previous mesh, computes the constants of the next mesh, and writes
+//! them to the registers of the engine, which has copied the registers of the running pass.
 //!
-//! Some options of meshes need the CPU for all steps before the raster pass, which it then does for all meshes of the frame.
+//! For some mesh options the CPU must do all steps before the raster pass; it then does them for all meshes of the frame.
 
 use core::mem;
 
@@ -26,7 +26,7 @@ use crate::memory::Scratch;
 /// Number of triangles that the CPU makes between two calls of [`Cpu::progress`].
 const TRIANGLES_A_CALL: u32 = 32;
 
-/// Means of the CPU for steps that the gateware lacks.
+/// Resources for steps that the CPU does because the gateware does not support them.
 pub struct Cpu<'a> {
     /// Memory for projected vertices.
     pub scratch: &'a mut Scratch,
@@ -36,7 +36,7 @@ pub struct Cpu<'a> {
     pub progress: &'a mut dyn FnMut(),
 }
 
-/// A frame, and what its geometry passes use.
+/// A frame, and the resources of its geometry passes.
 pub struct Job<'a> {
     /// The frame.
     pub frame: &'a Frame<'a>,
@@ -54,7 +54,7 @@ pub struct GeometryPasses {
     shading: Shading,
     /// Number of the mesh whose pass was started last.
     number: usize,
-    /// Number of triangles of the meshes whose passes have ended, and number of these that were clipped and then drawn.
+    /// Number of triangles of the meshes whose passes have ended, and number of these triangles that were drawn after clipping.
     triangles: u32,
     drawn_clipped: u32,
     /// Frame constants of the object whose pass was prepared last.
@@ -66,7 +66,7 @@ pub struct GeometryPasses {
 }
 
 impl GeometryPasses {
-    /// Passes of an engine whose best shading is `shading`.
+    /// Geometry passes of an engine whose best shading is `shading`.
     pub fn new(shading: Shading) -> Self {
         Self {
             shading,
@@ -104,7 +104,7 @@ impl GeometryPasses {
         self.prepare_mesh(job, 0)
     }
 
-    /// Writes the registers of the geometry pass of the mesh with this number, if the frame has it.
+    /// Writes the registers of the geometry pass of the mesh with this number, if the frame has that mesh.
     fn prepare_mesh(&mut self, job: &mut Job, number: usize) -> Result<(), Fallback> {
         let Some((subject, colour)) = job.frame.subject.coloured_mesh(number) else {
             return Ok(());
@@ -124,8 +124,8 @@ impl GeometryPasses {
         Ok(())
     }
 
-    /// Starts the prepared geometry pass of the first mesh, and prepares that of the second one. Returns whether a pass runs: there may be
-    /// no mesh, or the CPU has made all descriptors.
+    /// Starts the prepared geometry pass of the first mesh, and prepares the pass of the second mesh. Returns whether a pass runs: without
+    /// a mesh, or if the CPU has made all descriptors, none runs.
     pub fn start(&mut self, job: &mut Job, cpu: &mut Cpu) -> Result<bool, Fallback> {
         job.buffers.clear();
         if !MESH.is_built {
@@ -143,7 +143,7 @@ impl GeometryPasses {
         Ok(starts)
     }
 
-    /// Starts the prepared geometry pass. Returns whether there is one.
+    /// Starts the prepared geometry pass, if any. Returns whether there is one.
     fn start_prepared(&mut self, job: &mut Job) -> bool {
         let Some(pass) = self.prepared.take() else {
             return false;
@@ -154,8 +154,8 @@ impl GeometryPasses {
         true
     }
 
-    /// Continues after the end of a geometry pass: starts that of the next mesh, clips the triangles of this one that need it, and prepares
-    /// the pass after the next. Returns whether there is a next mesh.
+    /// Continues after the end of a geometry pass: starts the pass of the next mesh, clips this mesh's triangles that need clipping, and
+    /// prepares the pass after the next. Returns whether there is a next mesh.
     pub fn advance(&mut self, job: &mut Job) -> Result<bool, Fallback> {
         if !MESH.is_built {
             return Ok(false);
@@ -175,9 +175,9 @@ impl GeometryPasses {
         Ok(starts)
     }
 
-    /// Clips the triangles that need it in the mesh with this number: the listed ones that were not clipped before.
+    /// Clips those triangles of the mesh with this number that the engine has listed and that are not clipped yet.
     ///
-    /// Not inlined, as few meshes have any.
+    /// Not inlined, because few meshes have such triangles.
     #[inline(never)]
     fn clip(&mut self, job: &mut Job, number: usize, counts: &Counts) -> Result<(), Fallback> {
         let buffers = &mut *job.buffers;
@@ -230,8 +230,8 @@ impl GeometryPasses {
         Ok(())
     }
 
-    /// Takes the results of all geometry passes, after the last one: the descriptors, unless clipped triangles have joined them, and the
-    /// counts of triangles.
+    /// Stores the results of all geometry passes, after the last pass: the set of descriptors, unless the clipper has already stored the
+    /// set, and the triangle counts.
     fn finish(&self, job: &mut Job, counts: &Counts) {
         let buffers = &mut *job.buffers;
         if buffers.sets[0].is_none() {
@@ -246,7 +246,7 @@ impl GeometryPasses {
 
     /// Makes the descriptors and lists of all meshes by the CPU.
     ///
-    /// Not inlined, as few frames need it.
+    /// Not inlined, because few frames need it.
     #[inline(never)]
     fn set_up(&self, job: &mut Job, cpu: &mut Cpu) -> Result<(), Fallback> {
         let (constants, frame) = (job.constants, job.frame);
@@ -298,7 +298,7 @@ impl GeometryPasses {
     }
 }
 
-/// Whether clipped triangles are in the set of the other ones, after them, because the second set has the lines of the mesh's edges.
+/// Whether clipped triangles are appended to the set of unclipped triangles, because the second set holds the lines of the mesh's edges.
 const fn joins_clipped(frame: &Frame) -> bool {
     matches!(frame.subject, Subject::Edges(..))
 }

@@ -1,4 +1,4 @@
-//! What the drawing of a frame took.
+//! The result and the cost of drawing a frame.
 
 use glint_hal::triangle::Counters;
 use glint_model::FrameStats;
@@ -9,7 +9,7 @@ use super::fallback::Unsupported;
 pub struct Rendered {
     /// Clock cycles from the first register write of the frame to the detection of its end.
     pub cycles: u64,
-    /// Clock cycles of these in which the soft core only waited for the gateware, of a benchmark.
+    /// In a benchmark, the number of these cycles in which the soft core only waited for the gateware.
     pub waited: u64,
     /// Counts of the frame. In a benchmark the triangle counts are those of the last frame only.
     pub stats: FrameStats,
@@ -20,7 +20,7 @@ pub struct Rendered {
 }
 
 impl Rendered {
-    /// Both of two frames, and further work of `cycles` clock cycles.
+    /// The sum of two frames, plus further work of `cycles` clock cycles.
     pub fn plus(self, other: Self, cycles: u64) -> Self {
         Self {
             cycles: self.cycles + other.cycles + cycles,

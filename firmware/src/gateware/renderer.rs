@@ -22,15 +22,15 @@ use super::geometry::{Cpu, GeometryPasses, Job};
 use super::rendered::Rendered;
 use super::watchdog::Watchdog;
 
-/// The memory that a frame is written to.
+/// The output memory of a frame.
 pub struct Output<'a> {
     /// Colours in RGB565, row by row.
     pub colour: &'a mut [u16],
-    /// Memory for depth codes, if they are requested.
+    /// Memory for depth codes, if requested.
     pub depth: Option<&'a mut [u32]>,
 }
 
-/// The step of a frame in progress: a pass of the triangle engine, or one of the CPU; or `Idle`.
+/// The step of a frame in progress: a pass of the triangle engine, a step of the CPU, or `Idle`.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Stage {
     Idle,
@@ -83,12 +83,12 @@ pub struct GatewareRenderer {
     pass_start: u32,
 }
 
-/// Clock cycles for which [`GatewareRenderer::advance`] waits for a pass that it has started, 0.25 ms at 81.25 MHz. A pass of the main
-/// loop takes 3,000 cycles and more, most of them to load its code, so a wait is faster for a short pass of the engine.
+/// Largest number of clock cycles that [`GatewareRenderer::advance`] waits for a started pass: 0.25 ms at 81.25 MHz. An iteration of the
+/// main loop takes at least 3,000 cycles, mostly to load its code, so waiting is faster for a short pass of the engine.
 const PATIENCE: u32 = 20_000;
 
 impl GatewareRenderer {
-    /// A renderer for two frame buffers, of which the first is at `first_frame_buffer`, and a clock of `frequency`; `None` if
+    /// A renderer for two frame buffers, the first at address `first_frame_buffer`, and a clock of `frequency`; `None` if
     /// `memory` is too small.
     pub fn new(
         engine: TriangleEngine,
@@ -123,7 +123,7 @@ impl GatewareRenderer {
         })
     }
 
-    /// The subjects that the gateware draws, as a list for the console. The CPU draws the others.
+    /// The subjects that the gateware draws, as a list for the console. The CPU draws all other subjects.
     pub const fn subjects(&self) -> &'static str {
         match (
             self.draws_triangles,
@@ -163,8 +163,8 @@ impl GatewareRenderer {
         }
     }
 
-    /// Starts or continues the drawing of a frame. `frame` and `output` must stay the same until the function returns a
-    /// result; `None` means that a pass is still running. The call that starts a frame may take long.
+    /// Starts or continues the drawing of a frame. `frame` and `output` must not change until the function returns a result; `None` means
+    /// that a pass is still running. The call that starts a frame may take long.
     ///
     /// # Errors
     /// The gateware cannot draw the frame; the gateware is then idle.
@@ -175,7 +175,7 @@ impl GatewareRenderer {
         cpu: &mut Cpu,
     ) -> Option<Result<Rendered, Fallback>> {
         if self.is_busy() {
-            // This function waits for short passes. An interrupt of each would take 600 cycles.
+            // This function polls for the end of short passes: an interrupt for each would take 600 cycles.
             self.engine.set_interrupts(false);
         }
         loop {
@@ -190,7 +190,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// Waits for the end of a short pass: until [`PATIENCE`] after its start. Returns whether it has ended.
+    /// Waits for the end of a pass, at most until [`PATIENCE`] after its start. Returns whether the pass has ended.
     fn ends_soon(&self) -> bool {
         loop {
             if self.is_ready() {
@@ -245,7 +245,8 @@ impl GatewareRenderer {
         self.enter(next, frame, output).err().map(Err)
     }
 
-    /// The stage of a frame whose next geometry pass `runs`, or after the last one, when this starts the pass of a mesh's edges.
+    /// The next stage of a frame: `Geometry` if the next geometry pass `runs`; after the last pass `Raster`, or `Lines`, whose pass this
+    /// function starts, for a mesh's edges.
     fn after_geometry(&mut self, runs: bool, frame: &Frame) -> Stage {
         if runs {
             return Stage::Geometry;
@@ -259,7 +260,7 @@ impl GatewareRenderer {
         Stage::Raster
     }
 
-    /// Enters the stage of a geometry pass that was started, or that of the raster pass, which it starts.
+    /// Enters the stage of a started geometry pass, or starts the raster pass and enters its stage.
     fn enter(
         &mut self,
         next: Result<Stage, Fallback>,
@@ -307,7 +308,7 @@ impl GatewareRenderer {
             raymarcher: self.raymarcher_counters(frame).unwrap_or_default(),
             waited: self.waited,
             engine: self.engine.counters(),
-            // Comes last, because the reading of the counters is not a part of the frame.
+            // Comes last, because reading the counters is not part of the frame.
             cycles: cpu::cycles(),
         };
     }
@@ -349,7 +350,7 @@ impl GatewareRenderer {
         }
     }
 
-    /// The geometry passes, and what they use for `frame` with the memory and constants of index `place`.
+    /// The geometry passes, and their resources for `frame`, with the memory and constants of index `place`.
     fn geometry_of<'f>(
         &'f mut self,
         frame: &'f Frame<'f>,
@@ -393,7 +394,7 @@ impl GatewareRenderer {
         geometry.advance(&mut job)
     }
 
-    /// Computes the constants of a frame into `self.constants[place]`. Fails if the engine cannot draw the frame.
+    /// Computes the constants of a frame into `self.constants[place]`. Returns an error if the engine cannot draw the frame.
     fn update_constants(&mut self, frame: &Frame, place: usize) -> Result<(), Fallback> {
         let has_lines = matches!(frame.subject, Subject::Wireframe(_) | Subject::Edges(..));
         if has_lines && !self.draws_lines {
@@ -415,8 +416,8 @@ impl GatewareRenderer {
         Ok(self.constants[place].update(frame)?)
     }
 
-    /// Writes the raymarcher's registers for the field of `self.constants[place]`, or switches the raymarcher off if
-    /// there is no field. With `has_tables`, the raymarcher is known to hold the right tables, so they are not compared.
+    /// Writes the raymarcher's registers for the field of `self.constants[place]`, or turns the raymarcher off if there is no field. With
+    /// `has_tables`, the raymarcher already holds the right tables, so they are not compared.
     fn set_field(&mut self, place: usize, has_tables: bool) -> Result<(), Fallback> {
         match (&mut self.raymarcher, self.constants[place].field()) {
             (Some(raymarcher), Some(field)) => {
@@ -456,7 +457,7 @@ impl GatewareRenderer {
         self.pass_start = cpu::cycles_low();
     }
 
-    /// Cancels the frame and fails if the triangle engine has made no progress for too long.
+    /// Cancels the frame and returns an error if the triangle engine has made no progress for too long.
     fn check_progress(&mut self, output: &Output) -> Result<(), Fallback> {
         if self.watchdog.is_stuck(&self.engine.counters()) {
             return Err(self.cancel(output, EngineError::Timeout.into()));

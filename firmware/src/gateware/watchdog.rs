@@ -4,8 +4,8 @@ use glint_hal::frequency::Frequency;
 use glint_hal::triangle::{Counters, TIMEOUT};
 use litex_pac::cpu;
 
-/// Watchdog of the triangle engine. It checks that the sum of some of the engine's counters changes, because these counters
-/// grow while the engine works.
+/// Watchdog of the triangle engine. It checks that the sum of some engine counters changes, because these counters grow while the engine
+/// works.
 pub struct Watchdog {
     /// Number of clock cycles without progress after which a pass is cancelled.
     limit: u64,
@@ -14,7 +14,7 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// A watchdog for a clock of `frequency`, before its first measurement.
+    /// Makes a watchdog for a clock of `frequency`.
     pub const fn new(frequency: Frequency) -> Self {
         Self {
             limit: frequency.cycles(TIMEOUT),
@@ -23,13 +23,12 @@ impl Watchdog {
         }
     }
 
-    /// Ends the measurement; the next call of [`is_stuck`](Self::is_stuck) starts another.
+    /// Restarts the timeout at the next call of [`is_stuck`](Self::is_stuck).
     pub const fn reset(&mut self) {
         self.since = None;
     }
 
-    /// Whether the triangle engine has made no progress for longer than [`TIMEOUT`]. The first call starts the measurement of
-    /// this time.
+    /// Whether the triangle engine has made no progress for longer than [`TIMEOUT`]. The first call starts the timeout.
     pub fn is_stuck(&mut self, counters: &Counters) -> bool {
         let progress = counters
             .items_in

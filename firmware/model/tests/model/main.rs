@@ -1,6 +1,6 @@
 //! Tests of the model against f64, a plain rasterizer and stated pictures.
 //!
-//! One program has them all, because each program is linked on its own.
+//! All tests are in one program, to avoid linking one program per file.
 
 mod clipping;
 mod depth;

@@ -46,7 +46,7 @@ fn draw(segments: &str, size: Size, keys: &[Key]) -> (Picture, WireframeStats) {
     (picture, stats)
 }
 
-/// Columns and rows of the pixels that are drawn.
+/// The column range and the row range of the drawn pixels.
 fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
     let drawn = picture.colour.iter().enumerate();
     drawn
@@ -61,7 +61,7 @@ fn pixels(picture: &Picture, width: usize) -> Vec<[usize; 2]> {
 #[test]
 fn a_horizontal_and_a_vertical_segment() {
     let (picture, stats) = draw("segment -1 0.5 2 1 0.5 2\n", Size::W640, &[]);
-    // The segment is on the border between rows 99 and 100; the rule of the diamonds takes the upper one.
+    // The segment is on the border between rows 99 and 100; the diamond-exit rule selects the upper row.
     assert!(
         pixels(&picture, 640)
             .into_iter()
@@ -90,7 +90,7 @@ fn keys_move_the_picture() {
     // A pan of 0.0625 is 10 pixels in the view plane.
     assert_eq!(shifted(&[Key::Up]), [x, y - 10]);
     assert_eq!(shifted(&[Key::Right, Key::Right]), [x + 20, y]);
-    // A segment that is zoomed in front of the view plane disappears.
+    // A segment that a zoom moves in front of the view plane disappears.
     let (picture, stats) = draw(segment, Size::W640, &[Key::ZoomIn]);
     assert!(pixels(&picture, 640).is_empty());
     assert_eq!((stats.segments, stats.lines, stats.pixels), (1, 0, 0));

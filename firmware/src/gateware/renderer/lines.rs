@@ -14,11 +14,11 @@ use crate::gateware::geometry::Cpu;
 /// Number of words of a program that are projected between two samples of the buttons.
 const WORDS_A_CALL: usize = 16;
 
-/// There is no room for all segments of a frame.
+/// Error: the memory is too small for all segments of a frame.
 const FULL: EngineError = EngineError::Status(Error::Full);
 
 impl GatewareRenderer {
-    /// Projects further words of a program to segments in `self.buffers[place]`. Returns whether no word is left.
+    /// Projects further words of a program to segments in `self.buffers[place]`. Returns whether all words have been projected.
     pub(super) fn project(
         &mut self,
         subject: &WireframeSubject,
@@ -59,7 +59,7 @@ impl GatewareRenderer {
         self.engine.prepare_lines(segments, size_code(size), &lists)
     }
 
-    /// Takes the descriptors of a geometry pass of lines, which wrote to `self.buffers[place]`.
+    /// Stores the set of descriptors that a geometry pass of lines has written to `self.buffers[place]`.
     pub(super) fn take_lines(&mut self, frame: &Frame, place: usize) {
         let buffers = &mut self.buffers[place];
         let count = self.engine.counts().descriptors;
@@ -72,7 +72,7 @@ impl GatewareRenderer {
     }
 
     /// Makes the segments of a mesh's edges in the memory of a benchmark's next frame, while the geometry pass of the faces runs;
-    /// nothing for another subject.
+    /// does nothing for another subject.
     pub(super) fn project_edges(&mut self, frame: &Frame, cpu: &mut Cpu) -> Result<(), Fallback> {
         let Subject::Edges(subject, _) = &frame.subject else {
             return Ok(());

@@ -10,13 +10,13 @@ use crate::gateware::fallback::Fallback;
 use crate::gateware::geometry::Cpu;
 use crate::gateware::rendered::Rendered;
 
-/// Number of times that the end of a pass is queried between two checks of progress.
+/// Number of polls for the end of a pass between two checks of progress.
 const POLLS: u32 = 1000;
 
 impl GatewareRenderer {
-    /// Draws a frame `count` times, where the geometry passes run during the raster pass of the previous frame. The result covers the
-    /// work of `count` frames: with a mesh, the measurement begins when the geometry passes of the first frame have ended. The
-    /// console does not answer meanwhile.
+    /// Draws a frame `count` times. The geometry passes run during the raster pass of the previous frame. The result covers the
+    /// work of `count` frames: with a mesh, the measurement begins when the geometry passes of the first frame have ended. The console
+    /// does not answer during this call.
     ///
     /// # Errors
     /// As [`advance`](Self::advance).
@@ -37,7 +37,7 @@ impl GatewareRenderer {
         }
     }
 
-    // Not inlined, so that memory.x can place it beside what it calls for each mesh.
+    // Not inlined, so that memory.x can place it beside the functions that it calls for each mesh.
     #[inline(never)]
     fn repeat_meshes(
         &mut self,
@@ -57,8 +57,8 @@ impl GatewareRenderer {
             while runs && !self.geometry.is_last() {
                 runs = self.await_geometry(frame, now, output)?;
             }
-            // Computes the constants for the next frame while the last geometry pass runs, because their code displaces that for each mesh
-            // from the instruction cache.
+            // Computes the constants for the next frame during the last geometry pass, because this code evicts the code of each mesh's
+            // pass from the instruction cache.
             self.update_constants(frame, next)?;
             while runs {
                 runs = self.await_geometry(frame, now, output)?;
@@ -85,8 +85,8 @@ impl GatewareRenderer {
         Ok(self.rendered(frame, now))
     }
 
-    /// Waits for the end of a geometry pass, and continues. Returns whether another pass runs.
-    // Not inlined, as `repeat_meshes`.
+    /// Waits for the end of a geometry pass, and starts the next pass. Returns whether another pass runs.
+    // Not inlined, for the reason given at `repeat_meshes`.
     #[inline(never)]
     fn await_geometry(
         &mut self,
@@ -185,13 +185,13 @@ impl GatewareRenderer {
         result.map_err(|error| self.cancel(output, error))
     }
 
-    /// Waits for the end of the pass whose result the function `result` reads.
+    /// Waits for the end of a pass; the function `result` polls its result.
     fn wait(
         &mut self,
         result: fn(&TriangleEngine) -> PassResult,
         output: &mut Output,
     ) -> Result<(), Fallback> {
-        // A wait is shorter than 2^32 cycles, because it ends without progress.
+        // A wait is shorter than 2^32 cycles, because the watchdog ends it.
         let start = cpu::cycles_low();
         loop {
             for _ in 0..POLLS {
