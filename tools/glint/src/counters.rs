@@ -1,16 +1,16 @@
-//! Counters of an accelerator, identified by name, so that a new counter in the gateware needs no change of the host program.
+//! Counters of an accelerator, identified by name: a new counter in the gateware requires no change of the host program.
 
 use std::fmt;
 
 use serde::de::{IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Names and values of an accelerator's counters, in the order in which the board prints them. Empty if the frame was drawn
+/// Names and values of an accelerator's counters, in the order in which the board prints them. Empty for a frame that was drawn
 /// without an accelerator.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Counters(Vec<(String, u64)>);
 
-/// Error for a counter that the board did not print: its name, and the names that the board printed.
+/// Error for a counter that the board did not print: the counter's name, and the printed names.
 #[derive(Debug, thiserror::Error)]
 #[error("expected the counter `{0}` in the board's statistics, found {1}")]
 pub struct MissingCounter(String, String);
@@ -24,7 +24,7 @@ impl Counters {
     /// The value of a counter.
     ///
     /// # Errors
-    /// When there is no counter of that name.
+    /// There is no counter with that name.
     pub fn get(&self, name: &str) -> Result<u64, MissingCounter> {
         let found = self.0.iter().find(|(known, _)| known == name);
         found.map(|(_, value)| *value).ok_or_else(|| {
@@ -40,7 +40,7 @@ impl Serialize for Counters {
     }
 }
 
-/// The value of one line of the board's statistics: a counter if it is a number, otherwise a text, which is skipped.
+/// A value in the board's statistics: a number is a counter; a text is skipped.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Entry {

@@ -1,4 +1,4 @@
-//! Distance fields as text on the command line, and lists of spheres in JSON files.
+//! Parses distance fields of the command line, and reads lists of spheres from JSON files.
 
 use crate::error::{FormatError, InputError};
 use crate::formats::read_file;
@@ -6,19 +6,19 @@ use glint_core::field::MAX_SPHERES;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// The kind of field whose spheres may be in a file.
+/// The kind of field that can be read from a file.
 const KIND: &str = "spheres:";
 
-/// The file in the text of a field `spheres:FILE.json`, alone or in a union.
+/// The file of a field `spheres:FILE.json`, alone or in a union.
 pub fn file(text: &str) -> Option<&str> {
     let at = text.find(KIND).filter(|_| text.ends_with(".json"))?;
     text.get(at + KIND.len()..)
 }
 
-/// Replaces `spheres:FILE.json` in the text of a field, alone or in a union, by `spheres:X,Y,Z,R;...`. Other text is unchanged.
+/// Replaces `spheres:FILE.json` in a field's text, alone or in a union, by `spheres:X,Y,Z,R;...`. Other text does not change.
 ///
 /// # Errors
-/// The file cannot be read, or [`spheres`] refuses it.
+/// The file cannot be read, or [`spheres`] rejects it.
 pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
     let Some(file) = file(text) else {
         return Ok(text.into());
@@ -32,7 +32,7 @@ pub fn with_files(text: &str) -> Result<Cow<'_, str>, InputError> {
 /// Reads spheres, `[[cx,cy,cz,r],...]` in world units, and returns them as `X,Y,Z,R;...`.
 ///
 /// # Errors
-/// The JSON has another form, no sphere, or more than [`MAX_SPHERES`]. The parser of fields checks the numbers.
+/// The JSON has another form, no sphere, or more than [`MAX_SPHERES`] spheres. The field parser checks the numbers.
 pub fn spheres(bytes: &[u8]) -> Result<String, FormatError> {
     let list: Vec<[f64; 4]> = serde_json::from_slice(bytes).map_err(|error| {
         let found = error.to_string().escape_debug().to_string();

@@ -1,15 +1,15 @@
-//! LiteX's serial boot (SFL), host side.
+//! The host's side of LiteX's serial boot (SFL).
 //!
-//! The BIOS sends a request and waits for an answer. It then takes frames, each made of a length byte, a CRC-16, a command and a
-//! payload. It answers each complete frame with one letter, in order, and drops a frame that stays incomplete for 250 ms. A frame
-//! carries its own address, so it may be sent again at any time.
+//! The BIOS sends a request and waits for an answer. It then receives frames; each frame consists of a length byte, a CRC-16, a
+//! command and a payload. It answers each complete frame with one letter, in order, and drops a frame that is still incomplete
+//! after 250 ms. A frame contains its load address, so it may be sent again at any time.
 //!
-//! The letters carry no frame number, so after a lost answer the host could mistake the answer to the next frame for it. Frames
-//! therefore go in batches. A batch has arrived when its answers are exactly one `K` per frame. Otherwise the host waits until
-//! the line has been quiet for longer than the BIOS's time-out, so that host and BIOS agree on the start of a frame, and sends
-//! the whole batch again. After a failure, batches and frames get shorter, because a short frame is damaged less often. After a
-//! success, frames grow up to the size of the BIOS's buffer. Batches grow only where an answer takes at least 2 ms: where answers
-//! come at once, long batches save no time, and may come faster than the BIOS can take them.
+//! The letters contain no frame number, so after a lost answer the host could assign the answer of the next frame to it. The host
+//! therefore sends frames in batches. A batch is complete when the answers are exactly one `K` per frame. Otherwise the host
+//! waits until the line has been quiet for longer than the BIOS's time-out, which resynchronises both sides to the start of a
+//! frame, and sends the whole batch again. After a failure, batches and frames get shorter, because a short frame is damaged less
+//! often. After a success, frames grow up to the size of the BIOS's buffer. Batches grow only if an answer takes at least 2 ms:
+//! with faster answers, long batches save no time, and may overrun the BIOS.
 
 mod frame;
 mod link;
@@ -24,16 +24,16 @@ pub const REQUEST: &[u8] = b"sL5DdSMmkekro\n";
 /// Answer to [`REQUEST`] that starts the transfer.
 pub const ACCEPT: &[u8] = b"z6IHG7cYDID6o\n";
 
-/// Time in milliseconds after which the host sends `reboot` if no request has come, because the board may be running a program.
+/// Time in milliseconds without a request after which the host sends `reboot`, because the board may be running a program.
 const POKE_MS: u64 = 2000;
 
-/// Sends a program to `address` and starts it there. Calls `progress` with the number of bytes that have arrived and the length
-/// of the program.
+/// Sends a program to `address` and starts it there. Calls `progress` with the number of bytes that have arrived and the
+/// program's length.
 ///
-/// If no request comes, the host sends `reboot` once: a command of the BIOS and of Glint's firmware.
+/// If no request arrives, the host sends `reboot` once, a command of the BIOS and of Glint's firmware.
 ///
 /// # Errors
-/// No request within `wait_ms` of board time, or too many transmission errors.
+/// No request arrives within `wait_ms` of the board's time, or there are too many transmission errors.
 pub fn flash(
     board: &mut dyn Board,
     program: &[u8],
@@ -87,7 +87,7 @@ fn wait_for_request(board: &mut dyn Board, wait_ms: u64) -> Result<(), FlashErro
             board.write(b"\rreboot\r")?;
         }
         board.read(&mut heard, 100)?;
-        // Keeps the last bytes only: they may hold the start of a request, and the error quotes the end of what was received.
+        // Keeps only the last bytes: they may contain the start of a request, and the error message quotes them.
         let surplus = heard.len().saturating_sub(1024);
         heard.drain(..surplus);
     }
@@ -103,17 +103,17 @@ mod tests {
 
     const ADDRESS: u32 = 0x4000_0000;
 
-    /// A simulated BIOS that receives frames over a line which drops, flips and repeats bytes.
+    /// A simulated BIOS that receives frames over a line that drops, flips and repeats bytes.
     struct Bios {
         now_ms: u64,
         output: Vec<u8>,
-        /// An incomplete frame, and the time of its first byte.
+        /// The received bytes of an incomplete frame, and the time of its first byte.
         partial: Vec<u8>,
         since_ms: u64,
         memory: BTreeMap<u32, u8>,
         jumped: Option<u32>,
         accepted: bool,
-        /// How many of 1000 bytes the line damages, in each direction.
+        /// Number of damaged bytes per 1000 bytes, in each direction.
         faults: usize,
         random: Random,
     }
@@ -133,7 +133,7 @@ mod tests {
             }
         }
 
-        /// Returns what arrives when `byte` goes over the line: dropped, flipped, repeated or unchanged.
+        /// Returns the bytes that arrive when `byte` is sent: none, a flipped byte, two bytes, or the unchanged byte.
         fn line(&mut self, byte: u8) -> Vec<u8> {
             if self.random.below(1000) >= self.faults {
                 return vec![byte];

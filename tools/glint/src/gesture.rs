@@ -1,4 +1,4 @@
-//! Access to a board's gesture engine through the board's console, and the image sensor of the virtual board.
+//! Access to a board's gesture engine through the board's console, and faults of the virtual board's image sensor.
 
 use crate::board::Board;
 use crate::console::{self, Console};
@@ -11,23 +11,23 @@ use virtual_board::virtual_image_sensor::{
 /// A fault of the virtual image sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorFault {
-    /// The chip does not answer on its bus, and sends nothing.
+    /// The sensor does not answer on its bus, and sends nothing.
     Absent,
-    /// The chip has another identity.
+    /// The sensor has another chip identity.
     Identity,
-    /// The cable is out after the set-up.
+    /// The cable is unplugged after the set-up.
     Unplugged,
     /// VSYNC does not become active.
     NoSync,
     /// VSYNC is inverted.
     Inverted,
-    /// A line has two pixels less than the others.
+    /// A line has two pixels too few.
     ShortLine,
     /// A line loses a byte.
     LostByte,
-    /// The frame has ten lines less.
+    /// The frame has ten lines too few.
     FewLines,
-    /// VSYNC cuts the frame in a line.
+    /// VSYNC ends the frame in the middle of a line.
     Cut,
     /// PCLK stops within the frame.
     Stopped,
@@ -65,7 +65,7 @@ impl SensorFault {
         }
     }
 
-    /// Gives a sensor this fault. `line` is the line of its frames that has the fault.
+    /// Applies this fault to a sensor. `line` is the faulty line of its frames.
     pub fn apply(self, sensor: &mut ImageSensor, line: usize) {
         let inverted = Polarity {
             vsync_low: true,
@@ -86,7 +86,8 @@ impl SensorFault {
     }
 }
 
-/// Returns a hand that goes around an ellipse in the middle of frames of `size` pixels, once in 4 s, with the noise of a sensor.
+/// Returns a scene with a hand that moves on an ellipse in the middle of frames of `size` pixels, one turn in 4 s, with sensor
+/// noise.
 #[must_use]
 pub fn moving_hand(size: [usize; 2]) -> Scene {
     let [width, height] = size.map(|length| length as f64);
@@ -101,25 +102,25 @@ pub fn moving_hand(size: [usize; 2]) -> Scene {
     scene
 }
 
-/// Returns an OV7670 to plug into a virtual board.
+/// Returns an OV7670 to connect to a virtual board.
 #[must_use]
 pub fn image_sensor(source: impl Source + 'static) -> ImageSensor {
     ImageSensor::new(Model::Ov7670, source, Timing::SHORT)
 }
 
-/// The pixels of the hand's colour in a frame of the image sensor, at a smaller size.
+/// The mask of the hand's colour in a frame of the image sensor, at a smaller size.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mask {
     /// Number of pixels of a line, a multiple of 16.
     pub width: u32,
     /// Number of lines.
     pub height: u32,
-    /// A bit for each pixel, line by line from the top left; the first one in the highest bit.
+    /// A bit for each pixel, line by line from the top left; the first pixel is the highest bit.
     pub bits: Vec<u8>,
 }
 
 impl Mask {
-    /// Writes the mask as a PNG picture of black and white.
+    /// Writes the mask as a black and white PNG picture.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -134,10 +135,10 @@ impl Mask {
     }
 }
 
-/// Largest width and height of a mask; an OV5640 has 2592 pixels in a line.
+/// Maximum width and height of a mask; a line of an OV5640 has 2592 pixels.
 const MAX_SIDE: u32 = 4096;
 
-/// Width and height, parsed from a text in which a space separates them.
+/// Width and height, parsed from a text that separates them by a space.
 struct Dimensions([u32; 2]);
 
 impl std::str::FromStr for Dimensions {
@@ -153,7 +154,7 @@ impl std::str::FromStr for Dimensions {
 /// Turns the image sensor on, and downloads the mask of its next frame.
 ///
 /// # Errors
-/// The board refuses, as without an image sensor, or the transfer fails.
+/// The board refuses the command, for example without an image sensor, or the transfer fails.
 pub fn mask<B: Board + ?Sized>(
     console: &mut Console<B>,
     progress: &mut Progress,

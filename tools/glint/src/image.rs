@@ -1,4 +1,4 @@
-//! Images for a board's SPI flash: made of a bitstream, a firmware and scenes, and checked whole.
+//! Makes and checks images for a board's SPI flash: a bitstream, a firmware and scenes.
 
 use crate::error::{FormatError, InputError, Location, quote};
 use crate::formats::glm;
@@ -8,17 +8,17 @@ use glint_core::mesh::is_name;
 use glint_scene::{LineError, Reason, lines};
 use glint_scene_file::SceneFile;
 
-/// Name of the list of scenes in an image, the first of which the board shows after power-up.
+/// Name of the list of scenes in an image; the board shows its first scene after power-up.
 pub const START: &str = "start";
-/// Name of the built-in mesh that is not a shape.
+/// Name of the built-in cube, which is not one of the shapes.
 const CUBE: &str = "cube";
 
-/// The bytes for the FPGA in a bitstream file: all of a raw file, those after the header of a `.bit` file.
+/// The configuration data of a bitstream file: all bytes of a raw file, the bytes after the header of a `.bit` file.
 ///
 /// # Errors
 /// The header is damaged.
 pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
-    // A field of nine bytes, and one of a single byte, which is not a part of a raw bitstream.
+    // A field of nine bytes and a field of one byte, which a raw bitstream does not contain.
     const HEADER: [u8; 13] = [
         0, 9, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0x0f, 0xf0, 0, 0, 1,
     ];
@@ -29,7 +29,7 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
         let place = Location::Byte(file.len() - rest.len());
         FormatError::new(place, expected, quote(rest.get(..8).unwrap_or(rest)))
     };
-    // Design, part, date and time.
+    // Fields of the design, the part, the date and the time.
     for key in *b"abcd" {
         let field = rest
             .split_first_chunk()
@@ -49,7 +49,7 @@ pub fn bitstream(file: &[u8]) -> Result<&[u8], FormatError> {
     data.ok_or_else(|| damaged(rest, "the field e with all bytes up to the end of the file"))
 }
 
-/// The items for scenes: each mesh that is not built into the firmware, each scene, and the list of all of them.
+/// The items for scenes: each mesh that is not built into the firmware, each scene, and the list of all scenes.
 ///
 /// # Errors
 /// A mesh cannot be read.
@@ -101,7 +101,7 @@ fn is_built_in(mesh: &str) -> bool {
     mesh == CUBE || scene::is_shape(mesh)
 }
 
-/// Makes an image, whole and checked.
+/// Makes an image, and checks it.
 ///
 /// # Errors
 /// A part is too long, or violates its format.
@@ -185,7 +185,7 @@ fn check_scene(contents: &Contents, text: &str) -> Result<(), FormatError> {
     Ok(())
 }
 
-/// Adds kind and name of the item to an error in it.
+/// Adds the item's kind and name to an error in the item.
 fn in_item(item: &Item, error: FormatError) -> FormatError {
     let Item { kind, name, .. } = item;
     let FormatError {

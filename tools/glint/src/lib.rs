@@ -1,4 +1,4 @@
-//! Host side of Glint: mesh files and generators, boards on a serial line or simulated, pictures.
+//! Host side of Glint: mesh files and generators, serial and simulated boards, pictures.
 //!
 //! | module | purpose |
 //! |---|---|

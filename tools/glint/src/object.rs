@@ -1,10 +1,10 @@
-//! Objects from the command line: a model and its position in the world.
+//! Objects of the command line: a model and its position in the world.
 
 use crate::error::{FormatError, quote};
 use glint_core::object::{Place, PlaceError};
 use glint_core::words::Words;
 
-/// An object as written: `MODEL` and the operations of a [`Place`].
+/// An object of the command line: `MODEL` and the operations of a [`Place`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// A mesh file or a generator's name.
@@ -17,7 +17,7 @@ impl Description {
     /// Parses an object.
     ///
     /// # Errors
-    /// The text has another form, or a matrix is out of range or singular, which names its row.
+    /// The text has another form, or a matrix is out of range or singular; the error names the matrix row.
     pub fn parse(text: &str) -> Result<Self, FormatError> {
         let mut words = Words::new(text);
         let model = words.next();

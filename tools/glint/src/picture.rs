@@ -1,14 +1,14 @@
-//! Drawn frames in memory and in files.
+//! Rendered frames in memory and in files.
 
 use glint_core::picture::Size;
 use glint_model::DepthScale;
 use std::io::{self, Write};
 use virtual_board::Picture;
 
-/// Speed of the search for the colours of a GIF, 1 (best) to 30.
+/// Speed of the colour quantisation of a GIF, from 1 (best) to 30.
 const QUANTISER_SPEED: i32 = 10;
 
-/// Colours and depth codes of a drawn frame.
+/// Colours and depth codes of a rendered frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image {
     /// Width in pixels.
@@ -17,7 +17,7 @@ pub struct Image {
     pub height: u32,
     /// RGB565, row by row from the top left.
     pub colour: Vec<u16>,
-    /// Depth codes in the same order as the colours; empty unless requested.
+    /// Depth codes in the order of the colours; empty unless requested.
     pub depth: Vec<u32>,
 }
 
@@ -32,16 +32,16 @@ impl Image {
         }
     }
 
-    /// The colours with 8 bits a channel.
+    /// The colours with 8 bits per channel.
     pub fn picture(&self) -> Picture {
         Picture::from_rgb565(self.width as usize, self.height as usize, &self.colour)
     }
 
-    /// Writes the distance along the camera's axis n in world units, as one little-endian f32 a pixel. A pixel without a surface,
-    /// whose depth code is 0, gets +inf.
+    /// Writes the distance along the camera's axis n in world units, one little-endian f32 per pixel. The distance of a pixel
+    /// without a surface, whose depth code is 0, is +inf.
     ///
     /// # Errors
-    /// They cannot be written.
+    /// The distances cannot be written.
     pub fn write_depth(&self, mut out: impl Write, scale: &DepthScale) -> io::Result<()> {
         for &code in &self.depth {
             let distance = scale
@@ -53,24 +53,24 @@ impl Image {
     }
 }
 
-/// An animation of images of one size that repeats forever, written image by image.
+/// An endlessly repeating animation of images of one size, written image by image.
 pub enum Animation<W: Write> {
     /// An animated PNG.
     Png(png::Writer<W>),
-    /// A GIF. Each image has up to 256 colours of its own.
+    /// A GIF. Each image has its own palette of up to 256 colours.
     Gif {
         /// The encoder.
         encoder: gif::Encoder<W>,
-        /// Time of an image in 1/100 s.
+        /// Duration of an image in 1/100 s.
         delay: u16,
     },
 }
 
 impl<W: Write> Animation<W> {
-    /// Begins an animated PNG of `count` images, of this width and height.
+    /// Begins an animated PNG of `count` images with the given width and height.
     ///
     /// # Errors
-    /// It cannot be written, or `count` is 0.
+    /// The file cannot be written, or `count` is 0.
     pub fn png(
         out: W,
         [width, height]: [u32; 2],
@@ -85,7 +85,7 @@ impl<W: Write> Animation<W> {
         Ok(Self::Png(encoder.write_header()?))
     }
 
-    /// Begins a GIF of this width and height. The time of an image is rounded up to a multiple of 1/100 s.
+    /// Begins a GIF with the given width and height. The duration of an image is rounded up to a multiple of 1/100 s.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -120,7 +120,7 @@ impl<W: Write> Animation<W> {
     /// Ends the animation.
     ///
     /// # Errors
-    /// The file cannot be written, or has fewer images than announced.
+    /// The file cannot be written, or has fewer images than `count`.
     pub fn finish(self) -> io::Result<()> {
         match self {
             Self::Png(writer) => Ok(writer.finish()?),
@@ -132,7 +132,7 @@ impl<W: Write> Animation<W> {
 /// Writes images of one size as an animated PNG.
 ///
 /// # Errors
-/// The file cannot be written, or there is no image.
+/// The file cannot be written, or there are no images.
 pub fn write_animation(
     out: impl Write,
     images: &[Image],

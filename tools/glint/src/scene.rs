@@ -15,31 +15,31 @@ use glint_scene::{AnyBoard, Content};
 use glint_scene_file::SceneFile;
 use std::fmt::Display;
 
-/// The error for a scene that no board shows, for this reason.
+/// The error for a scene that no board can draw, with the reason.
 fn refuse(reason: impl Display) -> FormatError {
     FormatError::whole("a scene that boards can show", reason.to_string())
 }
 
-/// Settings of a frame that override those of its scene.
+/// Settings that override those of a scene.
 #[derive(Clone, Copy, Default)]
 pub struct Changes {
     /// Shading of meshes.
     pub shading: Option<Shading>,
     /// Quality of the picture, with its size.
     pub quality: Option<Quality>,
-    /// Size of the picture, instead of that of the quality.
+    /// Size of the picture; overrides the size of the quality.
     pub size: Option<Size>,
 }
 
-/// Whether boards have the mesh with this name built in.
+/// Whether boards have a built-in mesh with this name.
 pub fn is_shape(name: &str) -> bool {
     Shape::NAMES.contains(&name)
 }
 
-/// The mesh of a scene by its name: that of a shape built into the firmware, or of a file or generator.
+/// The mesh of a scene by name: a shape that is built into the firmware, a file, or a generator.
 ///
 /// # Errors
-/// As [`model::load`].
+/// Those of [`model::load`].
 pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
     match Shape::ALL.into_iter().find(|shape| shape.name() == name) {
         Some(shape) => {
@@ -52,7 +52,7 @@ pub fn mesh(name: &str) -> Result<Vec<u8>, InputError> {
     }
 }
 
-/// The wireframe program that every board has.
+/// The wireframe program that is built into the firmware.
 ///
 /// # Errors
 /// None: the program is valid.
@@ -61,7 +61,7 @@ pub fn program() -> Result<Program<'static>, InputError> {
     program.map_err(|error| refuse(error).in_file("program"))
 }
 
-/// Calls `draw` with the frame of a scene, with `changes`.
+/// Calls `draw` with the frame of a scene after `changes`.
 ///
 /// # Errors
 /// A mesh cannot be read.
@@ -92,7 +92,7 @@ pub fn draw<T>(
         })
         .collect();
     Ok(draw(&scene.frame(Content {
-        // A scene without objects has one mesh at most.
+        // A scene without objects has at most one mesh.
         mesh: meshes.first().copied(),
         objects: &objects,
         program: program()?,
@@ -131,7 +131,7 @@ mod tests {
         assert!(torus.triangles().triangles_drawn > 300);
         for name in NAMES {
             let stats = stats(name);
-            // The picture of a field shows more than its background.
+            // The picture of a field contains more than its background.
             assert!(
                 stats
                     .rays

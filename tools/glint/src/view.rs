@@ -10,7 +10,7 @@ use glint_core::trig::sin_cos_q30;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Contents of a view file. `eye` and `near` are in world units; `u`, `v` and `n` are the rows of the camera's basis.
+/// Contents of a camera file. `eye` and `near` are in world units; `u`, `v` and `n` are the rows of the camera's basis.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct ViewFile {
@@ -24,8 +24,8 @@ struct ViewFile {
     projection: Option<String>,
 }
 
-/// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}`; without a projection
-/// it is perspective.
+/// Reads a view: `{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}`; the default
+/// projection is perspective.
 ///
 /// # Errors
 /// The file cannot be read, has other contents, or [`View::new_checked`] rejects the camera.
@@ -34,10 +34,10 @@ pub fn read(path: &Path) -> Result<View, InputError> {
     parse(&bytes).map_err(|error| error.in_path(path))
 }
 
-/// Parses the bytes of a view file; see [`read`].
+/// Parses the bytes of a camera file; see [`read`].
 ///
 /// # Errors
-/// As [`read`].
+/// Those of [`read`].
 pub fn parse(bytes: &[u8]) -> Result<View, FormatError> {
     let file: ViewFile = serde_json::from_slice(bytes).map_err(|error| {
         let form = r#"{"eye":[x,y,z],"u":[..],"v":[..],"n":[..],"half_width":h,"near":z,"projection":"perspective"}"#;
@@ -71,7 +71,7 @@ fn vector<T: Fixed>(values: [f64; 3], name: &str) -> Result<[T; 3], FormatError>
     Ok([number(x, name)?, number(y, name)?, number(z, name)?])
 }
 
-/// Converts a value to fixed point, to nearest; an error mentions `name`.
+/// Rounds a value to the nearest fixed-point number; an error names `name`.
 fn number<T: Fixed>(value: f64, name: &str) -> Result<T, FormatError> {
     T::checked_from_num(value).ok_or_else(|| {
         FormatError::whole(
@@ -98,8 +98,8 @@ pub fn spherical(text: &str) -> Result<View, FormatError> {
     View::spherical(r, Turns::from_degrees(theta), Turns::from_degrees(phi)).map_err(no_camera)
 }
 
-/// Camera from `EX,EY,EZ,GX,GY,GZ` or `EX,EY,EZ,GX,GY,GZ,UX,UY,UZ`: eye, direction of the gaze, and the direction that points up on
-/// the screen, by default z.
+/// Camera from `EX,EY,EZ,GX,GY,GZ` or `EX,EY,EZ,GX,GY,GZ,UX,UY,UZ`: eye, direction of the gaze, and the direction that points up
+/// on the screen (default z).
 ///
 /// # Errors
 /// The text is not six or nine decimals, or [`View::towards`] rejects the camera.
@@ -118,7 +118,7 @@ pub fn look_at(text: &str) -> Result<View, FormatError> {
     View::towards(eye, gaze, up).map_err(no_camera)
 }
 
-/// Free camera from `EX,EY,EZ,YAW,PITCH` or `EX,EY,EZ,YAW,PITCH,ROLL`: eye, and angles in degrees as those of [`View::look`].
+/// Free camera from `EX,EY,EZ,YAW,PITCH` or `EX,EY,EZ,YAW,PITCH,ROLL`: eye, and angles in degrees as in [`View::look`].
 ///
 /// # Errors
 /// The text is not five or six decimals, or the eye is too far from the origin.
@@ -138,7 +138,7 @@ pub fn look(text: &str) -> Result<View, FormatError> {
     View::look(eye, yaw, pitch, roll).map_err(no_camera)
 }
 
-/// Returns the camera in orthographic projection, with `text` world units across the picture.
+/// Returns the camera in orthographic projection, `text` world units wide.
 ///
 /// # Errors
 /// The text is not a decimal in the range of [`View::with_width`].
@@ -171,7 +171,7 @@ pub fn field_of_view(text: &str) -> Result<Turns, FormatError> {
         .ok_or_else(|| refuse("1 to 179 degrees", text))
 }
 
-/// Returns the camera with a field of view in which what is in the middle of the picture is larger by `factor`.
+/// Returns the camera with a narrower field of view, which enlarges the middle of the picture by `factor`.
 ///
 /// # Errors
 /// The field of view is not from 1 to 179 degrees.
@@ -182,14 +182,15 @@ pub fn zoomed(view: View, factor: f64) -> Result<View, FormatError> {
     zoomed.ok_or_else(|| FormatError::whole(expected, factor.to_string()))
 }
 
-/// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn it is `view`.
+/// Returns the camera after a turn about the z axis through the origin, from the x axis towards the y axis. Without a turn the
+/// result is `view`.
 ///
 /// # Errors
-/// The eye is at the largest distance from the origin, and rounding moves it beyond.
+/// The eye is at the maximum distance from the origin, and rounding moves it beyond the limit.
 pub fn turned(view: &View, by: Turns) -> Result<View, FormatError> {
     let (sin, cos) = sin_cos_q30(by);
     let [sin, cos] = [sin, cos].map(|x| i128::from(x.to_bits()));
-    // Rounds to nearest. The bits of both coordinates are below 2^38 in magnitude.
+    // Rounds to nearest. Both coordinates are below 2^38 in magnitude as bits.
     let rotate = |x: i64, y: i64| {
         let [x, y] = [x, y].map(i128::from);
         [cos * x - sin * y, sin * x + cos * y].map(|sum| ((sum + (1 << 29)) >> 30) as i64)
@@ -216,7 +217,7 @@ pub fn turned(view: &View, by: Turns) -> Result<View, FormatError> {
         .map_err(no_camera)
 }
 
-/// Parses decimals that are separated by commas.
+/// Parses comma-separated decimals.
 fn decimals(text: &str) -> Option<Vec<Q32_32>> {
     text.split(',')
         .map(|word| word.trim().parse().ok())
@@ -244,7 +245,7 @@ mod tests {
         assert_eq!(view.eye().map(|c| c.to_num::<f64>()), [0.0, -3.0, 0.0]);
         assert_eq!(view.half_width(), glint_core::camera::DEFAULT_HALF_WIDTH);
         assert_eq!(view.near(), glint_core::camera::DEFAULT_NEAR);
-        // The view from the file equals the spherical camera at theta = -90, phi = 90.
+        // The camera from the file equals the spherical camera at theta = -90, phi = 90.
         assert_eq!(view, spherical("3,-90,90").unwrap());
     }
 
@@ -325,7 +326,7 @@ mod tests {
     fn free_look() {
         let view = look("0,-3,0,0,0").unwrap();
         assert_eq!(view, spherical("3,-90,90").unwrap());
-        // Half a turn to the right and a quarter of a turn about the direction of view.
+        // Half a turn to the right, and a quarter turn about the direction of view.
         let turned = look("0,3,0,180,0,90").unwrap();
         let [v, n] = [turned.v(), turned.n()].map(|row| row.map(|c| c.to_num::<f64>()));
         assert_eq!((v, n), ([-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]));

@@ -1,4 +1,4 @@
-//! Programs of the wireframe simulator: files, and programs of the edges of a mesh (docs/wireframe.md).
+//! Files of the wireframe simulator's programs, and programs of the edges of a mesh (docs/wireframe.md).
 
 use crate::convert::{self, Options};
 use crate::error::{FormatError, InputError, Location, quote};
@@ -13,17 +13,17 @@ use glint_core::wireframe::{
 use std::fmt::Write;
 use std::path::Path;
 
-/// The form of a program's file.
+/// The form of a program file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// The text form: one instruction a line.
+    /// The text form: one instruction per line.
     Text,
     /// The binary form: 16 bytes per word.
     Binary,
 }
 
 impl Form {
-    /// Selects the form by a file's extension.
+    /// Returns the form for a file's extension.
     ///
     /// # Errors
     /// The extension is not wft or wfb.
@@ -53,7 +53,7 @@ impl Form {
     }
 }
 
-/// Reads a program of either form, and returns its binary form. `-` is standard input, whose contents tell the form.
+/// Reads a program in either form, and returns its binary form. `-` is standard input, whose form is detected from its contents.
 ///
 /// # Errors
 /// The file cannot be read, or violates its format.
@@ -61,7 +61,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     let (form, bytes) = match path == Path::new(STDIN) {
         true => {
             let bytes = read_file(path)?;
-            // The three highest bytes of every binary word are 0, and text has no such byte.
+            // The three highest bytes of every binary word are 0, and text contains no zero bytes.
             let form = if bytes.contains(&0) {
                 Form::Binary
             } else {
@@ -74,7 +74,7 @@ pub fn read(path: &Path) -> Result<Vec<u8>, InputError> {
     parse(form, bytes).map_err(|error| error.in_path(path))
 }
 
-/// Parses a program of either form, and returns its binary form.
+/// Parses a program in either form, and returns its binary form.
 ///
 /// # Errors
 /// The first violation of the format, with its line or word.
@@ -111,7 +111,7 @@ fn format_error(error: &ProgramError) -> FormatError {
     )
 }
 
-/// The text form of a program.
+/// Returns the text form of a program.
 pub fn text(program: &Program) -> String {
     program
         .instructions()
@@ -128,19 +128,19 @@ pub struct Made {
     pub bytes: Vec<u8>,
     /// Number of segments.
     pub segments: usize,
-    /// Number of edges that have no length in Q5.11.
+    /// Number of dropped edges, which have no length in Q5.11.
     pub dropped: usize,
 }
 
-/// Makes a program of the edges of all polygons, each undirected edge once. Edges between equal positions in Q5.11 are the same
-/// edge, so the vertices of a mesh need not be shared.
+/// Makes a program of the edges of all polygons, each undirected edge once. Edges between equal positions in Q5.11 count as one
+/// edge, so polygons need not share vertices.
 ///
-/// The mesh is scaled to a box of the side `extent` about the origin, or keeps its coordinates for `None`. Its z axis, which points
-/// up, becomes y, and its y axis points away from the viewer.
+/// The mesh is scaled to a box with the side `extent` about the origin, or keeps its coordinates if `extent` is `None`. Its z
+/// axis, which points up, becomes y, and its y axis points away from the viewer.
 ///
 /// # Errors
-/// The mesh has no extent, a coordinate is out of the range of Q5.11, there are more than 65,535 edges, or the program's checks
-/// refuse the viewing parameters.
+/// The mesh has no extent, a coordinate is out of the range of Q5.11, there are more than 65,535 edges, or the viewing parameters
+/// are invalid.
 pub fn make(
     mut polygons: Polygons,
     extent: Option<f64>,
@@ -186,7 +186,7 @@ pub fn make(
     })
 }
 
-/// The edges of all polygons, by their end points. An edge that two polygons share occurs twice.
+/// The edges of all polygons, by their end points. An edge of two polygons occurs twice.
 fn edges(polygons: &Polygons, points: &[Point]) -> Vec<[Point; 2]> {
     let of_face = |face| {
         let corners = polygons
@@ -203,7 +203,7 @@ fn edges(polygons: &Polygons, points: &[Point]) -> Vec<[Point; 2]> {
         .collect()
 }
 
-/// Rounds a position to nearest.
+/// Rounds a position to the nearest Q5.11 values.
 fn rounded(position: [f64; 3]) -> Result<Point, FormatError> {
     let mut point = Point::default();
     for (to, x) in point.iter_mut().zip(position) {
@@ -217,10 +217,10 @@ fn rounded(position: [f64; 3]) -> Result<Point, FormatError> {
     Ok(point)
 }
 
-/// Parses `COUNT` numbers of Q5.11 between commas.
+/// Parses `COUNT` comma-separated numbers in Q5.11.
 ///
 /// # Errors
-/// The text is not of this form; `form` describes it.
+/// The text has another form than `form` describes.
 pub fn numbers<const COUNT: usize>(text: &str, form: &str) -> Result<[Q5_11; COUNT], FormatError> {
     let refuse = || {
         let range = format!("{form}, each from {} to {}", Q5_11::MIN, Q5_11::MAX);
@@ -247,20 +247,20 @@ pub fn window(text: &str) -> Result<Window, FormatError> {
     })
 }
 
-/// A word of a script of keys.
+/// An action of a script of keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     /// Presses a key for one frame.
     Press(Key),
-    /// Sets switch 0: whether the arrows rotate instead of pan.
+    /// Sets switch 0, which selects whether the arrow keys rotate or pan.
     Rotate(bool),
 }
 
-/// Parses a script of keys: `up`, `down`, `left`, `right`, `zoom-in`, `zoom-out`, with a count as in `up:20`, and `rotate` and
-/// `pan`, which set the switch for the arrows that follow.
+/// Parses a script of keys: `up`, `down`, `left`, `right`, `zoom-in`, `zoom-out`, optionally with a count as in `up:20`, and
+/// `rotate` and `pan`, which set the switch for the following arrow keys.
 ///
 /// # Errors
-/// A word has another form, or the keys are pressed more than 100,000 times.
+/// An action has another form, or there are more than 100,000 key presses.
 pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
     const MOST: usize = 100_000;
     let mut actions = Vec::new();
@@ -288,13 +288,13 @@ pub fn script(text: &str) -> Result<Vec<Action>, FormatError> {
     Ok(actions)
 }
 
-/// The form of the motion.
+/// The arithmetic of the motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum MotionForm {
-    /// Each frame moves the points of the program again.
+    /// Each frame transforms the original points of the program.
     #[default]
     DriftFree,
-    /// The motion of the original: each step rounds the end points in place.
+    /// The motion of the original design: each step rounds the end points.
     Accumulated,
 }
 
@@ -302,7 +302,7 @@ impl MotionForm {
     /// All forms.
     pub const ALL: [Self; 2] = [Self::DriftFree, Self::Accumulated];
 
-    /// The form's name on the command line.
+    /// Name on the command line.
     pub const fn name(self) -> &'static str {
         match self {
             Self::DriftFree => "drift-free",
@@ -311,17 +311,17 @@ impl MotionForm {
     }
 }
 
-/// A program after some frames.
+/// A program after some steps.
 pub struct Played {
-    /// The binary form of the program; its segments have moved if the motion is accumulated.
+    /// The binary form of the program; in accumulated motion, its segments are transformed.
     pub bytes: Vec<u8>,
-    /// The motion of the segments since this form.
+    /// The remaining transformation of the segments in `bytes`.
     pub pose: Pose,
-    /// Number of steps that were not possible, because segments would have left the range.
+    /// Number of rejected steps, which would have moved segments out of the range.
     pub refused: usize,
 }
 
-/// Plays a script of keys: each press is the step of one frame.
+/// Plays a script of keys: each key press is a step of one frame.
 pub fn play(program: &Program, script: &[Action], form: MotionForm) -> Played {
     let mut segments: Vec<Segment> = program.segments().collect();
     let mut motion = Motion::default();
@@ -367,7 +367,7 @@ mod tests {
 
     #[test]
     fn the_edges_of_models() {
-        // A closed mesh of triangles has 3·F/2 edges, a cube of squares 12.
+        // A closed mesh of F triangles has 3·F/2 edges, and a cube has 12.
         for (name, edges) in [("cube", 12), ("icosphere:1", 30), ("icosphere:4", 480)] {
             let polygons = generate::named(name).unwrap();
             let made = make(polygons, Some(4.0), &usual()).unwrap();
@@ -459,7 +459,7 @@ mod tests {
             .zip(accumulated.0.as_flattened());
         let largest = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
         assert!(largest > 0.0 && largest < 8.0 / 2048.0, "{largest}");
-        // The cube's sides at ±2 reach the limit of Q5.11 after 223 pans, the displacement its limit after 256.
+        // The cube's sides at ±2 reach the limit of Q5.11 after 223 pans; the displacement reaches its own limit after 256.
         assert_eq!(end("right:300", MotionForm::Accumulated).1, 300 - 223);
         assert_eq!(end("right:300", MotionForm::DriftFree).1, 300 - 256);
     }

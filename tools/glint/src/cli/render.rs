@@ -50,7 +50,7 @@ pub struct RenderArguments {
     /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
-    /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
+    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
     #[command(flatten)]
@@ -58,21 +58,21 @@ pub struct RenderArguments {
     /// Picture file to write; `-` is standard output.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
-    /// Draw the picture 2 or 4 times as wide and high, and show the mean of 2×2 or 4×4 pixels as one; up to 1280x720. Only with the model.
-    /// Counts are those of the larger picture.
+    /// Draw the picture with 2 or 4 times the width and height, and average 2×2 or 4×4 pixels for each output pixel; the larger
+    /// picture has at most 1280x720 pixels. Requires the model. The counts are those of the larger picture.
     #[arg(long, value_name = "2|4", conflicts_with = "depth", value_parser = PossibleValuesParser::new(["2", "4"]))]
     supersample: Option<String>,
-    /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 a pixel, +inf where no
-    /// surface is.
+    /// Write the distance along the camera's forward axis n, in world units: one little-endian f32 for each pixel, +inf for a
+    /// pixel without a surface.
     #[arg(long, value_name = "DEPTH.f32")]
     depth: Option<PathBuf>,
-    /// Write as JSON: clock cycles, the clock's frequency in Hz, and counts of triangles, pixels and rays.
+    /// Write clock cycles, the clock frequency in Hz, and counts of triangles, pixels and rays as JSON.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
-    /// Leave the model's coordinates as they are, and refuse those outside [-2, 2).
+    /// Keep the model's coordinates; those outside [-2, 2) are an error.
     #[arg(long, requires = "model")]
     keep_scale: bool,
-    /// The source of a board's picture: its memory, or the monitor of the emulated or the virtual board.
+    /// Source of a board's picture: its memory, or the monitor of the emulated or the virtual board.
     #[arg(long, value_enum, default_value_t = Capture::Frame)]
     capture: Capture,
     #[command(flatten)]
@@ -83,11 +83,11 @@ pub struct RenderArguments {
 enum Capture {
     /// The frame buffer in the board's memory.
     Frame,
-    /// The monitor's picture, scaled back to the frame's size.
+    /// The monitor's picture, scaled down to the frame's size.
     Monitor,
 }
 
-/// The output of `--json`.
+/// Output of `--json`.
 #[derive(Serialize)]
 struct Outcome<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -100,7 +100,7 @@ struct Outcome<'a> {
     stats: &'a Totals<'a>,
 }
 
-/// Statistics of a frame, and numbers derived from them.
+/// Statistics of a frame, and values derived from them.
 #[derive(Serialize)]
 struct Totals<'a> {
     #[serde(flatten)]
@@ -158,7 +158,7 @@ impl RenderArguments {
         self.write(&Frame { view, ..frame }, None)
     }
 
-    /// Renders a frame, of a scene or not, and writes pictures and statistics.
+    /// Renders a frame, and writes its pictures and statistics; `scene` is the scene of the frame, if any.
     fn write(&self, frame: &Frame, scene: Option<&SceneFile>) -> anyhow::Result<()> {
         let inputs = self.inputs(scene)?;
         let open = |path, extensions| Output::open(path, extensions, &inputs);
@@ -204,7 +204,7 @@ impl RenderArguments {
         print_stats(&stats)
     }
 
-    /// The size to draw for a picture of this size, and how many of its pixels each way are one of the picture.
+    /// The size to draw for a picture of this size, and the number of drawn pixels per output pixel in each direction.
     fn supersampled(&self, size: Size) -> anyhow::Result<(Size, usize)> {
         let Some(text) = &self.supersample else {
             return Ok((size, 1));
@@ -223,7 +223,7 @@ impl RenderArguments {
         Ok((drawn?, factor as usize))
     }
 
-    /// The files that the command reads, with names of generators among them.
+    /// Names of the files that the command reads; includes names of generators.
     fn inputs(&self, scene: Option<&SceneFile>) -> anyhow::Result<Vec<PathBuf>> {
         let mut names = self
             .objects()?
@@ -318,7 +318,7 @@ impl RenderArguments {
     }
 }
 
-/// The frame of a scene with its field, a mesh, or objects if there are some; `None` without any.
+/// The frame of a scene with its field, mesh or objects; `None` for a scene without any of them.
 pub fn shown<'a>(
     scene: &'a mut Scene,
     mesh: Option<Mesh<'a>>,
@@ -339,13 +339,13 @@ pub fn shown<'a>(
     }))
 }
 
-/// The error for a command that has nothing to draw, with the options that stand instead of a model.
+/// The error for a command without anything to draw; `options` are the alternatives to a model.
 pub fn nothing(options: &str) -> anyhow::Error {
     let expected = format!("a mesh file or a generator such as teapot, or {options} in its place");
     bad_value("MODEL", &expected, "none").into()
 }
 
-/// Captures the frame on a board's monitor, scaled back to the frame's own size.
+/// Captures the frame on a board's monitor, scaled down to the frame's size.
 fn from_monitor<S: Simulation>(
     board: &mut SimulatedBoard<S>,
     size: Size,

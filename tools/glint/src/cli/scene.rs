@@ -6,27 +6,27 @@ use clap::{Args, Subcommand};
 use glint::scene::{self, Changes};
 use glint_scene_file::{NAMES, SceneFile, Steer, built_in, read};
 
-/// Check, list or show scenes: what a picture shows, and what it needs of gateware and firmware (docs/scenes.md).
+/// Check, list or show scenes: their contents, and the gateware and firmware that they require (docs/scenes.md).
 #[derive(Subcommand)]
 pub enum SceneCommand {
-    /// Check scene files, with their meshes, fields and cameras.
+    /// Check scene files with their meshes, fields and cameras.
     Check(CheckArguments),
     /// List the built-in scenes.
     List,
-    /// Show the console commands of a scene, and what it needs of gateware and firmware.
+    /// Show the console commands of a scene, and the gateware and firmware that it requires.
     Show(ShowArguments),
 }
 
 #[derive(Args)]
 pub struct CheckArguments {
-    /// Scene files, `-` for one from standard input, or names of built-in scenes.
+    /// Scene files, names of built-in scenes, or `-` for standard input.
     #[arg(required = true, value_name = "NAME|FILE.toml")]
     scenes: Vec<String>,
 }
 
 #[derive(Args)]
 pub struct ShowArguments {
-    /// A scene file, `-` for one from standard input, or the name of a built-in scene.
+    /// A scene file, the name of a built-in scene, or `-` for standard input.
     #[arg(value_name = "NAME|FILE.toml")]
     scene: String,
 }

@@ -23,21 +23,22 @@ const LOOK_MS: u64 = 10;
 
 /// Open a board's console, or send commands to it.
 ///
-/// On a terminal Ctrl-] ends the session, and Ctrl-C ends what runs on the board. Commands come from --send, from --file, or line
-/// by line from standard input if that is not a terminal; the first one that fails ends the program. With --until it ends when
-/// the board has printed a text, with exit code 0.
+/// On a terminal, Ctrl-] ends the session, and Ctrl-C ends the command that runs on the board. Commands come from --send, from
+/// --file, or line by line from standard input if it is not a terminal; the first command that fails ends the program. With
+/// --until, the program ends with exit code 0 when the board has printed a text.
 #[derive(Args)]
 pub struct ConsoleArguments {
-    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: that of GLINT_BOARD, of
-    /// the configuration file, or emulated].
+    /// Board: `emulated`, `virtual`, a serial port, or `serial` for the port that `glint ports` guesses [default: from
+    /// GLINT_BOARD or the configuration file, otherwise emulated].
     board: Option<BoardName>,
     /// Send a command, print its reply and exit; repeatable.
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     send: Vec<String>,
-    /// Send the commands of a file, one a line; `-` is standard input. Empty lines and lines that start with # are skipped.
+    /// Send the commands of a file, one command per line; `-` is standard input. Empty lines and lines that start with # are
+    /// skipped.
     #[arg(long, value_name = "SCRIPT", conflicts_with = "send")]
     file: Option<PathBuf>,
-    /// Write all output of the board to a file, as it arrives.
+    /// Write all output of the board to a file as it arrives.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
     /// After all commands, print the output of the board until it contains this text.
@@ -48,7 +49,7 @@ pub struct ConsoleArguments {
     timeout: Option<u32>,
     #[command(flatten)]
     line: LineArguments,
-    /// Print the replies to commands as JSON: an array of lines for each command that did not fail.
+    /// Print the replies to commands as JSON: an array of lines for each successful command.
     #[arg(long)]
     json: bool,
 }
@@ -104,7 +105,7 @@ impl ConsoleArguments {
         }
     }
 
-    /// Sends the commands of a script up to the first one that fails, and collects or prints the replies.
+    /// Sends the commands of a script up to the first failing command, and collects or prints the replies.
     fn execute(
         &self,
         script: impl Iterator<Item = io::Result<String>>,
@@ -134,12 +135,12 @@ struct Heard<'b> {
     log: Option<File>,
     /// The text that ends the session.
     until: Option<String>,
-    /// The end of the output, in which the text may have begun.
+    /// The last bytes of the output, which may be the start of the text.
     last: Vec<u8>,
     is_found: bool,
-    /// Whether the output goes to standard output too.
+    /// Whether the output is also printed on standard output.
     is_printed: bool,
-    /// The board's time at which the session fails.
+    /// The board's time at which the wait for the text fails.
     end_ms: Option<u64>,
 }
 
@@ -221,7 +222,7 @@ impl RawTerminal {
 impl Drop for RawTerminal {
     fn drop(&mut self) {
         if let Some(before) = &self.0 {
-            // An error is ignored: if the terminal is gone, there is no mode to restore.
+            // An error is ignored: if the terminal is closed, there is no mode to restore.
             let _ = tcsetattr(std::io::stdin(), OptionalActions::Flush, before);
         }
     }
@@ -241,7 +242,7 @@ fn keys() -> Receiver<Vec<u8>> {
     receiver
 }
 
-/// Connects the terminal with a board until the user ends the session.
+/// Connects the terminal to a board until the user ends the session.
 pub fn talk(board: &mut dyn Board) -> anyhow::Result<()> {
     interact(&mut Heard {
         board,
@@ -254,7 +255,7 @@ pub fn talk(board: &mut dyn Board) -> anyhow::Result<()> {
     })
 }
 
-/// Connects the terminal with a board until the user ends the session, or the text has come that ends it.
+/// Connects the terminal to a board until the user ends the session, or the board prints the text of `--until`.
 fn interact(board: &mut Heard) -> anyhow::Result<()> {
     eprintln!("Ctrl-] ends the console.");
     let _raw = RawTerminal::enter()?;

@@ -19,8 +19,8 @@ use std::path::PathBuf;
 
 /// Wireframe simulator: check, convert, make and render programs.
 ///
-/// A PROGRAM is a file of the text form (.wft), one instruction a line, or of the binary form (.wfb), 16 bytes a word: the eye, the
-/// view plane, the window, up to 65535 segments, and an end. Numbers are from -16 to 15.9995, multiples of 1/2048.
+/// A PROGRAM is a file in text form (.wft), one instruction per line, or in binary form (.wfb), 16 bytes per word: the eye, the
+/// view plane, the window, up to 65535 segments, and an end. Numbers are multiples of 1/2048 from -16 to 15.9995.
 #[derive(Subcommand)]
 pub enum WireframeCommand {
     Check(CheckArguments),
@@ -32,7 +32,7 @@ pub enum WireframeCommand {
 /// Check a program, and show its viewing parameters and counts.
 #[derive(Args)]
 pub struct CheckArguments {
-    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose form is detected from its contents.
     program: PathBuf,
     /// Print the result as JSON.
     #[arg(long)]
@@ -42,16 +42,16 @@ pub struct CheckArguments {
 /// Convert a program between its text form and its binary form, without loss.
 #[derive(Args)]
 pub struct ConvertArguments {
-    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose form is detected from its contents.
     input: PathBuf,
     /// Output file; the extension selects the form: .wft or .wfb.
     out: PathBuf,
 }
 
-/// Make a program of the edges of a model, each edge once.
+/// Make a program that draws each edge of a model once.
 ///
-/// The model's z axis points up in the picture, its y axis away from the viewer. The default eye, view plane and window show a model
-/// of the default extent whole, in every rotation about its centre.
+/// The model's z axis points up in the picture, its y axis away from the viewer. With the default eye, view plane and window, a
+/// model of the default size is completely visible in every rotation about its centre.
 #[derive(Args)]
 pub struct MakeArguments {
     /// A mesh file or a generator's name.
@@ -59,7 +59,7 @@ pub struct MakeArguments {
     /// Output file; the extension selects the form: .wft or .wfb.
     #[arg(long, value_name = "PROGRAM")]
     out: PathBuf,
-    /// Side of the box about the origin to which the model is scaled, up to below 32.
+    /// Side of the box about the origin to which the model is scaled; less than 32.
     #[arg(
         long,
         value_name = "SIDE",
@@ -67,10 +67,10 @@ pub struct MakeArguments {
         allow_hyphen_values = true
     )]
     extent: f64,
-    /// Leave the model's coordinates as they are, and refuse those outside [-16, 16).
+    /// Keep the model's coordinates; those outside [-16, 16) are an error.
     #[arg(long, conflicts_with = "extent")]
     keep_scale: bool,
-    /// The eye; its z is at least 0 and above that of the view plane.
+    /// The eye; its z is at least 0 and greater than the z of the view plane.
     #[arg(
         long,
         value_name = "X,Y,Z",
@@ -78,7 +78,7 @@ pub struct MakeArguments {
         allow_hyphen_values = true
     )]
     eye: String,
-    /// The z of the view plane. What lies in front of it is not drawn.
+    /// The z of the view plane. Parts in front of the view plane are not drawn.
     #[arg(
         long,
         value_name = "Z",
@@ -99,26 +99,27 @@ pub struct MakeArguments {
     json: bool,
 }
 
-/// Render a program to a picture, after a script of keys.
+/// Render a program to a picture, after the keys of a script.
 #[derive(Args)]
 pub struct RenderArguments {
-    /// Program to read: .wft or .wfb; `-` is standard input, whose contents tell the form.
+    /// Program to read: .wft or .wfb; `-` is standard input, whose form is detected from its contents.
     program: PathBuf,
     /// Picture file to write.
     #[arg(long, value_name = "PICTURE.png")]
     out: PathBuf,
-    /// Keys that are pressed, one a frame: up, down, left, right, zoom-in, zoom-out, or KEY:COUNT. After `rotate` the arrows rotate
-    /// by 1.79 degrees; at the start and after `pan` they pan by 0.0625. A zoom moves by 0.125 along z.
+    /// Keys to press, one per frame: up, down, left, right, zoom-in, zoom-out, or KEY:COUNT. After `rotate`, the arrow keys
+    /// rotate by 1.79 degrees; at the start and after `pan`, they pan by 0.0625. The zoom keys move by 0.125 along z.
     #[arg(long, value_name = "KEY,KEY,...")]
     press: Option<String>,
-    /// The motion by the keys: `drift-free`, or `accumulated` as in the original design, which rounds the end points in place.
+    /// Arithmetic of the motion: `drift-free`, or `accumulated` as in the original design, which rounds the end points after each
+    /// step.
     #[arg(long, value_parser = named(MotionForm::ALL, MotionForm::name), default_value = "drift-free")]
     motion: MotionForm,
     /// The renderer: `model` (the bit-exact model, in this process), `emulated` (the firmware in an emulator), `virtual`
     /// (the verilated SoC) or a serial port.
     #[arg(long, default_value = "model")]
     board: ModelOrBoard,
-    /// The backend of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware where the board has it].
+    /// Renderer of a board: `cpu` (the soft core) or `gateware` (the accelerators) [default: gateware if the board has it].
     #[arg(long, value_parser = named(Backend::ALL, Backend::name))]
     backend: Option<Backend>,
     /// Size of the picture: 320x180, 640x360 or 1280x720.
@@ -142,7 +143,7 @@ impl WireframeCommand {
     }
 }
 
-/// A checked program, as the command prints it.
+/// A checked program, in the form that the command prints.
 #[derive(Serialize)]
 struct Summary {
     eye: [f64; 3],
@@ -196,7 +197,7 @@ impl ConvertArguments {
     }
 }
 
-/// The result of `make`, as the command prints it.
+/// The result of `make`, in the form that the command prints.
 #[derive(Serialize)]
 struct Written {
     segments: usize,
@@ -234,7 +235,7 @@ impl MakeArguments {
         ))
     }
 
-    /// Side of the box for the model; `None` to keep the model's coordinates.
+    /// Side of the box to which the model is scaled; `None` to keep the model's coordinates.
     fn extent(&self) -> anyhow::Result<Option<f64>> {
         if self.keep_scale {
             return Ok(None);
@@ -285,7 +286,7 @@ impl RenderArguments {
                 on_model(&Frame::new(subject, camera, size))?
             }
             ModelOrBoard::Board(name) => {
-                // The board has only the drift-free motion. This program computes the accumulated one.
+                // The board supports only the drift-free motion. The host has already computed the accumulated motion.
                 let script = match self.motion {
                     MotionForm::DriftFree => &script[..],
                     MotionForm::Accumulated => &[],

@@ -1,8 +1,8 @@
 //! Frames of LiteX's serial boot.
 
-/// Command: load bytes at an address.
+/// Command that loads bytes at an address.
 pub const LOAD: u8 = 1;
-/// Command: jump to an address.
+/// Command that jumps to an address.
 pub const JUMP: u8 = 2;
 
 /// Builds a frame: length, CRC-16/XMODEM over command and payload (high byte first), command, payload.

@@ -3,23 +3,23 @@
 use super::frame::{JUMP, LOAD, frame};
 use crate::board::{Board, BoardError};
 
-/// Maximum number of data bytes in a frame. The protocol allows 251, but a frame with 96 data bytes has 104 bytes and fits,
-/// together with the 14-byte answer to the request, into the 127 bytes that the BIOS buffers while it is busy.
+/// Maximum number of data bytes in a frame. The protocol allows 251 bytes, but a frame with 96 data bytes has 104 bytes; together
+/// with the 14-byte answer to the request it fits into the BIOS's receive buffer of 127 bytes.
 const MAX_DATA: usize = 96;
 /// Minimum number of data bytes in a frame.
 const MIN_DATA: usize = 12;
-/// Maximum number of frames in a batch: more than can be under way in a serial adapter and its buffers at 1 Mbit/s.
+/// Maximum number of frames in a batch: more than a serial adapter and its buffers hold at 1 Mbit/s.
 const MAX_BATCH: usize = 64;
-/// Mean time in milliseconds from a frame to its answer below which longer batches save no time.
+/// Mean time in milliseconds from a frame to its answer; below it, longer batches save no time.
 const PROMPT_MS: u64 = 2;
 /// Silence in milliseconds after which the BIOS expects a new frame: more than its time-out of 250 ms.
 const QUIET_MS: u64 = 300;
-/// Time in milliseconds after which the host no longer waits for a quiet line: only a program sends for so long.
+/// Time in milliseconds after which the host stops waiting for a quiet line: only a running program sends for so long.
 const LOUD_MS: u64 = 5_000;
 /// Time-out of an answer in milliseconds: covers the transmission of a frame on a slow line and the delay of a serial adapter.
 const ANSWER_MS: u64 = 500;
-/// Maximum number of bytes that the BIOS answers to one frame: `C` for a wrong checksum and, after the time-out of a surplus
-/// byte, `E`, each of them twice if the line repeats bytes. Longer output comes from the program.
+/// Maximum number of bytes in the BIOS's answer to one frame: `C` for a wrong checksum and, after the time-out of a surplus byte,
+/// `E`, each of them twice if the line repeats bytes. Longer output is output of the program.
 const MAX_ANSWER: usize = 4;
 /// Number of failed batches in a row after which the transfer fails.
 const MAX_FAILURES: u32 = 24;
@@ -29,13 +29,13 @@ const MAX_FAILURES: u32 = 24;
 pub struct Report {
     /// Length of the program in bytes.
     pub bytes: usize,
-    /// Number of frames sent, repeats included.
+    /// Number of frames sent, including repeated frames.
     pub frames: u32,
     /// Number of batches sent again.
     pub retries: u32,
     /// The board's time from the first frame to the jump, in milliseconds.
     pub milliseconds: u64,
-    /// Output of the program since the jump.
+    /// Output of the program after the jump.
     #[serde(skip)]
     pub said: Vec<u8>,
 }
@@ -46,14 +46,14 @@ pub enum FlashError {
     /// The board's connection failed.
     #[error(transparent)]
     Board(#[from] BoardError),
-    /// The BIOS has sent no request for a serial boot.
+    /// The BIOS has not sent a request for a serial boot.
     #[error(
         "no serial boot for {waited_ms} ms: expected the BIOS's request sL5DdSMmkekro, found {last:?}; press the board's reset button"
     )]
     NoRequest {
         /// Length of the wait in milliseconds of board time.
         waited_ms: u64,
-        /// The end of the board's output.
+        /// The last part of the board's output.
         last: String,
     },
     /// Too many transmission errors.
@@ -63,7 +63,7 @@ pub enum FlashError {
     Line {
         /// Load address of the data in the failed batch.
         address: u32,
-        /// Data bytes of a frame in the last batch.
+        /// Number of data bytes of a frame in the last batch.
         data: usize,
         /// The expected answers.
         expected: String,
@@ -74,7 +74,7 @@ pub enum FlashError {
 
 /// The outcome of sending a batch of frames.
 pub enum Delivery {
-    /// Every frame was answered by `K`, which confirms it.
+    /// Every frame was acknowledged by `K`.
     Arrived {
         /// The board's time from the first frame to the last answer.
         milliseconds: u64,
@@ -86,7 +86,7 @@ pub enum Delivery {
     },
 }
 
-/// Sends frames in batches, and adapts their lengths to the line.
+/// Sends frames in batches, and adapts the lengths of frames and batches to the line.
 pub struct Link<'b> {
     /// Counts of the whole transfer.
     pub report: Report,
@@ -121,8 +121,8 @@ impl<'b> Link<'b> {
         self.data
     }
 
-    /// Builds the next batch: frames that load the bytes of `program` from the index `start` on. `address` is the load address of
-    /// the whole program.
+    /// Builds the next batch: frames that load the bytes of `program` from index `start` on. `address` is the load address of the
+    /// whole program.
     pub fn batch(&self, program: &[u8], address: u32, start: usize) -> Vec<Vec<u8>> {
         program[start..]
             .chunks(self.data)
@@ -135,7 +135,7 @@ impl<'b> Link<'b> {
             .collect()
     }
 
-    /// Sends a batch of frames, and waits for one positive answer, `K`, to each.
+    /// Sends a batch of frames, and waits for one acknowledgement `K` per frame.
     pub fn deliver(&mut self, frames: &[Vec<u8>]) -> Result<Delivery, BoardError> {
         let start = self.board.now_ms();
         for frame in frames {
@@ -168,7 +168,7 @@ impl<'b> Link<'b> {
         })
     }
 
-    /// Waits until the line is quiet and the BIOS expects a new frame; returns the first bytes received meanwhile.
+    /// Waits until the line is quiet and the BIOS expects a new frame; returns the first bytes received during the wait.
     fn settle(&mut self) -> Result<Vec<u8>, BoardError> {
         const KEPT: usize = 64 << 10;
         let start = self.board.now_ms();
@@ -187,8 +187,8 @@ impl<'b> Link<'b> {
         Ok(rest)
     }
 
-    /// Makes the next frames longer after a batch of `frames` frames has arrived in `milliseconds`. If frames have their full
-    /// length already, the next batches get longer instead, but only where answers are slow (`PROMPT_MS`).
+    /// Makes the next frames longer after a batch of `frames` frames took `milliseconds` to arrive. If frames already have their
+    /// full length, makes the next batches longer, but only if answers are slow (`PROMPT_MS`).
     pub fn grow(&mut self, frames: usize, milliseconds: u64) {
         self.failures = 0;
         if self.data < MAX_DATA {
@@ -198,11 +198,11 @@ impl<'b> Link<'b> {
         }
     }
 
-    /// Makes batches and frames shorter after a batch has failed: `frames` frames whose data start at `address`. `found` shows
-    /// the received answers, for the error.
+    /// Makes batches and frames shorter after a batch has failed: `frames` frames whose data start at `address`. `found` is the
+    /// received answers, for the error message.
     ///
     /// # Errors
-    /// Too many failures in a row.
+    /// There are too many failures in a row.
     pub fn shrink(&mut self, address: u32, frames: usize, found: String) -> Result<(), FlashError> {
         self.failures += 1;
         self.report.retries += 1;
@@ -220,7 +220,7 @@ impl<'b> Link<'b> {
         Ok(())
     }
 
-    /// Starts the program. Output of the program counts as success even if the BIOS's answer was damaged.
+    /// Starts the program. Output of the program means success, even if the BIOS's answer was damaged.
     pub fn jump(&mut self, address: u32) -> Result<(), FlashError> {
         let frame = frame(JUMP, &address.to_be_bytes());
         loop {

@@ -1,4 +1,4 @@
-//! Seeds of the fuzz targets: small valid inputs with every feature of the format.
+//! Seeds of the fuzz targets: small valid inputs that cover every feature of the format.
 
 use super::mutate::MAX_INPUT;
 use super::targets::Target;
@@ -17,7 +17,7 @@ use glint_core::orientation::log::{Setup, record, to_bytes};
 use glint_core::wireframe::text::assemble;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 
-/// Returns the seeds of a target. None exceeds the maximum length of an input.
+/// Returns the seeds of a target. No seed exceeds the maximum length of an input.
 pub fn of(target: Target) -> Vec<Vec<u8>> {
     let seeds = match target {
         Target::Upload => transfer::seeds(),
@@ -52,7 +52,7 @@ fn texts(texts: &[&str]) -> Vec<Vec<u8>> {
     texts.iter().map(|text| text.as_bytes().to_vec()).collect()
 }
 
-/// Small models: generated ones, and one with a concave coloured polygon.
+/// Small models: generated models, and a model with a concave coloured polygon.
 fn models() -> Vec<Polygons> {
     let mut models: Vec<Polygons> = ["cube", "icosphere:1", "icosphere:2", "sponge:0"]
         .iter()
@@ -118,7 +118,7 @@ fn still_log() -> Vec<u8> {
     log.into_bytes()
 }
 
-/// Contents of flash images: of each built-in scene, and of one with a mesh of its own.
+/// Contents of flash images: each built-in scene, and a scene with its own mesh.
 fn contents() -> Vec<Vec<u8>> {
     let small = SceneFile::parse(
         "small",
@@ -134,8 +134,8 @@ fn contents() -> Vec<Vec<u8>> {
     scenes.chain(small.ok()).filter_map(image).collect()
 }
 
-/// Logs of 200, 30 and 1 samples in a board's format, with different options. The longer two have rest, motion, repeated time
-/// stamps and a gap.
+/// Logs of 200, 30 and 1 samples in a board's format, with different options. The two longer logs contain rest, motion, repeated
+/// time stamps and a gap.
 fn images() -> Vec<Vec<u8>> {
     let image = |tilt, follow_bias, samples: u32| {
         let setup = Setup::new(Units::MPU_6050, tilt, follow_bias, [1_000, -300, 0]).ok()?;

@@ -1,4 +1,4 @@
-//! The fuzz target of the whole firmware on the emulated board: anything on its serial line.
+//! The fuzz target of the whole firmware on the emulated board: arbitrary bytes on its serial line.
 
 use super::transfer::{SESSION, upload_data};
 use crate::board::{self, Board, BoardError, EmulatedBoard, SimulatedBoard, built_firmware};
@@ -7,25 +7,26 @@ use crate::transfer::upload;
 use glint_core::console::PROMPT;
 use std::sync::LazyLock;
 
-/// Silence in ms of the board's time after which it has taken an input.
+/// Silence in ms of the board's time after which the board has processed an input.
 const SILENCE_MS: u64 = 20;
-/// Time in ms of the board's time after which no silence is awaited, because a command of the input prints endlessly.
+/// Time in ms of the board's time after which the target stops waiting for silence, because a command of the input prints
+/// endlessly.
 const LIMIT_MS: u64 = 300;
 
-/// Bytes of the meshes whose uploads are seeds.
+/// Lengths in bytes of the meshes whose uploads are seeds.
 const LENGTHS: [usize; 2] = [16, 1500];
 
 static FIRMWARE: LazyLock<Vec<u8>> =
     LazyLock::new(|| built_firmware(None).expect("`cargo xtask firmware` has built the firmware"));
 
-/// The bytes that the host sends in whole uploads.
+/// The bytes that the host sends in complete uploads.
 pub fn seeds() -> Vec<Vec<u8>> {
     let uploads = LENGTHS.map(|length| {
         let mut line = Recorded {
             board: start(),
             written: Vec::new(),
         };
-        // The data are not a mesh, so the firmware refuses them after the transfer.
+        // The data are not a mesh, so the firmware rejects them after the transfer.
         let console = &mut Console::new(&mut line);
         let _ = upload(console, &upload_data(length), None, SESSION, &mut |_, _| {});
         line.written
@@ -33,8 +34,8 @@ pub fn seeds() -> Vec<Vec<u8>> {
     uploads.into()
 }
 
-/// Sends the input to a board that has just started. The firmware must not halt, and must answer a command after it. Returns whether it
-/// has carried out a command of the input.
+/// Sends the input to a board that has just started. The firmware must not halt, and must answer a later command. Returns whether
+/// it has executed a command of the input.
 pub fn run(input: &[u8]) -> bool {
     let mut board = start();
     let mut said = Vec::new();
@@ -60,7 +61,7 @@ pub fn run(input: &[u8]) -> bool {
     text.contains("\r\nok\r\n")
 }
 
-/// A board whose firmware has just started, and waits for a command.
+/// A board whose firmware has just started and waits for a command.
 fn start() -> SimulatedBoard<EmulatedBoard> {
     let mut board = board::emulated(&FIRMWARE).expect("the firmware fits");
     let mut said = Vec::new();
@@ -72,7 +73,7 @@ fn start() -> SimulatedBoard<EmulatedBoard> {
     board
 }
 
-/// A board and all that was written to it.
+/// A board that records the bytes written to it.
 struct Recorded {
     board: SimulatedBoard<EmulatedBoard>,
     written: Vec<u8>,

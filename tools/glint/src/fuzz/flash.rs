@@ -8,7 +8,7 @@ use glint_core::picture::Backend;
 use glint_core::wire::crc32;
 use glint_scene::{AnyBoard, Scene, lines};
 
-/// Reads a firmware with its header, and contents with all items. Returns whether the contents are valid.
+/// Parses a firmware with its header, and contents with all items. Returns whether the contents are valid.
 pub fn run(input: &[u8]) -> bool {
     if let Ok(firmware) = flash::firmware(input) {
         assert!(firmware.len() < input.len());
@@ -34,7 +34,7 @@ pub fn run(input: &[u8]) -> bool {
     }
 }
 
-/// Shows a scene as a board does.
+/// Applies the lines of a scene like a board.
 fn run_scene(text: &str) {
     let Ok(mut scene) = Scene::new(Backend::Gateware) else {
         return;
@@ -53,7 +53,7 @@ fn run_scene(text: &str) {
     assert!(Block::of_bits(scene.blocks()).count() > 0);
 }
 
-/// Shows the scenes of a list as a board does, with moves and holds, which the text determines.
+/// Plays the scenes of a list like a board; the bytes of the text determine moves and holds.
 fn run_list(text: &str) {
     let count = text.lines().count();
     let mut demo = Demo::default();
@@ -77,7 +77,8 @@ fn rejected(error: &str) -> bool {
     false
 }
 
-/// Corrects length, checksums of the items, and checksum of the list, by which nearly every mutation would be rejected.
+/// Corrects the length, the checksums of the items, and the checksum of the list; otherwise nearly every mutation would be
+/// rejected.
 pub fn repair(input: &mut [u8]) {
     const HEADER: usize = 16;
     const ENTRY: usize = 48;

@@ -1,6 +1,6 @@
-//! Words and lengths of glTF files.
+//! Tokens and lengths of glTF files.
 
-/// Words with a meaning in the JSON, and the type of the binary chunk.
+/// Keywords of the JSON, and the type of the binary chunk.
 pub const WORDS: &[&str] = &[
     "mode",
     "mesh",
@@ -21,7 +21,7 @@ pub const WORDS: &[&str] = &[
     "BIN\0",
 ];
 
-/// Corrects the lengths in the header of a binary glTF and of its two chunks.
+/// Corrects the lengths in the header of a binary glTF file and in its two chunks.
 pub fn repair(input: &mut [u8]) {
     let length = input.len();
     let binary = input.windows(4).position(|window| window == b"BIN\0");

@@ -1,5 +1,5 @@
-//! The fuzz target of the host's side of a board's line: replies of the console, transfers and the serial boot, from a board that sends
-//! anything.
+//! The fuzz target of the host's protocols: console replies, transfers and the serial boot, with a board that sends arbitrary
+//! bytes.
 
 use super::transfer::{SESSION, exchange, upload_data};
 use crate::board::{Board, BoardError, Route};
@@ -12,7 +12,7 @@ use crate::{flash, gesture, view};
 use glint_core::calibration::Units;
 use glint_core::orientation::log::{self as image, HEADER_BYTES};
 
-/// Words with a meaning in what a board says.
+/// Keywords of a board's output.
 pub const WORDS: &[&str] = &[
     "ok\r\n",
     "ready\r\n",
@@ -31,27 +31,27 @@ pub const WORDS: &[&str] = &[
     "\x1e\n",
 ];
 
-/// Size in bytes of the data that the conversations upload and download.
+/// Size in bytes of the uploaded and downloaded data.
 const LENGTH: usize = 100;
-/// Address of the program of a serial boot.
+/// Load address of the program of a serial boot.
 const ADDRESS: u32 = 0x4000_0000;
 /// Length of the program of a serial boot, in bytes.
 const PROGRAM: usize = 200;
 
-/// End of a part of a stream: the next part waits for a command, or for a silence.
+/// Separator of the parts of a stream: the next part is sent after a command or a silence.
 const WAIT: &[u8] = b"\x1e\n";
 
-/// A board that sends the bytes of a stream, whatever the host sends.
+/// A board that sends the bytes of a stream, regardless of the received bytes.
 struct Stream<'s> {
     /// Remaining bytes of the current part.
     rest: &'s [u8],
-    /// All remaining parts, the next one last.
+    /// All remaining parts in reverse order.
     later: Vec<&'s [u8]>,
-    /// Largest number of bytes that a read returns.
+    /// Maximum number of bytes that a read returns.
     piece: usize,
-    /// Time in milliseconds that a read takes.
+    /// Duration of a read in milliseconds.
     pace: u64,
-    /// Whether commands are echoed before the stream continues, and `echo` is answered.
+    /// Whether the board echoes commands before the stream continues, and answers `echo`.
     echoes: bool,
     echo: Vec<u8>,
     now_ms: u64,
@@ -78,7 +78,7 @@ impl Board for Stream<'_> {
             bytes.append(&mut self.echo);
         } else if self.rest.is_empty() {
             self.rest = self.later.pop().unwrap_or_default();
-            // A silent board takes long to be silent, so that few reads reach the end of every time-out.
+            // A wait for a silent board takes at least 1 s, so that a few reads exceed every time-out.
             self.now_ms += wait_ms.max(1000);
         } else {
             let (piece, rest) = self.rest.split_at(self.piece.min(self.rest.len()));
@@ -93,8 +93,8 @@ impl Board for Stream<'_> {
     }
 }
 
-/// Runs a conversation with a board that sends the input. The first three bytes select the conversation, the time of a read and the length
-/// of a piece. Returns whether the conversation came to its end.
+/// Runs a host protocol with a board that sends the input. The first three bytes select the protocol, the duration of a read and
+/// the length of a piece. Returns whether the protocol ended without an error.
 pub fn run(input: &[u8]) -> bool {
     let &[kind, pace, piece, ref rest @ ..] = input else {
         return false;
@@ -124,7 +124,8 @@ pub fn run(input: &[u8]) -> bool {
     outcome.is_ok()
 }
 
-/// The conversation with a number. Its results and callbacks contain at most what the board has sent or what was requested.
+/// Runs the protocol number `kind`. Its results and callbacks contain at most the bytes that the board has sent or that were
+/// requested.
 fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn std::error::Error>> {
     let quiet = &mut |_, _| {};
     if kind == 0 {
@@ -143,7 +144,7 @@ fn converse(kind: u8, board: &mut Stream, length: usize) -> Result<(), Box<dyn s
         0 => {
             console.greet()?;
             let lines = console.command("info")?;
-            // A damaged byte becomes a replacement character of three bytes.
+            // Each damaged byte becomes a replacement character of three bytes.
             assert!(lines.iter().map(String::len).sum::<usize>() <= 3 * length);
             let _: u32 = value("info", &lines, "triangles")?;
             console.info("staging")?;
@@ -211,10 +212,10 @@ fn log() -> Result<replay::Prepared, replay::Error> {
     )
 }
 
-/// Output of a board in each complete conversation.
+/// The board's output in a complete run of each protocol.
 pub fn seeds() -> Vec<Vec<u8>> {
     let seed = |kind: u8, parts: &[&[u8]]| {
-        // Bytes come one by one, so that an answer comes after what it answers.
+        // Single bytes per read ensure that a reply does not arrive before its command has been sent.
         [&[kind, 1, 0], parts.concat().as_slice()].concat()
     };
     let [_, acknowledged] = exchange(&upload_data(LENGTH), SESSION);
@@ -264,7 +265,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
 
 #[cfg(test)]
 mod tests {
-    /// Every seed is a conversation that comes to its end; otherwise its mutations would test the first check alone.
+    /// Every seed runs its protocol without an error; otherwise mutations of it would test only the first check.
     #[test]
     fn every_conversation_comes_to_its_end() {
         for (number, seed) in super::seeds().iter().enumerate() {

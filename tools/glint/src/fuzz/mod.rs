@@ -1,6 +1,6 @@
 //! Fuzzing without compiler instrumentation: generated seeds, a small mutator, numbered inputs.
 //!
-//! The seed and the number of an input determine its bytes, on any thread, so runs can be split and findings repeated.
+//! The seed and the number of an input determine its bytes in any thread, so runs can be split and findings repeated.
 
 mod corpus;
 mod firmware;
@@ -33,11 +33,11 @@ impl Inputs {
         }
     }
 
-    /// The input with the number `number`, at most [`MAX_INPUT`] bytes.
+    /// The input `number`, with at most [`MAX_INPUT`] bytes.
     pub fn input(&self, number: u64) -> Vec<u8> {
         let mut random = Random::new(self.seed, number);
         let mut input = mutate(&self.corpus, self.target.words(), &mut random);
-        // A checksum rejects nearly every mutation, so half of the inputs get a correct checksum.
+        // Without a correct checksum nearly every mutation is rejected, so half of the inputs get one.
         if random.below(2) == 0 {
             self.target.repair(&mut input);
         }
@@ -45,7 +45,7 @@ impl Inputs {
         input
     }
 
-    /// Runs the target on the input with a number. The caller catches panics.
+    /// Runs the target on the input `number`. The caller catches panics.
     pub fn run(&self, number: u64) -> Verdict {
         self.target.run(&self.input(number))
     }

@@ -3,11 +3,12 @@
 /// Maximum length of an input in bytes.
 pub const MAX_INPUT: usize = 4096;
 
-/// Random numbers by SplitMix64 (Steele, Lea and Flood, 2014): any seed works, and neighbouring numbers give unrelated streams.
+/// Random numbers from SplitMix64 (Steele, Lea and Flood, 2014): any seed is valid, and neighbouring numbers give unrelated
+/// streams.
 pub struct Random(u64);
 
 impl Random {
-    /// The random stream that a seed and a number select.
+    /// The random stream of a seed and a number.
     pub fn new(seed: u64, number: u64) -> Self {
         let mut random = Self(seed);
         let start = random.next() ^ number.wrapping_mul(0xd134_2543_de82_ef95);
@@ -32,7 +33,7 @@ impl Random {
     }
 }
 
-/// Numbers near limits of types, infinity and NaN, as text.
+/// Texts of numbers near the limits of types, infinity and NaN.
 const WORDS: [&str; 20] = [
     "0",
     "1",
@@ -93,7 +94,7 @@ pub fn mutate(corpus: &[Vec<u8>], words: &[&str], random: &mut Random) -> Vec<u8
     input
 }
 
-/// Returns a random range within `length` bytes, mostly a short one.
+/// Returns a random, mostly short range within `length` bytes.
 fn range(length: usize, random: &mut Random) -> std::ops::Range<usize> {
     let start = random.below(length + 1);
     let longest = if random.below(4) == 0 {
@@ -128,7 +129,8 @@ fn change_byte(input: &mut [u8], random: &mut Random, to: impl FnOnce(u8, &mut R
     }
 }
 
-/// Replaces the word at a random position of the input by a random one of `words`. A word longer than 64 bytes is not replaced.
+/// Replaces the token at a random position of the input by a random token of `words`. A token longer than 64 bytes is not
+/// replaced.
 fn replace_word(input: &mut Vec<u8>, random: &mut Random, words: &[&str]) {
     let Some(word) = random.pick(words) else {
         return;

@@ -21,7 +21,7 @@ use glint_scene_file::SceneFile;
 pub enum Target {
     /// The sender and the receiver of an upload.
     Upload,
-    /// The line editor and the grammar of commands.
+    /// The line editor and the parser of commands.
     Console,
     /// OBJ files and their material files.
     Obj,
@@ -29,7 +29,7 @@ pub enum Target {
     Stl,
     /// PLY files.
     Ply,
-    /// glTF files, JSON and binary, and the files of their buffers.
+    /// glTF files, JSON and binary, and their buffer files.
     Gltf,
     /// Meshes in a board's memory layout.
     Glm,
@@ -45,18 +45,18 @@ pub enum Target {
     Scene,
     /// The contents of flash images, and a firmware with its header.
     Flash,
-    /// The host's side of a board's line: replies of the console, transfers and the serial boot, from a board that sends anything.
+    /// The host's protocols: console replies, transfers and the serial boot, with a board that sends arbitrary bytes.
     Host,
-    /// The whole firmware on the emulated board: anything on its serial line.
+    /// The whole firmware on the emulated board: arbitrary bytes on its serial line.
     Firmware,
 }
 
 /// Result of a target on an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// The target accepted the input to its end.
+    /// The target accepted the complete input.
     Accepted,
-    /// The target rejected the input before its end.
+    /// The target rejected the input.
     Rejected,
 }
 
@@ -80,7 +80,7 @@ impl Target {
         Self::Firmware,
     ];
 
-    /// Words with a meaning in the target's format, for the mutator to insert.
+    /// Keywords of the target's format that the mutator inserts.
     pub fn words(self) -> &'static [&'static str] {
         match self {
             Self::Upload | Self::Glm | Self::Replay | Self::WireframeWords => &[],
@@ -144,12 +144,12 @@ impl Target {
         }
     }
 
-    /// Corrects the checksums and lengths in the input. With wrong ones the parser would reject nearly every mutation.
+    /// Corrects the checksums and lengths in the input. With wrong values the parser would reject nearly every mutation.
     pub fn repair(self, input: &mut Vec<u8>) {
         match self {
             Self::Upload | Self::Host => transfer::repair(input),
             Self::Stl => {
-                // Sets the number of triangles that matches the file's length.
+                // Sets the number of triangles to match the file's length.
                 let count = (input.len().saturating_sub(84) / 50) as u32;
                 if let (Some(field), false) = (input.get_mut(80..84), count == 0) {
                     field.copy_from_slice(&count.to_le_bytes());
@@ -166,7 +166,7 @@ impl Target {
                 mesh::set_checksum(input);
             }
             Self::Replay => {
-                // Sets the number of samples that matches the log's length.
+                // Sets the number of samples to match the log's length.
                 let samples = input.len().saturating_sub(image::HEADER_BYTES) / image::RECORD_BYTES;
                 if let Some(field) = input.get_mut(4..8) {
                     field.copy_from_slice(&(samples as u32).to_le_bytes());
@@ -174,7 +174,7 @@ impl Target {
                 input.truncate(image::HEADER_BYTES + image::RECORD_BYTES * samples);
             }
             Self::WireframeWords => {
-                // Cuts the input at a word, and ends the program there.
+                // Cuts the input at a word, and appends the end of a program.
                 input.truncate(input.len() / WORD_BYTES * WORD_BYTES);
                 if let Some(last) = input.last_chunk_mut() {
                     *last = Instruction::End.encode();
@@ -197,7 +197,7 @@ impl Target {
             Self::Upload => verdict(transfer::run(input)),
             Self::Host => verdict(host::run(input)),
             Self::Console => run_console(input),
-            // An OBJ or a glTF also serves as each further file that it names.
+            // An OBJ or glTF file also serves as each additional file that it names.
             Self::Obj => run_mesh(obj::parse(input, &mut |_| Some(input.to_vec()))),
             Self::Gltf => run_mesh(gltf::parse(input, &mut |_| Some(input.to_vec()))),
             Self::Stl => run_mesh(stl::parse(input)),
@@ -232,9 +232,9 @@ fn run_mesh<E>(parsed: Result<Polygons, E>) -> Verdict {
     parsed.map_or(Verdict::Rejected, |polygons| run_conversion(&polygons))
 }
 
-/// Converts parsed polygons to a mesh, and checks that a mesh from the conversion is valid.
+/// Converts parsed polygons to a mesh, and checks that the mesh is valid.
 fn run_conversion(polygons: &Polygons) -> Verdict {
-    // A conversion without scaling may fail, because coordinates can be out of range, but it must not panic.
+    // A conversion without scaling may fail because of coordinates out of range, but must not panic.
     let keep_scale = Options {
         keep_scale: true,
         fix_winding: true,
@@ -258,7 +258,7 @@ fn run_conversion(polygons: &Polygons) -> Verdict {
     }
 }
 
-/// Replays a parsed log with every option on: by its time stamps, and with two fixed sample periods.
+/// Replays a parsed log with every option enabled: by its time stamps, and with two fixed sample periods.
 fn run_replay(entries: &[log::Entry]) {
     for period in [None, Some(1_000), Some(600_000)] {
         let options = replay::Options {
@@ -282,7 +282,7 @@ fn run_replay(entries: &[log::Entry]) {
     }
 }
 
-/// Parses a scene file. Every line of an accepted one must be a command.
+/// Parses a scene file. Every line of an accepted file must be a command.
 fn run_scene(input: &[u8]) -> Verdict {
     let scene = std::str::from_utf8(input).ok();
     match scene.and_then(|text| SceneFile::parse("scene", "scene.toml", text).ok()) {
@@ -296,7 +296,7 @@ fn run_scene(input: &[u8]) -> Verdict {
     }
 }
 
-/// Replays a log in a board's format. An accepted log must give attitudes of length 1.
+/// Replays a log in a board's format. The attitudes of an accepted log must have length 1.
 fn run_image(input: &[u8]) -> Verdict {
     let mut image = input.to_vec();
     match image::replay(&mut image) {
@@ -317,7 +317,7 @@ fn run_image(input: &[u8]) -> Verdict {
     }
 }
 
-/// Parses a program, and moves and projects its segments.
+/// Parses a program, and transforms and projects its segments.
 fn run_program(form: Form, input: &[u8]) -> Verdict {
     let Ok(bytes) = wireframe::parse(form, input.to_vec()) else {
         return Verdict::Rejected;

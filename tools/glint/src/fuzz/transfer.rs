@@ -5,13 +5,13 @@ use glint_core::wire::{MAX_FRAME, Manifest, Receiver, Sender, State, Timing, crc
 /// Session number of the transfers of the seeds.
 pub const SESSION: u8 = 5;
 
-/// The data that the transfers of the corpus send.
+/// The data of the transfers in the corpus.
 pub fn upload_data(length: usize) -> Vec<u8> {
     (0..length).map(|i| (i * 7 / 3) as u8).collect()
 }
 
-/// Feeds the input to the sender or the receiver of a transfer in pieces, while time passes. The first three bytes select the
-/// side, the time between two pieces and the length of a piece.
+/// Feeds the input in pieces to the sender or the receiver of a transfer, while time passes. The first three bytes select the
+/// side, the time between two pieces, and the length of a piece.
 pub fn run(input: &[u8]) -> bool {
     let &[side, pace, piece, ref stream @ ..] = input else {
         return false;
@@ -78,7 +78,7 @@ pub fn run(input: &[u8]) -> bool {
     }
 }
 
-/// Corrects the CRC-16 of every frame of a stream.
+/// Corrects the CRC-16 of every frame in a stream.
 pub fn repair(input: &mut Vec<u8>) {
     const CRC: crc::Crc<u16> = crc::Crc::<u16>::new(&crc::CRC_16_IBM_3740);
     let Some((head, stream)) = input.split_at_checked(3) else {
@@ -99,8 +99,8 @@ pub fn repair(input: &mut Vec<u8>) {
     *input = repaired;
 }
 
-/// Byte streams of whole transfers, of the sender and of the receiver. The first three bytes of each seed select how the fuzz
-/// target delivers the stream to the other side.
+/// Byte streams of complete transfers, from the sender and from the receiver. The first three bytes of each seed select how the
+/// fuzz target delivers the stream to the other side.
 pub fn seeds() -> Vec<Vec<u8>> {
     let streams = [0, 1, 16, 100, 1500].map(|length| exchange(&upload_data(length), SESSION));
     let seeds = streams
@@ -114,7 +114,7 @@ pub fn seeds() -> Vec<Vec<u8>> {
     seeds.collect()
 }
 
-/// All frames that sender and receiver exchange in a transfer of `data`.
+/// All frames of a transfer of `data`, from the sender and from the receiver.
 pub fn exchange(data: &[u8], session: u8) -> [Vec<u8>; 2] {
     let mut buffer = vec![0; data.len()];
     let mut sender = Sender::new(data, session, Timing::HOST, 0);

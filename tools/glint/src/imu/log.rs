@@ -1,4 +1,4 @@
-//! Logs as CSV: a header with `t_us,ax,ay,az,gx,gy,gz` and optionally `temp`, in any order, then one sample a line in raw
+//! Logs as CSV: a header with `t_us,ax,ay,az,gx,gy,gz` and optionally `temp`, in any order, then one sample per line in raw
 //! counts.
 
 use crate::error::{FormatError, Location, quote};
@@ -15,23 +15,23 @@ pub struct Entry {
     pub accel: [i16; 3],
     /// Gyroscope x, y, z in raw counts.
     pub gyro: [i16; 3],
-    /// Thermometer in raw counts, if the log has it.
+    /// Thermometer in raw counts, if the log has this column.
     pub temp: Option<i16>,
 }
 
 const TIME: &str = "t_us";
 const TEMPERATURE: &str = "temp";
 const COLUMNS: [&str; 8] = [TIME, "ax", "ay", "az", "gx", "gy", "gz", TEMPERATURE];
-/// Maximum number of columns in a header; logs in use have fewer.
+/// Maximum number of columns in a header; real logs have fewer.
 const MOST_COLUMNS: usize = 64;
 
 /// The columns of a file.
 struct Header {
-    /// Position in the file of each of [`COLUMNS`].
+    /// Index in the file of each of [`COLUMNS`].
     places: [Option<usize>; COLUMNS.len()],
     /// Number of columns in the file.
     count: usize,
-    /// Names of the other columns.
+    /// Names of the ignored columns.
     ignored: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ pub fn parse(text: &[u8]) -> Result<Log, FormatError> {
     })
 }
 
-/// The next line that is not blank.
+/// The next non-blank line.
 fn next_filled<'a>(lines: &mut Lines<'a>) -> Result<Option<Line<'a>>, FormatError> {
     while let Some(line) = lines.next_line()? {
         if !line.text.trim_ascii().is_empty() {

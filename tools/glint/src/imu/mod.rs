@@ -1,4 +1,4 @@
-//! Gyroscope and accelerometer: a board's sensor, logs, and the attitudes of logs.
+//! Gyroscope and accelerometer: access to a board's sensor, logs, and the attitudes of logs.
 
 pub mod log;
 pub mod replay;

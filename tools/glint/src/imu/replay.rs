@@ -19,23 +19,23 @@ pub struct Options {
     pub units: Units,
     /// Fixed sample period in µs, used instead of the time stamps.
     pub period: Option<u32>,
-    /// Length in µs of the calibration at the log's start; `None` for no calibration.
+    /// Duration in µs of the calibration at the log's start; `None` for no calibration.
     pub still: Option<u64>,
     /// Whether tilt correction is on.
     pub tilt: bool,
-    /// Whether the bias is tracked at rest.
+    /// Whether the bias is tracked while the sensor is at rest.
     pub follow_bias: bool,
 }
 
-/// A log whose samples get time stamps without long steps, of which a board's log has the low words.
+/// A log whose samples get time stamps without long steps; a board's log contains their low words.
 struct Stamps<'a> {
     entries: &'a [Entry],
     period: Option<u32>,
 }
 
 impl Stamps<'_> {
-    /// Returns the samples with their time stamps. Where the log's time goes back, the step is 0. A step longer than
-    /// `LONGEST_STEP`, over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
+    /// Returns the samples with their time stamps. A step back in the log's time becomes 0. A step longer than `LONGEST_STEP`,
+    /// over which the firmware does not integrate, is shortened to `LONGEST_STEP` + 1 µs.
     fn samples(&self) -> impl Iterator<Item = Sample> {
         let mut latest = self.entries.first().map_or(0, |entry| entry.t_us);
         let mut stamp = 0_u64;
@@ -74,18 +74,18 @@ pub struct Prepared {
 pub struct Replayed {
     /// Attitude at each sample.
     pub attitudes: Vec<Quaternion>,
-    /// Numbers of samples by their effect on the attitude.
+    /// Counts of samples by their effect on the attitude.
     pub counts: Counts,
     /// The calibration, if requested.
     pub calibration: Option<Report>,
-    /// Mean number of clock cycles that the board took for a sample; `None` for a replay on this host.
+    /// Mean number of clock cycles of a sample on the board; `None` for a replay on this host.
     pub cycles: Option<u64>,
 }
 
-/// A replay that failed.
+/// An error of a replay.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// The log is not at rest during the calibration.
+    /// The sensor is not at rest during the calibration.
     #[error(transparent)]
     Still(#[from] FormatError),
     /// The model rejects the log.
@@ -97,7 +97,7 @@ pub enum Error {
     /// The console reports an error, or does not answer.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// An attitude of the board is not a unit quaternion.
+    /// An attitude from the board is not a unit quaternion.
     #[error("attitude {0} of the board: expected a quaternion of length 1, found another length")]
     Attitude(usize),
 }
@@ -105,7 +105,7 @@ pub enum Error {
 /// Converts a log to a board's format, with a calibration if requested.
 ///
 /// # Errors
-/// The log moves during the calibration, or a scale is out of range.
+/// The sensor moves during the calibration, or a scale is out of range.
 pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> {
     let stamps = Stamps {
         entries,
@@ -118,8 +118,8 @@ pub fn prepare(entries: &[Entry], options: &Options) -> Result<Prepared, Error> 
     let bias = calibration.map_or([0; 3], |report| report.bias);
     let setup =
         Setup::new(options.units, options.tilt, options.follow_bias, bias).map_err(Error::Log)?;
-    // A number of samples beyond 32 bits becomes the largest number of 32 bits. Every board rejects it as too long, and the model
-    // because it does not match the number of bytes.
+    // A count of samples above the 32-bit range is clamped to it. Every board rejects the log as too long, and the model because
+    // the count does not match the number of bytes.
     let count = u32::try_from(entries.len()).unwrap_or(u32::MAX);
     let mut image = setup.header(count).to_vec();
     stamps
@@ -147,7 +147,7 @@ pub fn on_model(mut prepared: Prepared) -> Result<Replayed, Error> {
     })
 }
 
-/// Replays a log on a board. Calls `progress` with the stage, and with how much of it is done and its total: bytes of a transfer,
+/// Replays a log on a board. Calls `progress` with the stage, the amount that is done, and the total amount: bytes of a transfer,
 /// samples of the replay.
 ///
 /// # Errors
@@ -201,7 +201,7 @@ pub fn on_board<B: Board + ?Sized>(
 
 /// The console command that replays a log.
 const COMMAND: &str = "replay";
-/// Session number of the transfers. All can have the same one, because a board's receiver exists for one transfer only.
+/// Session number of the transfers. All transfers can use the same number, because a board creates a receiver for each transfer.
 const SESSION: u8 = 1;
 
 /// Stage of a replay.
@@ -220,7 +220,7 @@ fn attitudes(records: &[u8]) -> Result<Vec<Quaternion>, Error> {
         .collect()
 }
 
-/// Calibrates with the samples in the first `still` µs of a log. Samples beyond the maximum number of a calibration are ignored.
+/// Calibrates with the samples of the first `still` µs of a log. Samples beyond the maximum number for a calibration are ignored.
 fn calibrate(stamps: &Stamps, units: Units, still: u64) -> Result<Report, FormatError> {
     let at_start = |sample: &Sample| sample.t_us < still;
     let count = stamps.samples().take_while(at_start).count();

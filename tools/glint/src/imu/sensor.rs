@@ -5,7 +5,8 @@ use crate::board::Board;
 use crate::console::{self, Console, ConsoleError};
 use virtual_board::virtual_mpu6050::{Chip, Counts, Imperfections, Source, State, Wires};
 
-/// Time-out of the first sample after the board's start, in ms of board time: covers detection, reset and setup.
+/// Time-out of the first sample after the board's start, in ms of the board's time: covers detection, reset and set-up of the
+/// sensor.
 const START_MS: u64 = 1_000;
 /// Header of the output of `imu stream`, and of a log.
 pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
@@ -13,13 +14,13 @@ pub const HEADER: &str = "t_us,ax,ay,az,gx,gy,gz";
 /// Maximum length of a sample's line in bytes.
 const MAX_SAMPLE: usize = 64;
 
-/// An error of a sensor, or of the board that has it.
+/// An error of a sensor or of its board.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The board reports an error, or does not answer.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// No sensor, or a sensor that does not work.
+    /// There is no sensor, or it does not work.
     #[error("no sample within {START_MS} ms of board time: {0}")]
     Failure(String),
     /// The board printed a malformed sample.
@@ -30,7 +31,7 @@ pub enum Error {
 /// Waits for the sensor's first sample; returns the sensor's name.
 ///
 /// # Errors
-/// No sample in time.
+/// No sample arrives in time.
 pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error> {
     const COMMAND: &str = "imu";
     let end = console.board().now_ms() + START_MS;
@@ -50,8 +51,8 @@ pub fn wait<B: Board + ?Sized>(console: &mut Console<B>) -> Result<String, Error
     }
 }
 
-/// Streams the number of samples given by `samples` from the board to `on_sample`. The time of a sample is in µs of board time,
-/// counted from the first sample.
+/// Streams `samples` samples from the board to `on_sample`. The time of a sample is in µs of the board's time since the first
+/// sample.
 ///
 /// # Errors
 /// The sensor or the board fails.
@@ -95,7 +96,7 @@ fn sample(line: &str) -> Option<(u64, [i16; 3], [i16; 3])> {
     Some((stamp.parse().ok()?, [ax, ay, az], [gx, gy, gz]))
 }
 
-/// Result of a calibration. Each array has the values about x, y and z.
+/// Result of a calibration. Each array contains the values about x, y and z.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Calibrated {
     /// Number of averaged samples.
@@ -108,11 +109,10 @@ pub struct Calibrated {
     pub drift_per_hour: [f64; 3],
 }
 
-/// Calibrates the gyroscope with the number of samples given by `samples`. Calls `progress` with the number of samples taken
-/// so far.
+/// Calibrates the gyroscope with `samples` samples. Calls `progress` with the number of samples so far.
 ///
 /// # Errors
-/// The sensor moves or fails, as reported by the firmware.
+/// The firmware reports that the sensor moves or fails.
 pub fn calibrate<B: Board + ?Sized>(
     console: &mut Console<B>,
     samples: u32,
@@ -140,7 +140,7 @@ pub fn calibrate<B: Board + ?Sized>(
     })
 }
 
-/// Three numbers, parsed from a text in which single spaces separate them.
+/// Three numbers, parsed from a text that separates them by single spaces.
 struct Triple([f64; 3]);
 
 impl std::str::FromStr for Triple {
@@ -153,8 +153,8 @@ impl std::str::FromStr for Triple {
     }
 }
 
-/// Returns a sensor to plug into a virtual board. Without a log the sensor is at rest, with typical errors. With a log it gives
-/// the counts of the log, which starts with the board; after the end of the log it repeats the last sample.
+/// Returns a sensor to connect to a virtual board. Without a log the sensor is at rest, with typical errors. With a log it
+/// outputs the counts of the log, which starts with the board; after the end of the log it repeats the last sample.
 #[must_use]
 pub fn virtual_sensor(log: Option<&[Entry]>) -> Wires {
     let source = match log {

@@ -18,12 +18,12 @@ use glint_scene_file::SceneFile;
 /// A renderer that draws frames on a board.
 pub struct BoardRenderer<'b, B: ?Sized = dyn Board> {
     console: Console<'b, B>,
-    /// Number of uploads so far, modulo 256. Each upload has it as session number, so that two successive uploads differ
-    /// in this number.
+    /// Number of uploads so far, modulo 256. It is the session number of each upload, so two successive uploads have different
+    /// numbers.
     uploads: u8,
     backend: Option<Backend>,
     route: Route,
-    /// The scene that is shown instead of the subjects of frames.
+    /// The scene that is drawn instead of the subjects of frames.
     scene: Option<SceneFile>,
 }
 
@@ -39,14 +39,14 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
     }
 
-    /// Sets the backend of all frames from now on, the soft core or the gateware; `None` leaves the choice to the board.
+    /// Sets the backend of all following frames, the soft core or the gateware; `None` leaves the choice to the board.
     #[must_use]
     pub fn with_backend(self, backend: impl Into<Option<Backend>>) -> Self {
         let backend = backend.into();
         Self { backend, ..self }
     }
 
-    /// Shows a scene instead of the subjects of frames, with their cameras and sizes; `None` shows the subjects.
+    /// Draws a scene instead of the subjects of frames, with the frames' cameras and sizes; `None` draws the subjects.
     #[must_use]
     pub fn with_scene(self, scene: Option<SceneFile>) -> Self {
         Self { scene, ..self }
@@ -58,7 +58,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Self { route, ..self }
     }
 
-    /// Sets the backend of all frames from now on, the soft core or the gateware; `None` leaves the choice to the board.
+    /// Sets the backend of all following frames, the soft core or the gateware; `None` leaves the choice to the board.
     pub fn set_backend(&mut self, backend: impl Into<Option<Backend>>) {
         self.backend = backend.into();
     }
@@ -73,11 +73,11 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         &mut self.console
     }
 
-    /// Shows a frame on the board: uploads its meshes if it has some, and waits until the frame is drawn. All objects of a frame
-    /// have the options of the first one.
+    /// Draws a frame on the board: uploads its meshes, if any, and waits until the frame is drawn. All objects of a frame use the
+    /// options of the first object.
     ///
     /// # Errors
-    /// The firmware refuses, or the upload fails.
+    /// The firmware refuses a command, or an upload fails.
     pub fn show(
         &mut self,
         frame: &Frame,
@@ -96,7 +96,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         if let Some(subject) = frame.subject.mesh_part() {
             self.upload(subject.mesh.bytes(), Some(MESH), route, progress)?;
         }
-        // Each mesh is uploaded once.
+        // A mesh of several objects is uploaded once.
         let objects = frame.subject.objects().unwrap_or_default().iter();
         let objects: Vec<&Mesh> = objects.map(|object| &object.subject.mesh).collect();
         let first = |number: usize| {
@@ -116,8 +116,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.redraw()
     }
 
-    /// Shows a scene with camera, quality and size of `frame`, without what moves the camera. Each mesh that is not built into
-    /// the firmware is uploaded.
+    /// Draws a scene with the camera, quality and size of `frame`; commands of the scene that move the camera are left out. Each
+    /// mesh that is not built into the firmware is uploaded.
     fn show_scene(
         &mut self,
         scene: &SceneFile,
@@ -144,8 +144,8 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         self.render_after(&last.iter().map(String::as_str).collect::<Vec<_>>())
     }
 
-    /// Shows a program of the wireframe simulator on the board in a picture of this size, plays a script of keys, one step a frame, and
-    /// draws the last frame again.
+    /// Draws a program of the wireframe simulator on the board in a picture of size `size`, plays a script of keys, one key per
+    /// frame, and draws the last frame again.
     ///
     /// # Errors
     /// The firmware refuses the program or a key, or the upload fails.
@@ -184,7 +184,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         Ok(Rendered { image, stats })
     }
 
-    /// Uploads a mesh under a name, by default `model`, and shows it.
+    /// Uploads a mesh under a name, by default `model`, and draws it.
     ///
     /// # Errors
     /// The upload fails, or the board does not offer `route`.
@@ -208,7 +208,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         )?)
     }
 
-    /// Moves the camera, and waits until the frame from there is drawn.
+    /// Moves the camera, and waits until the frame is drawn.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -234,7 +234,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
             .collect())
     }
 
-    /// Downloads the depth codes of the scene that the board shows.
+    /// Downloads the depth codes of the current scene.
     ///
     /// # Errors
     /// The download fails, or the board does not offer `route`.
@@ -244,7 +244,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         route: Route,
         progress: &mut Progress,
     ) -> Result<Vec<u32>, Error> {
-        // The gateware writes depth codes on request only. Over the serial line, `frame depth` requests them; for a direct read
+        // The gateware writes depth codes only on request. Over the serial line, `frame depth` requests them; for a direct read
         // from memory, `render depth` must request them.
         if route == Route::Memory {
             let lines = self.console.command("stats")?;
@@ -284,7 +284,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
         }
     }
 
-    /// Draws the frame again and reads its statistics.
+    /// Draws the frame again, and reads its statistics.
     ///
     /// # Errors
     /// The firmware refuses the command, or does not answer.
@@ -298,7 +298,7 @@ impl<'b, B: Board + ?Sized> BoardRenderer<'b, B> {
     /// # Errors
     /// The firmware refuses the command, or does not answer.
     pub fn render_after(&mut self, commands: &[&str]) -> Result<Stats, Error> {
-        // The commands are sent in one write, so that the board does not draw the change before `render` arrives.
+        // The commands are sent in one write, so that the board draws no frame before `render` arrives.
         let text = format!("{}\rrender\r", commands.join("\r"));
         self.console.board().write(text.as_bytes())?;
         for command in commands {

@@ -14,17 +14,17 @@ pub fn size_command(size: Size) -> String {
     format!("size {} {}", size.width(), size.height())
 }
 
-/// The console command that sets a view. Its decimals are exact, so that the board reads the same fixed-point numbers.
+/// The console command that sets a camera. Its decimals are exact, so the board reads identical fixed-point numbers.
 pub fn view_command(view: &View) -> String {
     format!("view {view}")
 }
 
-/// The console commands that make a board show a frame, whose mesh the board has under the name `mesh`, and the mesh of each object under
-/// the name that `object` returns for its number. All objects have the options of the first one. A wireframe is the program that the
-/// board has, without its motion.
+/// The console commands that make a board draw a frame; the frame's mesh has the name `mesh` on the board, and the mesh of object
+/// number `n` the name `object(n)`. All objects use the options of the first object. For a wireframe, the commands draw the
+/// board's current program without its motion.
 ///
 /// # Errors
-/// The camera at start is out of range.
+/// The initial camera is out of range.
 pub fn commands(
     frame: &Frame,
     mesh: &str,
@@ -95,7 +95,7 @@ fn scene_of(frame: &Frame, mesh: &str, object: impl Fn(usize) -> String, start: 
     scene
 }
 
-/// The appearance that gives meshes the light and background of a frame.
+/// The appearance with the light and background of a frame's meshes.
 fn appearance(frame: &Frame) -> Appearance {
     let mut appearance = Appearance {
         background: Some(Background::Colour(frame.clear.to_rgb888())),
@@ -103,7 +103,7 @@ fn appearance(frame: &Frame) -> Appearance {
     };
     if frame.lighting != MeshLighting::CAMERA {
         appearance.ambient = Some(frame.lighting.ambient);
-        // The list has room for one light.
+        // The list has space for one light.
         let _ = appearance.lights.push(frame.lighting.light);
     }
     appearance

@@ -1,7 +1,7 @@
-//! Frames rendered by the model in this process, or by a board.
+//! Rendering of frames by the model in this process, or by a board.
 //!
-//! [`Frame`] and the types of its subjects come from the model. The renderers of frames are [`ModelRenderer`] and
-//! [`BoardRenderer`], by the trait [`Renderer`].
+//! The model defines [`Frame`] and the types of its subjects. [`ModelRenderer`] and [`BoardRenderer`] implement the trait
+//! [`Renderer`].
 
 mod board;
 mod commands;

@@ -1,4 +1,4 @@
-//! The bit-exact model as a renderer, in this process and without a board.
+//! A renderer that uses the bit-exact model in this process.
 
 use super::renderer::{Error, Parts, Rendered, Renderer};
 use crate::picture::Image;
@@ -26,7 +26,7 @@ pub fn on_model(frame: &Frame) -> Result<Rendered, Error> {
     Ok(Rendered { image, stats })
 }
 
-/// The picture of one eye or of two.
+/// Renders a picture for one eye or for two eyes.
 fn picture(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
     let Some(eyes) = frame.eyes()? else {
         return picture_of_one(frame);
@@ -48,7 +48,7 @@ fn picture(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
     Ok((image, left + right))
 }
 
-/// The picture of a frame that is drawn as it is.
+/// Renders a frame for one eye.
 fn picture_of_one(frame: &Frame) -> Result<(Image, FrameStats), RenderError> {
     let ([width, height], pixels) = (frame.size.pixels(), frame.size.pixel_count());
     let mut image = Image {
@@ -128,8 +128,8 @@ mod tests {
             image.depth.iter().filter(|&&code| code > 0).count() as u64
         );
     }
-    /// On a sphere, whose faces hide no edge of another front face, each edge of a front face has all its pixels, and edges of back
-    /// faces alone have none, except at the silhouette. At vertices other faces hide up to 4 of 1,352 pixels.
+    /// On a sphere, no face hides an edge of a front face: all pixels of these edges are drawn, and no pixels of edges between
+    /// back faces, except at the silhouette. At vertices, other faces hide up to 4 of 1,352 pixels.
     #[test]
     fn faces_hide_the_edges_behind_them_alone() {
         let model = generate::named("icosphere:6").unwrap();
@@ -143,7 +143,7 @@ mod tests {
                 let constants = frame.constants().unwrap();
                 let setup = constants.mesh().unwrap();
                 let mut scratch = vec![Projected::Behind; frame.scratch_vertices()];
-                // Segments of front faces, and of back faces alone, which need no bias.
+                // Edges of front faces, and edges between back faces, which have no depth bias.
                 let mut segments = [const { Vec::new() }; 2];
                 let mut put = |segment: &Segment| {
                     let is_back = segment.depth == LineDepth::Tested { bias: 0 };
@@ -188,7 +188,8 @@ mod tests {
         assert_eq!(refused, Err(RenderError::Edges { triangles: 80 }));
     }
 
-    /// Frames of edges have the depths of the faces or of edges before them; hidden ones have no other colours than black and white.
+    /// The depths of a frame of edges are the depths of faces or of edges before them; with hidden edges, all colours are black
+    /// or white.
     #[test]
     fn edges_lie_over_the_faces() {
         let model = generate::named("sponge:1").unwrap();

@@ -1,9 +1,9 @@
-//! Remarks on pictures that do not show what was requested.
+//! Warnings about pictures that do not show the requested subject.
 
 use super::{Frame, Stats};
 use glint_model::RenderError;
 
-/// The remarks on a frame with these statistics, each with what to do.
+/// The warnings about a frame with these statistics, each with a remedy.
 ///
 /// # Errors
 /// The frame cannot be drawn.

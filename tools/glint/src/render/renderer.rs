@@ -10,10 +10,10 @@ use glint_model::{Frame, RenderError};
 
 /// A renderer of frames: the model in this process, or a board.
 pub trait Renderer {
-    /// Draws a frame and returns the requested parts of it.
+    /// Draws a frame, and returns its requested parts.
     ///
     /// # Errors
-    /// The frame is beyond the renderer's limits, or the board does not answer.
+    /// The frame exceeds the renderer's limits, or the board does not answer.
     fn render(
         &mut self,
         frame: &Frame,
@@ -40,10 +40,10 @@ pub struct Rendered {
     pub stats: Stats,
 }
 
-/// An error in drawing a frame or in transferring it.
+/// An error of drawing or transferring a frame.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
-    /// A frame beyond the limits of the model.
+    /// A frame that exceeds the limits of the model.
     #[error("{0}")]
     Render(RenderError),
     /// An error of the line to the board.
@@ -52,7 +52,7 @@ pub enum Error {
     /// An error of the board's console.
     #[error(transparent)]
     Console(#[from] ConsoleError),
-    /// A mesh of a scene that cannot be read.
+    /// A mesh of a scene cannot be read.
     #[error(transparent)]
     Input(#[from] InputError),
     /// An error of an upload or a download.

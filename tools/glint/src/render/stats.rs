@@ -6,7 +6,7 @@ use glint_model::FrameStats;
 use serde::de::value::MapDeserializer;
 use serde::{Deserialize, Serialize};
 
-/// Cycles and counts of a frame. The option `--stats` writes them to its file.
+/// Cycles and counts of a frame. The option `--stats` writes this structure to its file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stats {
     /// Number of cycles of the board's clock that the frame took; `None` from the model, which has no clock.
@@ -20,7 +20,7 @@ pub struct Stats {
     /// Counts of the wireframe; `None` for a frame without one.
     #[serde(flatten)]
     pub wireframe: Option<WireframeCounts>,
-    /// Counts of the edges of a mesh; `None` for a frame without them.
+    /// Counts of the edges of a mesh; `None` for a frame without edges.
     #[serde(flatten)]
     pub edges: Option<EdgeCounts>,
     /// Frequency of the board's clock in Hz; `None` from the model.
@@ -28,7 +28,7 @@ pub struct Stats {
     /// The backend of a board: `cpu` or `gateware`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub backend: Option<String>,
-    /// Counters of the triangle engine; empty if it did not draw the frame.
+    /// Counters of the triangle engine; empty if the engine did not draw the frame.
     #[serde(flatten)]
     pub engine: Counters,
 }
@@ -38,18 +38,19 @@ pub struct Stats {
 pub struct TriangleCounts {
     /// Number of triangles in the mesh.
     pub triangles_in: u32,
-    /// Number of triangles that did not reach the walker, which tests the pixels of a triangle.
+    /// Number of triangles that were culled before the walker, which tests the pixels of triangles.
     pub triangles_culled: u32,
     /// Number of triangles that went through the clipper.
     pub triangles_clipped: u32,
     /// Number of triangles that reached the walker.
     pub triangles_drawn: u32,
-    /// Pixels tested by the walker; `None` from the gateware, whose walker tests groups of eight: `cycles_walking` counts those.
+    /// Pixels tested by the walker; `None` from the gateware, whose walker tests groups of eight pixels and counts them in
+    /// `cycles_walking`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels_tested: Option<u64>,
-    /// Pixels covered by triangles, and by lines of edges; a pixel under several of them counts for each.
+    /// Pixels covered by triangles and by lines of edges; a pixel counts once for each of them.
     pub pixels_covered: u64,
-    /// Pixels written; `None` for a mesh in a field, where the gateware does not count the mesh's pixels apart from the field's.
+    /// Pixels written; `None` for a mesh in a field, where the gateware counts the pixels of the mesh and of the field together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pixels_drawn: Option<u64>,
 }
@@ -74,9 +75,9 @@ pub struct RayCounts {
 pub struct WireframeCounts {
     /// Number of segments of the program.
     pub segments: u32,
-    /// Number of segments with a part behind the view plane and within the guard band.
+    /// Number of segments that are partly behind the view plane and within the guard band.
     pub lines: u32,
-    /// Pixels written; a pixel of several lines counts for each of them.
+    /// Pixels written; a pixel on several lines counts once for each line.
     pub line_pixels: u64,
 }
 
@@ -85,7 +86,7 @@ pub struct WireframeCounts {
 pub struct EdgeCounts {
     /// Edges of the mesh.
     pub edges_in: u32,
-    /// Edges with a part in the volume of the frame, which are drawn as lines.
+    /// Edges that are partly in the view volume, which are drawn as lines.
     pub edges_drawn: u32,
 }
 
@@ -97,7 +98,7 @@ impl RayCounts {
 }
 
 impl Stats {
-    /// Returns the counts of the mesh, which are all 0 for a frame without a mesh.
+    /// Returns the counts of the mesh; all counts are 0 for a frame without a mesh.
     pub fn triangles(&self) -> TriangleCounts {
         self.mesh.clone().unwrap_or_default()
     }
@@ -153,7 +154,7 @@ impl From<FrameStats> for Stats {
 /// Reads the statistics of a frame from a reply of the board, in which each line is a key and a value.
 ///
 /// # Errors
-/// [`ConsoleError::Reply`] without the lines of a frame.
+/// [`ConsoleError::Reply`] if lines of the statistics are missing.
 pub fn stats_of(lines: &[String]) -> Result<Stats, ConsoleError> {
     let values = lines
         .iter()

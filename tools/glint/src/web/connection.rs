@@ -10,25 +10,25 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
 use tungstenite::{Bytes, Error, Message, WebSocket};
 
-/// Longest wait for a message from the page, after which the messages for the page are sent.
+/// Longest wait for a message from the page before the messages to the page are sent.
 const LOOK: Duration = Duration::from_millis(4);
 
-/// Limits of a page's silence. Browsers answer a ping without the page's script.
+/// Time limits of a page's silence. A browser answers a ping without the page's script.
 #[derive(Clone, Copy)]
 pub struct Patience {
-    /// Silence after which the page gets a ping.
+    /// Silence after which the server sends a ping.
     pub quiet: Duration,
-    /// Silence after which the connection is closed, so that a page out of reach does not keep control.
+    /// Silence after which the connection is closed, so that an unreachable page does not keep control.
     pub lost: Duration,
 }
 
-/// Limits for a page on a slow network.
+/// Time limits for a page on a slow network.
 pub const PATIENCE: Patience = Patience {
     quiet: Duration::from_secs(10),
     lost: Duration::from_secs(30),
 };
 
-/// Serves a page whose request has been accepted; `rest` was received after the request.
+/// Serves a page whose request has been accepted; `rest` is the data received after the request.
 pub fn serve(
     stream: TcpStream,
     rest: Vec<u8>,
@@ -52,7 +52,7 @@ pub fn serve(
     }
 }
 
-/// Passes messages until the page is closed, or there is a reason to close it.
+/// Exchanges messages until the page is closed, or the server has a reason to close the connection.
 fn exchange(
     socket: &mut WebSocket<TcpStream>,
     viewer: &mut Viewer,
@@ -71,7 +71,7 @@ fn exchange(
             is_done(socket.write(Message::Ping(Bytes::new())))?;
             is_asked = true;
         }
-        // Pictures that come while the last one is on its way replace each other.
+        // While a picture is being sent, a newer picture replaces the waiting one.
         if is_sent {
             let Some(messages) = channels.hub.take(viewer.id()) else {
                 return Ok(Some("the page has fallen behind"));
@@ -117,7 +117,7 @@ fn is_passing(error: &std::io::Error) -> bool {
     )
 }
 
-/// Whether all has been written; false if the page does not take more now.
+/// Whether all bytes were written; false if the page currently accepts no more bytes.
 fn is_done(result: tungstenite::Result<()>) -> tungstenite::Result<bool> {
     match result {
         Ok(()) => Ok(true),
@@ -160,7 +160,7 @@ mod tests {
 
         let stream = open();
         scope(|threads| {
-            // Ends with the stream.
+            // The thread ends when the stream is closed.
             threads.spawn(serve);
             let mut page = WebSocket::from_raw_socket(stream, Role::Client, None);
             let pings = SHORT.lost.as_millis() / SHORT.quiet.as_millis() + 1;

@@ -6,7 +6,8 @@
 //! | [`connection`] | the connection to one open page |
 //! | [`serial`] | the page of a board on a serial port |
 //!
-//! `glint_live_page` has the page, its messages and the session with the board. docs/live-page.md describes the page and the messages.
+//! `glint_live_page` contains the page, its messages and the session with the board. docs/live-page.md describes the page and the
+//! messages.
 
 pub mod connection;
 pub mod serial;

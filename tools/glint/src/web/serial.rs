@@ -8,7 +8,7 @@ use glint_live_page::motion::Motion;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A board on a serial port: its console, and pictures on request.
+/// A board on a serial port, with its console and with pictures on request.
 pub struct LiveSerial(pub SerialBoard);
 
 impl Board for LiveSerial {

@@ -14,24 +14,24 @@ use tungstenite::handshake::machine::TryParse;
 use tungstenite::handshake::server::{Request, create_response, write_response};
 use tungstenite::http::{HeaderMap, HeaderValue, Response, StatusCode, header};
 
-/// Maximum size of the head of a request in bytes.
+/// Maximum size of a request's head in bytes.
 const MAX_HEAD: usize = 8 << 10;
-/// Time-out of the head of a request.
+/// Time-out of receiving a request's head.
 const HEAD_TIME: Duration = Duration::from_secs(5);
 /// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 4 * MAX_VIEWERS;
-/// The file of the page that passes its messages: by a WebSocket to this program.
+/// The page's file that exchanges its messages with this program over a WebSocket.
 const LINK: File = File {
     name: "link.js",
     media: SCRIPT,
     content: include_str!("../../web/link.js"),
 };
 
-/// Media type of errors.
+/// Media type of error replies.
 const TEXT: &str = "text/plain";
 
-/// Header fields of all files: no other page shows this one, and the address, which has the token, stays here. The page itself states
-/// that nothing comes from elsewhere.
+/// Header fields of all files: no other page may frame this page, and the address with the token is not sent to other sites. The
+/// page itself declares that it loads nothing from other sites.
 const HEADER: [(&str, &str); 5] = [
     ("content-security-policy", "frame-ancestors 'none'"),
     ("referrer-policy", "no-referrer"),
@@ -48,7 +48,7 @@ struct Shared {
     connections: AtomicUsize,
 }
 
-/// A server of the live page, which listens already.
+/// A server of the live page that is already listening.
 pub struct Server {
     listener: TcpListener,
     token: String,
@@ -58,7 +58,7 @@ impl Server {
     /// Listens at an address; port 0 selects a free port.
     ///
     /// # Errors
-    /// The address is in use, or does not belong to this machine, or the system has no random numbers.
+    /// The address is in use or does not belong to this machine, or the system provides no random numbers.
     pub fn bind(address: SocketAddr) -> io::Result<Self> {
         let mut token = [0; 16];
         getrandom::fill(&mut token).map_err(io::Error::other)?;
@@ -68,13 +68,13 @@ impl Server {
         })
     }
 
-    /// The address of the page on this machine, with the token that opens it.
+    /// The page's address on this machine, with the access token.
     ///
     /// # Errors
-    /// The system does not tell the port.
+    /// The system does not report the port.
     pub fn url(&self) -> io::Result<String> {
         let mut address = self.listener.local_addr()?;
-        // Not every browser opens an unspecified address.
+        // Some browsers do not open an unspecified address.
         match address.ip() {
             IpAddr::V4(ip) if ip.is_unspecified() => address.set_ip(Ipv4Addr::LOCALHOST.into()),
             IpAddr::V6(ip) if ip.is_unspecified() => address.set_ip(Ipv6Addr::LOCALHOST.into()),
@@ -83,10 +83,10 @@ impl Server {
         Ok(format!("http://{address}/{}/", self.token))
     }
 
-    /// Serves the page of the board `name`, which runs its firmware, until `stop` is set.
+    /// Serves the page of the board `name`, whose firmware is running, until `stop` is set.
     ///
     /// # Errors
-    /// The line to the board is broken.
+    /// The line to the board has failed.
     pub fn run(
         self,
         board: &mut dyn Live,
@@ -102,7 +102,7 @@ impl Server {
         });
         let listener = self.listener;
         let served = Arc::clone(&shared);
-        // The thread ends with the program: it waits in `accept`.
+        // The thread waits in `accept`, and ends with the program.
         std::thread::spawn(move || {
             for stream in listener.incoming().flatten() {
                 accept(stream, &served);
@@ -112,7 +112,7 @@ impl Server {
     }
 }
 
-/// Serves a connection in a thread of its own. Connections above the limit are closed.
+/// Serves a connection in its own thread. Connections above the limit are closed.
 fn accept(stream: TcpStream, shared: &Arc<Shared>) {
     if shared.connections.fetch_add(1, Ordering::Relaxed) >= MAX_CONNECTIONS {
         shared.connections.fetch_sub(1, Ordering::Relaxed);
@@ -120,22 +120,22 @@ fn accept(stream: TcpStream, shared: &Arc<Shared>) {
     }
     let shared = Arc::clone(shared);
     std::thread::spawn(move || {
-        // An error concerns this connection only, which is closed.
+        // An error concerns only this connection, which is closed.
         let _ = serve(stream, &shared);
         shared.connections.fetch_sub(1, Ordering::Relaxed);
     });
 }
 
-/// A request that is refused: the status, and the reason with what was expected.
+/// A rejected request: the status, and the reason with the expected value.
 #[derive(Debug, PartialEq, Eq)]
 struct Refused(StatusCode, &'static str);
 
-/// The answer to a request.
+/// The reply to a request.
 #[derive(Debug, PartialEq, Eq)]
 enum Answer {
     /// A file of the page.
     File(File),
-    /// The connection of a viewer.
+    /// A WebSocket connection of a viewer.
     Socket,
 }
 
@@ -229,15 +229,15 @@ fn answer(request: &Request, address: SocketAddr, token: &str) -> Result<Answer,
         .ok_or(Refused(StatusCode::NOT_FOUND, "no such file"))
 }
 
-/// The value of a header field that occurs once.
+/// The value of a header field that occurs exactly once.
 fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<&str> {
     let mut values = headers.get_all(name).iter();
     let value = values.next()?.to_str().ok()?;
     values.next().is_none().then_some(value)
 }
 
-/// Whether a browser that was given the server's address sends `host`: this port, and `localhost` or an IP address. Another name may
-/// have been made to point here by another page.
+/// Whether `host` is valid for the server's address: this port, and `localhost` or an IP address. Another name may be a domain of
+/// a foreign page that resolves to this machine (DNS rebinding).
 fn is_host(host: &str, address: SocketAddr) -> bool {
     let (name, port) = match host.rsplit_once(':') {
         Some((name, port)) if !port.ends_with(']') => (name, port.parse().ok()),
@@ -250,7 +250,7 @@ fn is_host(host: &str, address: SocketAddr) -> bool {
     port == Some(address.port()) && (name == "localhost" || is_number)
 }
 
-/// Compares in a time that does not depend on the first difference.
+/// Compares in constant time: the time does not depend on the position of the first difference.
 fn is_token(found: &str, token: &str) -> bool {
     let differences = found
         .bytes()
@@ -275,7 +275,7 @@ fn write_file(
     }
     write_response(&mut *stream, &response)?;
     stream.write_all(content.as_bytes())?;
-    // Reads the rest of the request, so that the system does not drop the answer.
+    // Reads the rest of the request, so that the system does not drop the reply.
     stream.shutdown(std::net::Shutdown::Write)?;
     let mut rest = [0; 4096];
     for _ in 0..MAX_CONNECTIONS {

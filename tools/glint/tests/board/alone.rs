@@ -1,16 +1,16 @@
-//! Tests of a board that runs alone: the demo, and buttons, switches, LEDs and digits.
+//! Tests of a board without a host: the demo, buttons, switches, LEDs and digits.
 
 use glint::board::{EmulatedBoard, built_firmware};
 use glint_core::console::PROMPT;
 use glint_core::demo::TURN_MS;
 use glint_core::digits::Display;
 
-/// Cycles within which a command is done.
+/// Maximum number of cycles of a command.
 pub const LIMIT: u64 = 60_000_000;
 
 /// Number of cycles per millisecond.
 pub const MS: u64 = 81_250;
-/// Time in which the digits and LEDs follow: they change every half second.
+/// Time after which digits and LEDs show a new state; they change every half second.
 pub const PANEL: u64 = 600 * MS;
 
 /// The built-in list.
@@ -22,20 +22,20 @@ const SCENES: [&str; 5] = [
     "cubes",
 ];
 
-/// A board that has started without a list in its flash.
+/// A started board without a list of scenes in its flash.
 fn started() -> EmulatedBoard {
     let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
     board.read_until(PROMPT, LIMIT).unwrap();
     board
 }
 
-/// Sends a line and returns the output up to the next prompt, echo first.
+/// Sends a line, and returns the output up to the next prompt, including the echo.
 pub fn command(board: &mut EmulatedBoard, line: &str) -> String {
     board.uart_write(format!("{line}\r").as_bytes());
     board.read_until(PROMPT, LIMIT).unwrap()
 }
 
-/// Presses a button, long enough to count.
+/// Presses a button for long enough to be registered.
 pub fn press(board: &mut EmulatedBoard, button: u8) {
     board.set_buttons(1 << button);
     board.run(40 * MS);
@@ -43,7 +43,7 @@ pub fn press(board: &mut EmulatedBoard, button: u8) {
     board.run(40 * MS);
 }
 
-/// The scene of the demo, from 1, and the whole answer of `demo`.
+/// The number of the demo's current scene, from 1, and the whole reply to `demo`.
 pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     let answer = command(board, "demo");
     let line = answer.lines().find_map(|line| line.strip_prefix("scene "));
@@ -51,12 +51,12 @@ pub fn turn(board: &mut EmulatedBoard) -> (usize, String) {
     (number.unwrap_or_else(|| panic!("{answer}")), answer)
 }
 
-/// Content of the digits at the right.
+/// Content of the four digits on the right.
 pub fn right(board: &EmulatedBoard) -> [u8; 4] {
     *board.digits().last_chunk().expect("eight digits")
 }
 
-/// A board with the built-in demo, whose first scene is shown.
+/// A board that shows the first scene of the built-in demo.
 fn alone() -> EmulatedBoard {
     let mut board = started();
     command(&mut board, "demo on");
@@ -141,7 +141,7 @@ fn buttons_choose_scenes_and_hold_them() {
     assert_eq!(turn(&mut board).0, 5);
     press(&mut board, 1);
     assert_eq!(turn(&mut board).0, 4, "a held demo moves by buttons");
-    // The motion sensor steers the camera here, so button 2 calibrates it.
+    // The motion sensor steers the camera in this scene, so button 2 calibrates it.
     press(&mut board, 2);
     assert!(turn(&mut board).1.contains("demo held\r\n"));
     command(&mut board, "demo run");
@@ -162,7 +162,7 @@ fn switches_turn_the_overlay_on_and_give_the_buttons_to_the_scene() {
     board.run(100 * MS);
     assert!(command(&mut board, "overlay").contains("overlay off\r\n"));
     assert!(turn(&mut board).1.contains("demo held\r\n"));
-    // Button 0 is the key up of the wireframe.
+    // Button 0 is the key `up` of the wireframe.
     let before = board.capture();
     press(&mut board, 0);
     board.run(100 * MS);

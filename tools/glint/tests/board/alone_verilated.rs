@@ -1,5 +1,5 @@
-//! Power-up of the verilated board from its SPI flash. The test takes minutes on one core: it has a file whose name makes it start first,
-//! so that it runs beside the others.
+//! Power-up of the verilated board from its SPI flash. The test takes minutes on one core: its file name makes it start first, in
+//! parallel with the other tests.
 
 use crate::power_up::read_until;
 use glint::board::{self, SimulatedBoard, Simulation, built_firmware};
@@ -7,10 +7,10 @@ use glint::console::Console;
 use glint::image;
 use virtual_board::virtual_flash::Flash;
 
-/// Number of cycles in which a serial line of 115,200 baud sends a byte, of which the virtual board's needs one.
+/// Number of cycles of a byte on a serial line at 115,200 baud; on the virtual board a byte takes one cycle.
 const BYTE: u64 = 7053;
 
-/// The next picture on the monitor, 640×360 pixels, that is not black.
+/// Returns the next picture of 640×360 pixels on the monitor that is not black.
 fn picture(board: &mut SimulatedBoard) -> Vec<u16> {
     loop {
         let picture = board.inner().monitor_frame(2).unwrap();
@@ -20,8 +20,8 @@ fn picture(board: &mut SimulatedBoard) -> Vec<u16> {
     }
 }
 
-/// The SoC reads the flash by its pins here, and the BIOS trains and tests the memory. Without a host the board shows its first scene
-/// within a second, and a button chooses the next one.
+/// The SoC reads the flash through its pins, and the BIOS trains and tests the memory. Without a host, the board shows its first
+/// scene within a second, and a button selects the next scene.
 #[test]
 fn the_verilated_board_runs_alone_from_its_flash() {
     let scenes = ["cubes", "wireframe"].map(|name| glint_scene_file::built_in(name).unwrap());
@@ -48,6 +48,6 @@ fn the_verilated_board_runs_alone_from_its_flash() {
     let mut console = Console::new(&mut board);
     let state = console.command("demo").unwrap();
     assert_eq!(state, ["demo on", "scene 2 of 2 wireframe"]);
-    // An error of the command fails the test.
+    // An error of the command makes the test fail.
     console.command("selftest").unwrap();
 }

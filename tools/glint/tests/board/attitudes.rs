@@ -1,4 +1,4 @@
-//! Attitudes of logs by the board and by the model are equal, bit for bit.
+//! Tests that the attitudes of logs from the board and from the model are bit-identical.
 
 use crate::common::{console, emulator, mesh, running_board};
 use glint::fuzz::Random;
@@ -9,8 +9,8 @@ use glint::transfer;
 use glint_core::calibration::Units;
 use glint_core::orientation::Counts;
 
-/// A log with every kind of event: rest, tumbling, coning, saturation of both sensors, shocks, and time stamps with jitter, repeats,
-/// steps backwards and a gap.
+/// A log with events of every kind: rest, tumbling, coning, saturation of both sensors, shocks, and time stamps with jitter,
+/// repetitions, backward steps and a gap.
 fn eventful_log(samples: usize) -> Vec<Entry> {
     let mut random = Random::new(1, 0);
     let mut t_us = 4_294_000_000;
@@ -73,7 +73,7 @@ const MOVING: Options = Options {
     ..EVERYTHING
 };
 
-/// Replays a log by the model and, over `route`, by the board; checks that the attitudes are equal.
+/// Replays a log on the model and, over `route`, on the board; checks that the attitudes are equal.
 fn replayed_by_both(entries: &[Entry], options: &Options, route: Route) -> [Replayed; 2] {
     let prepared = replay::prepare(entries, options).unwrap();
     let mut board = emulator();
@@ -111,7 +111,7 @@ fn attitudes_of_a_log_are_the_models() {
         rejected,
     } = board.counts;
     println!("{:?}, {:?} cycles a sample", board.counts, board.cycles);
-    // The log has more than 50 samples of each of these kinds, and one gap, so every counter is tested.
+    // The log contains more than 50 samples of each of these kinds, and one gap, so every counter is tested.
     assert!([stale, saturated, rejected].iter().all(|&count| count > 50));
     assert!(steps > 4_000 && gaps == 1);
 }

@@ -1,5 +1,5 @@
-//! Frames by the gateware on the virtual board and by the engines of the emulated board: pictures, depths, the place of a
-//! hand and the counts that have an exact meaning are equal.
+//! Compares frames of the gateware on the virtual board with frames of the emulated board's engines: pictures, depths, the
+//! position of a hand and the exact counts are equal.
 
 use crate::common::{
     ALL_PARTS, console, emulator, mesh, plain, renderer, running_board, two_objects,
@@ -16,7 +16,7 @@ use glint_core::quality::Quality;
 use glint_core::stereo::Stereo;
 use virtual_board::virtual_image_sensor::{Hand, Scene};
 
-/// The frames, each with its name, by a board.
+/// Renders the named frames on a board.
 fn drawn<S: Simulation>(mut board: SimulatedBoard<S>, frames: &[(&str, Frame)]) -> Vec<Rendered> {
     let mut renderer = renderer(&mut board);
     let render = |(name, frame): &(&str, Frame)| {
@@ -66,8 +66,8 @@ fn both_boards_draw_the_same() {
         assert!(found.image == expected.image, "{name}");
         let counts = |rendered: &Rendered| {
             let stats = &rendered.stats;
-            // The engine writes what can differ from the previous frames, and how many frames there are while objects are added one
-            // by one depends on the speed of the board.
+            // The engine writes the words that can differ from the previous frames, and the number of frames drawn while objects
+            // are added depends on the speed of the board.
             let exact = if matches!(frame.subject, Subject::Objects(_)) {
                 &["vertices", "groups"][..]
             } else {
@@ -82,7 +82,7 @@ fn both_boards_draw_the_same() {
             (stats.backend.clone(), stats.mesh.clone(), others, engine)
         };
         assert_eq!(counts(found), counts(expected), "{name}");
-        // The cycles are an estimate.
+        // The cycles of the emulated board are an estimate.
         let [found, expected] = [found, expected].map(|rendered| rendered.stats.cycles.unwrap());
         assert!(
             (expected / 5..2 * expected).contains(&found),
@@ -91,7 +91,7 @@ fn both_boards_draw_the_same() {
     }
 }
 
-/// Statistics of a hand that rests in front of an image sensor without noise.
+/// Statistics of a resting hand in front of an image sensor without noise.
 fn found<S: Simulation>(mut board: SimulatedBoard<S>) -> [String; 3] {
     let hand = Hand {
         centre: [150.0, 110.0],

@@ -1,4 +1,4 @@
-//! A board with a console, and the queries that the tests share.
+//! A board with a console, and helpers that the tests share.
 
 use glint::board::{self, Board, EmulatedBoard, SimulatedBoard, Simulation, built_firmware};
 use glint::console::{Console, value};
@@ -17,7 +17,7 @@ use glint_model::{Object, Placement};
 use std::io::Write;
 use std::process::{Command, Output, Stdio};
 
-/// Milliseconds of board time without output after which the firmware counts as failed.
+/// Milliseconds of the board's time without output after which the firmware counts as failed.
 const PATIENCE_MS: u64 = 2000;
 
 /// A virtual board that starts with the built firmware in its memory.
@@ -30,14 +30,14 @@ pub fn emulator() -> SimulatedBoard<EmulatedBoard> {
     board::emulated(&built_firmware(None).unwrap()).unwrap()
 }
 
-/// The console of a board that has just started.
+/// The console of a newly started board.
 pub fn console<S: Simulation>(board: &mut SimulatedBoard<S>) -> Console<'_, SimulatedBoard<S>> {
     let mut console = Console::new(board).patience(PATIENCE_MS);
     console.greet().unwrap();
     console
 }
 
-/// A renderer by direct access to the memory of a board that has just started.
+/// A renderer on a newly started board, with direct access to its memory.
 pub fn renderer<S: Simulation>(
     board: &mut SimulatedBoard<S>,
 ) -> BoardRenderer<'_, SimulatedBoard<S>> {
@@ -50,8 +50,8 @@ pub const ALL_PARTS: Parts = Parts {
     depth: true,
 };
 
-/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns what the board has drawn, and the
-/// model.
+/// Draws a frame on a board and by the model, and checks that colours and depths are equal. Returns the board's and the model's
+/// result.
 pub fn drawn_alike(renderer: &mut impl Renderer, frame: &Frame, name: &str) -> [Rendered; 2] {
     let expected = render::on_model(frame).unwrap();
     let found = renderer.render(frame, ALL_PARTS, &mut |_, _| {}).unwrap();
@@ -68,7 +68,7 @@ pub fn plain(mesh: &[u8]) -> MeshSubject<'_> {
     MeshSubject::new(Mesh::new_checked(mesh).unwrap())
 }
 
-/// An object of a mesh at a place.
+/// An object with a mesh and a placement.
 pub fn object<'m>(mesh: &'m [u8], place: &str) -> Object<'m> {
     let place = Place::parse(&mut Words::new(place)).unwrap();
     Object {
@@ -78,7 +78,7 @@ pub fn object<'m>(mesh: &'m [u8], place: &str) -> Object<'m> {
     }
 }
 
-/// Two objects of a mesh that overlap, one of them mirrored and with a colour.
+/// Two overlapping objects of a mesh; one of them is mirrored and coloured.
 pub fn two_objects(mesh: &[u8]) -> [Object<'_>; 2] {
     [
         "scale 0.7 rotate x 20 rotate z 50 move -0.4,0.2,-0.1",
@@ -87,7 +87,7 @@ pub fn two_objects(mesh: &[u8]) -> [Object<'_>; 2] {
     .map(|place| object(mesh, place))
 }
 
-/// Runs a program to its end, with a text on its standard input.
+/// Runs a program to its end with a text on its standard input.
 pub fn piped(program: &mut Command, input: &str) -> Output {
     let mut child = program
         .stdin(Stdio::piped())
@@ -101,7 +101,7 @@ pub fn piped(program: &mut Command, input: &str) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// Bytes of a board's memory.
+/// Reads bytes of a board's memory.
 pub fn read(console: &mut Console<impl Board>, address: u32, length: usize) -> Vec<u8> {
     let mut bytes = vec![0; length];
     let memory = console.board().memory().unwrap();
@@ -109,13 +109,13 @@ pub fn read(console: &mut Console<impl Board>, address: u32, length: usize) -> V
     bytes
 }
 
-/// A frame of a mesh, seen from the camera `R,THETA,PHI`.
+/// A frame of a mesh from the camera `R,THETA,PHI`.
 pub fn mesh_frame<'m>(mesh: &'m [u8], camera: &str, size: Size) -> Frame<'m> {
     let mesh = Mesh::new_checked(mesh).unwrap();
     Frame::new(Subject::mesh(mesh), view::spherical(camera).unwrap(), size)
 }
 
-/// Begins an upload, and leaves it in the middle of a frame, as a program that is killed.
+/// Begins an upload, and stops in the middle of a frame, like a killed program.
 pub fn begin_upload<B: Board>(console: &mut Console<B>, mesh: &[u8]) {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let command = format!("load {length} {crc32:08x}");
@@ -149,7 +149,7 @@ pub fn mesh(name: &str) -> Vec<u8> {
         .0
 }
 
-/// The statistics without cycles, clock, backend and engine counters, which the model does not have.
+/// The statistics without cycles, clock, backend and engine counters, which the model does not provide.
 pub fn timeless(stats: Stats) -> Stats {
     Stats {
         cycles: None,

@@ -1,4 +1,4 @@
-//! Conversations with a board that an earlier program has left in the middle of something.
+//! Tests of a console on a board that an earlier program has left in an intermediate state.
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
 use glint::board::{Board, EmulatedBoard, SimulatedBoard};
@@ -19,7 +19,7 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     let mut board = emulator();
     console(&mut board).command("size 320 180").unwrap();
 
-    // The reply to a command of an earlier program comes late: its `ok` is not that of the upload.
+    // The reply to an earlier program's command comes late: its `ok` is not the reply to the upload.
     board.write(b"\0orbit 3600\r").unwrap();
     board.read(&mut Vec::new(), 1).unwrap();
     let start = board.now_ms();
@@ -28,7 +28,7 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     let took = board.now_ms() - start;
     assert!(took < 500, "{took} ms");
 
-    // A killed upload: the old model stays, and the next upload works.
+    // After a killed upload, the board keeps the old model, and the next upload succeeds.
     begin_upload(&mut again(&mut board), &large);
     let start = board.now_ms();
     let mut console = again(&mut board);
@@ -37,10 +37,10 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
     transfer::upload(&mut console, &large, None, 2, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 320);
 
-    // The same data again: the board has them, and says so.
+    // A second upload of the data: the board already has them, and skips the transfer.
     transfer::upload(&mut console, &large, None, 3, quiet).unwrap();
 
-    // Transfers that were begun by hand: a key ends them, and a program does.
+    // Transfers that a user began on the console: a key cancels them, and so does a program.
     for command in ["load 100 0", "frame"] {
         board.write(format!("{command}\r").as_bytes()).unwrap();
         let mut said = Vec::new();
@@ -59,12 +59,12 @@ fn a_new_conversation_begins_at_once_and_believes_its_own_replies_only() {
         assert_eq!(triangles, 320);
     }
 
-    // Noise of an earlier program: a hundred lines, each of which is refused.
+    // Noise of an earlier program: a hundred lines that the board refuses.
     board.write(&b"\xff?x\r".repeat(100)).unwrap();
     let triangles = info::<u32>(&mut again(&mut board), "triangles");
     assert_eq!(triangles, 320);
 
-    // A command that starts a transfer is not a command with a reply, and leaves no transfer.
+    // A command that starts a transfer is an error where a reply is expected, and leaves no transfer open.
     let mut console = again(&mut board);
     let refused = console.command("load 100 0").unwrap_err();
     assert!(matches!(refused, ConsoleError::Reply { .. }), "{refused}");

@@ -1,4 +1,5 @@
-//! The edges of meshes on the emulated board: segments by the soft core, lines by the line engine, drawn as the model draws them.
+//! The edges of meshes on the emulated board: the soft core makes segments, the line engine draws lines, and the results equal
+//! the model's.
 
 use crate::common::{console, drawn_alike, emulator, mesh, plain, renderer};
 use glint::render::{Frame, MeshSubject, Subject};
@@ -17,8 +18,8 @@ fn reversed(mesh: &[u8]) -> Vec<u8> {
     before.iter().chain(records.flatten()).copied().collect()
 }
 
-/// Hidden edges and edges over the faces: whole triangles, clipped ones (which the soft core appends to the lists of the others), and
-/// triangles that it sets up all.
+/// Hidden edges and edges over the faces, with unclipped triangles, clipped triangles (which the soft core appends to the band
+/// lists), and triangles set up by the soft core.
 #[test]
 fn edges_are_the_models() {
     let [sphere, sponge] = ["icosphere:2", "sponge:1"].map(mesh);
@@ -41,7 +42,8 @@ fn edges_are_the_models() {
     let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
     let cases = [
         (plain(&sphere), outside, hidden, gateware),
-        // Without edges the board keeps the list of the previous mesh. The next mesh is loaded at the same address.
+        // Without edges the board keeps the list of the previous mesh. The next mesh is loaded at the same address as the
+        // previous mesh.
         (plain(&sphere), outside, None, gateware),
         (plain(&other), outside, hidden, gateware),
         (plain(&sponge), inside, over, gateware),
@@ -72,7 +74,7 @@ fn edges_are_the_models() {
     }
 }
 
-/// A mesh that is shown alone has edges. All else refuses them, and sets them off.
+/// Only a mesh that is drawn alone has edges. Other subjects refuse edges, and turn them off.
 #[test]
 fn a_mesh_alone_has_edges() {
     let mut board = emulator();

@@ -21,14 +21,14 @@ fn a_field_by_the_cpu_is_the_models() {
     a_field_by(Backend::Cpu, "cpu");
 }
 
-/// Compares the first two lines of a frame, a cube with a box through it, with the model's while the soft core draws the rest.
+/// Compares the first two lines of a frame, a cube that a box intersects, with the model's while the soft core draws the rest.
 #[test]
 fn the_cpu_draws_a_mesh_in_a_field() {
     const PIXELS: usize = 2 * 320;
     // A fill value that is neither a colour nor a depth of this scene.
     const UNTOUCHED: [u8; 4] = 0xA5A5_A5A5_u32.to_le_bytes();
     let mesh = mesh("cube");
-    // The camera looks down, so that the cube and the box both appear at the top of the picture.
+    // The camera looks down, so that the cube and the box both reach the top of the picture.
     let eye = r#"{"eye":[0,-6,0],"u":[1,0,0],"v":[0,-0.6,-0.8],"n":[0,0.8,-0.6],"half_width":1.4,"near":0.1}"#;
     let field = FieldSubject {
         field: &Field::parse("box:3,0.2,0.4").unwrap(),
@@ -60,8 +60,8 @@ fn the_cpu_draws_a_mesh_in_a_field() {
     renderer
         .upload(&mesh, None, Route::Memory, &mut |_, _| {})
         .unwrap();
-    // Frames alternate between two frame buffers. `colour` and `depth` are the addresses of this frame; after one `render` the
-    // next frame is drawn there again.
+    // Frames alternate between two frame buffers. `colour` and `depth` are addresses in the current buffer; after one `render`,
+    // the next frame is drawn into this buffer again.
     renderer.redraw().unwrap();
     let console = renderer.console();
     let [colour, depth] = ["frame", "depth"].map(|key| address(console, key));
@@ -74,14 +74,14 @@ fn the_cpu_draws_a_mesh_in_a_field() {
             .write_memory(place, &UNTOUCHED.repeat(PIXELS))
             .unwrap();
     }
-    // The commands are sent in one write, so that no frame starts between two of them.
+    // The commands are sent in one write, so that no frame starts between two commands.
     let text: String = lines.iter().map(|line| format!("{line}\r")).collect();
     console.board().write(text.as_bytes()).unwrap();
     for line in &lines {
         console.reply(line).unwrap();
     }
-    // The soft core clears the frame to black first, and no visible surface is black. So the lines are drawn when the last pixel
-    // has neither black nor the fill value.
+    // The soft core clears the frame to black first, and no visible surface is black. The lines are complete when the last pixel
+    // is neither black nor the fill value.
     let mut waited = 0;
     loop {
         let drawn = read(console, colour, 2 * PIXELS);
@@ -93,13 +93,13 @@ fn the_cpu_draws_a_mesh_in_a_field() {
         assert!(waited < 200, "the frame is not drawn");
         console.board().read(&mut Vec::new(), 1).unwrap();
     }
-    // The last pixel is left out, because its depth may not be written yet.
+    // The last pixel is not compared, because its depth may not have been written yet.
     let before = PIXELS - 1;
     assert!(read(console, colour, 2 * before) == colours[..2 * before]);
     assert!(read(console, depth, 4 * before) == depths[..4 * before]);
 }
 
-/// Draws a small, distant box by `backend`, and compares colours, depths and counts with the model's.
+/// Draws a small, distant box with `backend`, and compares colours, depths and counts with the model's.
 fn a_field_by(backend: Backend, name: &str) {
     let mut board = emulator();
     let mut renderer = renderer(&mut board).with_backend(backend);
@@ -120,7 +120,7 @@ fn a_field_by(backend: Backend, name: &str) {
 
     let shown = renderer.console().command("info scene").unwrap();
     assert_eq!(shown, ["scene box:0.5,0.5,0.25"]);
-    // Without the field the board draws the mesh again, for which the eye is too far from the origin.
+    // Without the field, the board draws the mesh again, and the eye is too far from the origin for a mesh.
     renderer.console().command("field off").unwrap();
     let error = renderer.redraw().unwrap_err().to_string();
     assert!(

@@ -1,4 +1,4 @@
-//! Tests of a board whose flash has scenes, lists and meshes.
+//! Tests of a board with scenes, lists and meshes in its flash.
 
 use crate::alone::{LIMIT, MS, PANEL, command, press, right, turn};
 use crate::common::mesh;
@@ -13,7 +13,7 @@ use glint_core::flash::{CONTENTS, Kind, Piece, encode};
 use glint_scene_file::SceneFile;
 use virtual_board::virtual_flash::Flash;
 
-/// A scene that shows a mesh of the flash.
+/// A scene with a mesh from the flash.
 const LAMP: &str = "title = \"A lamp\"\nmodel = \"icosphere:2\"\ncamera = \"3 10 70\"\n";
 
 fn piece(kind: Kind, name: &str, bytes: impl Into<Vec<u8>>) -> Piece {
@@ -25,7 +25,7 @@ fn flash(pieces: &[Piece]) -> Vec<u8> {
     encode(&[], &[0x13; 32], pieces).unwrap()
 }
 
-/// A board with these bytes in its flash that has just started, and its output.
+/// A newly started board with these bytes in its flash, and its output.
 fn powered_up(flash: Vec<u8>, prepare: impl FnOnce(&mut EmulatedBoard)) -> (EmulatedBoard, String) {
     let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
     board.plug_flash(Flash::new(flash));
@@ -42,7 +42,7 @@ fn is_black(board: &mut EmulatedBoard) -> bool {
     board.capture().pixels.iter().all(|colour| *colour == 0)
 }
 
-/// Position of an item's bytes.
+/// Offset of an item's bytes.
 fn place(flash: &[u8], name: &str) -> usize {
     let image = glint_core::flash::Image::new_checked(flash).unwrap();
     let mut items = image.contents.items();
@@ -56,7 +56,7 @@ fn a_board_with_a_list_runs_alone() {
     let pieces = image::pieces(&scenes).unwrap();
     let flash = image::make(&[], &[0x13; 32], &pieces).unwrap();
     let (mut board, said) = powered_up(flash, |_| ());
-    // The host has not sent a byte yet.
+    // The host has not sent any bytes yet.
     assert!(!said.contains("error"), "{said}");
     assert_eq!(right(&board), Display::number(1).digits());
     assert_eq!(board.leds() & !1, 1 << 4 | 0b10);
@@ -146,7 +146,8 @@ fn without_a_list_the_board_starts_as_without_a_flash() {
     }
 }
 
-/// Starts a board with a damaged flash: it prints the error once, shows its number, and the built-in demo runs.
+/// Starts a board with a damaged flash: the board prints the error once, shows its number on the digits, and runs the built-in
+/// demo.
 fn runs_the_built_in_demo(flash: Vec<u8>, number: u8, error: &str) {
     let (mut board, said) = powered_up(flash, |_| ());
     let line = format!("demo: error {number}: {error}");
@@ -183,14 +184,14 @@ fn the_built_in_demo_runs_without_valid_contents() {
     let start = place(&valid, "start");
     item[start] ^= 1;
     runs_the_built_in_demo(item, 2, "start: flash byte ");
-    // A write of the flash that was interrupted.
+    // An interrupted write of the flash.
     let mut cut = valid;
     cut.truncate(start);
     runs_the_built_in_demo(cut, 2, "start: flash byte ");
 }
 
-/// A board with the scenes `good`, `bad` and `good`: at the turn of the second one it prints the error, shows its number, and keeps the
-/// picture before.
+/// A board with the scenes `good`, `bad` and `good`: at the second scene it prints the error, shows its number on the digits, and
+/// keeps the previous picture.
 fn keeps_the_scene(pieces: &[Piece], blocks: u32, number: u8, error: &str) {
     let mut all = vec![
         piece(Kind::Scene, "good", "size 320 180\nfield menger:1\n"),
@@ -289,12 +290,12 @@ fn the_console_answers_beside_an_error() {
     );
 }
 
-/// Damaged contents of any kind leave the console and the demo running.
+/// With damaged contents of any kind, the console and the demo continue to run.
 #[test]
 fn a_board_with_mutated_contents_answers() {
     let inputs = Inputs::new(Target::Flash, 0xa10e);
     let mut alone = 0;
-    // An error of the demo may come before the reply, with a prompt of its own.
+    // An error of the demo may precede the reply, with its own prompt.
     let reply = |board: &mut EmulatedBoard, line: &str| {
         board.uart_write(format!("{line}\r").as_bytes());
         board.read_until("ok\r\nglint> ", LIMIT).unwrap()
@@ -313,7 +314,7 @@ fn a_board_with_mutated_contents_answers() {
     assert!((30..57).contains(&alone), "{alone} boards run alone");
 }
 
-/// The first picture is that of the first scene, and comes with the fourth vertical blanking at the latest.
+/// The first picture shows the first scene, and appears at the fourth vertical blanking at the latest.
 #[test]
 fn the_first_picture_is_the_first_scene() {
     for name in [

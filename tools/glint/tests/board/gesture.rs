@@ -1,5 +1,5 @@
-//! A hand in front of the virtual image sensor steers the camera of the scene: the whole path from the pins of the sensor's port over the
-//! gesture engine, the firmware and the triangle engine to the monitor.
+//! A hand in front of the virtual image sensor steers the camera of the scene; covers the whole path from the pins of the
+//! sensor's port through the gesture engine, the firmware and the triangle engine to the monitor.
 
 use crate::common::{console, emulator, mesh};
 use glint::board::{EmulatedBoard, SimulatedBoard, Simulation};
@@ -21,10 +21,10 @@ const MS: u64 = 81_250;
 const SIZE: [usize; 2] = [320, 240];
 const COMMAND: &str = "gesture";
 
-/// Where the hand was in each camera frame.
+/// The hand's position in each camera frame.
 type Path = Arc<Mutex<Vec<Hand>>>;
 
-/// The view of an image sensor, as set by a test: hands and the brightness of the light.
+/// The scene in front of an image sensor, set by a test: hands and the brightness of the light.
 #[derive(Clone)]
 struct View(Arc<Mutex<(Vec<Hand>, f64)>>);
 
@@ -38,7 +38,7 @@ impl View {
         *self.0.lock().unwrap() = (hands.to_vec(), light);
     }
 
-    /// A source of frames with the noise of a sensor.
+    /// A source of frames with sensor noise.
     fn scene(&self) -> Scene {
         let [hands, light] = [self.clone(), self.clone()];
         let mut scene = Scene::new(SIZE, move |_| hands.0.lock().unwrap().0.clone());
@@ -48,7 +48,8 @@ impl View {
     }
 }
 
-/// An image sensor that sees a hand on a path over the time in s, with the noise of a sensor and a face beside the hand.
+/// A scene with a hand at a position that depends on the time in s, sensor noise and a face beside the hand; the path records the
+/// hand of each frame.
 fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     let path = Path::default();
     let seen = path.clone();
@@ -61,8 +62,8 @@ fn sensor_with(hand: impl Fn(f64) -> Hand + Send + 'static) -> (Scene, Path) {
     (scene, path)
 }
 
-/// A hand in the middle of the frame, where the camera is at first. From `begin` on it goes along a figure eight, 0.3 s a round, and
-/// becomes larger and smaller.
+/// A hand in the middle of the frame, which corresponds to the initial camera. From `begin` on the hand moves along a figure
+/// eight, one round in 0.3 s, and becomes larger and smaller.
 fn figure_eight(time: f64, begin: f64) -> Hand {
     let turns = std::f64::consts::TAU * (time - begin).max(0.0) / 0.3;
     let width = 0.25 + 0.05 * turns.sin();
@@ -75,7 +76,7 @@ fn figure_eight(time: f64, begin: f64) -> Hand {
     }
 }
 
-/// Azimuth and polar angle in degrees, and the distance, at which a hand puts the camera.
+/// The camera's distance, and its azimuth and polar angle in degrees, for a hand.
 fn target(place: &Hand) -> [f64; 3] {
     let [x, y] = place.centre;
     let width = (place.area / (320.0 * 240.0)).sqrt();
@@ -103,19 +104,20 @@ fn run(console: &mut Console<SimulatedBoard<EmulatedBoard>>, milliseconds: u64) 
     console.board().inner().run(milliseconds * MS);
 }
 
-/// Largest error of the hand's centre in pixels, and of the camera's angles in degrees and its distance while the hand moves the
-/// camera at up to four turns per second: the lag of the filters, after one camera frame.
+/// Maximum error of the hand's centre in pixels, of the camera's angles in degrees, and of its distance, while the hand moves the
+/// camera at up to four turns per second: the lag of the filters after one camera frame.
 const MOST: [f64; 3] = [0.3, 8.0, 0.2];
-/// The same bound for the first 16 ms, in which the hand starts at full speed: the region of a hand at rest cuts it in a frame.
+/// Maximum error of the hand's centre in the first 16 ms, in which the hand starts at full speed: the region of a hand at rest
+/// clips the hand in one frame.
 const START: f64 = 3.0;
-/// Largest mean number of cycles of the soft core for a camera frame.
+/// Maximum mean number of cycles of the soft core for a camera frame.
 const CYCLES: u32 = 4_000;
 
 /// The animation of the frames on the monitor.
 const PICTURE: &str = "../../docs/pictures/holoforge.png";
 
-/// The camera follows the path of the hand. With `GLINT_UPDATE` in the environment, the frames on the monitor become an animation
-/// for the documentation.
+/// The camera follows the path of the hand. If the environment variable `GLINT_UPDATE` is set, the frames on the monitor are
+/// written as an animation for the documentation.
 #[test]
 fn the_camera_follows_the_hand() {
     let mut board = emulator();
@@ -134,7 +136,7 @@ fn the_camera_follows_the_hand() {
         .inner()
         .plug_image_sensor(image_sensor(scene));
     console.command("scene holoforge").unwrap();
-    // The uploaded mesh instead of the scene's.
+    // Replaces the scene's mesh by the uploaded mesh.
     console.command("scene model").unwrap();
     run(&mut console, 30);
     let now = console.board().inner().cycles();
@@ -142,7 +144,7 @@ fn the_camera_follows_the_hand() {
     let mut worst = [0.0_f64; 3];
     let films = std::env::var_os("GLINT_UPDATE").is_some();
     let mut film = Vec::new();
-    // Half of the path; all of it for the animation.
+    // Half of the path; the whole path for the animation.
     for step in 0..if films { 19 } else { 10 } {
         if films {
             film.push(Image {
@@ -156,7 +158,7 @@ fn the_camera_follows_the_hand() {
         assert_eq!(entry::<String>(&lines, "hand"), "tracked", "{lines:#?}");
         assert_eq!(entry::<u32>(&lines, "frames_dropped"), 0);
         let (centre, camera) = (numbers(&lines, "centre"), numbers(&lines, "camera"));
-        // The frame of these numbers is one of the last that the sensor began.
+        // The values belong to one of the last frames that the sensor began.
         let path = path.lock().unwrap();
         let distance = |place: &Hand| {
             let [x, y] = place.centre;
@@ -190,7 +192,7 @@ fn the_camera_follows_the_hand() {
     }
     assert!(entry::<u32>(&lines, "cycles_frame") <= CYCLES);
 
-    // The camera stays when the image sensor is off. The picture is then that of the model.
+    // The camera does not move when the image sensor is off. The picture then equals the model's.
     console.command("gesture off").unwrap();
     console.command("render").unwrap();
     let view: String = value("view", &console.command("view").unwrap(), "view").unwrap();
@@ -220,17 +222,17 @@ fn faults() -> Vec<(SensorFault, &'static str, &'static str)> {
     rows.collect()
 }
 
-/// Where the camera is at first.
+/// Hand position of the initial camera.
 const MIDDLE: Hand = Hand {
     centre: [159.5, 119.5],
     area: 4_800.0,
 };
 
-/// Time in ms until a sensor that was unplugged is set up again and the hand is found: to the next look at it, for its set-up, and for
-/// three frames.
+/// Time in ms until an unplugged sensor is set up again and the hand is found: the time to the next check of the sensor, its
+/// set-up, and three frames.
 const RETURN: u64 = 125;
 
-/// The camera stays during every fault and every case of the table, and afterwards the hand is tracked again.
+/// The camera does not move during any fault and in any case of the table; afterwards the hand is tracked again.
 #[test]
 fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let mut board = emulator();
@@ -257,7 +259,7 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     board.plug_image_sensor(image_sensor(view.scene()));
     let mask = gesture::mask(&mut console, quiet).unwrap();
     let marked: u32 = mask.bits.iter().map(|byte| byte.count_ones()).sum();
-    // Every second pixel of every second line.
+    // The mask contains every second pixel of every second line.
     assert_eq!([mask.width, mask.height], [160, 120]);
     assert!((1_120..1_280).contains(&marked), "{marked}");
 
@@ -292,7 +294,7 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     let lines = status(&mut console);
     assert_eq!(entry::<String>(&lines, "hand"), "tracked");
     assert_eq!(entry::<String>(&lines, "fault"), "none");
-    // The gyroscope was read all the time, once a millisecond.
+    // The gyroscope was read once a millisecond throughout.
     let [last, failures, gaps] = samples(&mut console);
     let passed = (console.board().inner().cycles() - began) / MS;
     assert!(
@@ -304,14 +306,15 @@ fn every_fault_of_the_sensor_is_reported_and_holds_the_camera() {
     sights_have_their_outcomes(&mut console, &view);
 }
 
-/// The camera stays, apart from what the filter does with the previous frames.
+/// Checks that the camera does not move, apart from the filter's response to the previous frames.
 fn stays(before: &[String], after: &[String], case: &str) {
     for (was, is) in core::iter::zip(numbers(before, "camera"), numbers(after, "camera")) {
         assert!((was - is).abs() < 0.2, "{case}: {was}, {is}");
     }
 }
 
-/// The views of the image sensor for the rows of the table of docs/gesture-control.md in order: hands, light, and time in ms.
+/// The views of the image sensor for the table in docs/gesture-control.md, in the order of its rows: hands, light, and time in
+/// ms.
 fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
     let far = Hand {
         centre: [285.0, 150.0],
@@ -330,7 +333,7 @@ fn sights() -> [(&'static str, Vec<Hand>, f64, u64); 5] {
     ]
 }
 
-/// Runs the cases of the table "what the image sensor sees".
+/// Runs the cases of the table "the image sensor sees".
 fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard>>, view: &View) {
     let rows = include_str!("../../../../docs/gesture-control.md").lines();
     let mut rows = rows.skip_while(|row| !row.starts_with("| the image sensor sees |"));
@@ -350,7 +353,7 @@ fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard
             stays(&before, &after, name);
             continue;
         }
-        // On its way to the hand.
+        // The camera is between its previous and its final position.
         let [was, is] = [&before, &after].map(|lines| numbers(lines, "camera")[1]);
         let hand = target(&hands[0])[1];
         let part = (is - was) / (hand - was);
@@ -359,7 +362,7 @@ fn sights_have_their_outcomes(console: &mut Console<SimulatedBoard<EmulatedBoard
     assert!(!rows.next().is_some_and(|row| row.starts_with('|')));
 }
 
-/// A hand in front of an OV5640 calibrates its colour.
+/// A calibration finds the colour of a hand in front of an OV5640.
 #[test]
 fn a_calibration_finds_the_hand() {
     let mut board = emulator();
@@ -385,7 +388,7 @@ fn a_calibration_finds_the_hand() {
     let lines = status(&mut console);
     assert_eq!(entry::<String>(&lines, "sensor"), "OV5640");
     assert_eq!(entry::<String>(&lines, "hand"), "tracked");
-    // The mark of the hand's position is in the lower right corner.
+    // The marker of the hand's position is in the lower right corner.
     console.command("gesture mark").unwrap();
     run(&mut console, 40);
     let frame = console.board().inner().monitor_frame(4).unwrap();

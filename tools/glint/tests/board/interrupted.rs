@@ -1,4 +1,4 @@
-//! Uploads that stop half done: their program is killed, or a person cancels them on the console.
+//! Interrupted uploads: the uploading program is killed, or a user cancels the upload on the console.
 
 use crate::common::{begin_upload, console, emulator, info, mesh};
 use crate::terminal::{Terminal, patience};
@@ -11,9 +11,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 use virtual_board::pty::Pty;
 
-/// Received bytes after which a transfer counts as half done: more than all commands together, less than the mesh.
+/// Number of received bytes at which a transfer counts as half done: more than all commands together, less than the mesh.
 const PART: usize = 4_000;
-/// The mesh of an upload that is killed: some 100,000 bytes.
+/// The mesh of a killed upload: about 100,000 bytes.
 const LARGE: &str = "icosphere:16";
 /// Seconds without progress after which a test fails.
 const PATIENCE: u32 = 120;
@@ -55,7 +55,7 @@ impl Uart for Counted {
     }
 }
 
-/// A board on a serial port, which shows a mesh of 20 triangles.
+/// A board on a serial port that shows a mesh of 20 triangles.
 struct Port(Pty<Counted>);
 
 impl Port {
@@ -77,7 +77,7 @@ impl Port {
         self.0.path().to_str().unwrap()
     }
 
-    /// The program with this port as its board.
+    /// The program `glint` with this port as its board.
     fn glint(&self, arguments: &[&str]) -> Command {
         let mut glint = Command::new(env!("CARGO_BIN_EXE_glint"));
         glint.args(arguments).env("GLINT_BOARD", self.path());
@@ -97,7 +97,7 @@ impl Port {
         info["triangles"].as_str().unwrap().to_owned()
     }
 
-    /// Kills an upload with SIGKILL when the board has received a part of the mesh.
+    /// Kills an upload with SIGKILL when the board has received part of the mesh.
     fn kill_an_upload(&self) {
         let (report, half_done): (_, Receiver<()>) = channel();
         self.0
@@ -120,7 +120,8 @@ fn a_killed_upload_leaves_the_old_model_and_the_next_upload_works() {
     assert_eq!(port.triangles(), "320");
 }
 
-/// The key cancels a transfer that another program has left in the middle of a frame, as litex_term sends it.
+/// The key cancels a transfer that another program has left in the middle of a frame; the bytes are sent as litex_term sends
+/// them.
 #[test]
 fn ctrl_c_cancels_a_half_done_upload() {
     let mut board = emulator();
@@ -130,7 +131,7 @@ fn ctrl_c_cancels_a_half_done_upload() {
     begin_upload(&mut console, &mesh("icosphere:4"));
     let board = console.board();
     let mut said = Vec::new();
-    // A person is not as fast as a program.
+    // A user types more slowly than a program.
     let typed = board.now_ms() + 100;
     while board.now_ms() < typed {
         board.read(&mut said, 10).unwrap();
@@ -147,14 +148,14 @@ fn ctrl_c_cancels_a_half_done_upload() {
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
 }
 
-/// In a session of `glint console`, the key cancels a transfer that was begun by hand.
+/// In a session of `glint console`, the key cancels a transfer that was started on the console.
 #[test]
 fn ctrl_c_in_a_session_cancels_a_transfer() {
     let port = Port::start();
     let program = Path::new(env!("CARGO_BIN_EXE_glint"));
     let mut terminal = Terminal::start(program, &["console", port.path()]);
     let mut is_over = patience(PATIENCE);
-    // From the prompt on, the terminal passes all keys to the board.
+    // After the prompt, the terminal passes all keys to the board.
     terminal.wait_for("glint> ", &mut is_over);
     terminal.type_in(b"load 100 0\r");
     terminal.wait_for("ready", &mut is_over);

@@ -1,6 +1,6 @@
-//! The whole machine: the virtual board, its firmware, and this crate's side of the serial line.
+//! Tests of the complete system: the virtual board, its firmware, and the host's side of the serial line.
 //!
-//! Needs the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
+//! Require the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them.
 
 mod alone;
 mod alone_verilated;

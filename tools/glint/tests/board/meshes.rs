@@ -1,4 +1,4 @@
-//! Pictures and depths of meshes equal the model's bit for bit: on the monitor, in memory, and over the serial line.
+//! Pictures and depths of meshes are bit-identical to the model's: on the monitor, in memory, and over the serial line.
 
 use crate::common::{
     drawn_alike, emulator, mesh, mesh_frame, plain, renderer, running_board, timeless,
@@ -13,7 +13,7 @@ use glint_core::picture::{Backend, Size};
 use std::path::Path;
 use std::process::Command;
 
-/// Smooth shading is drawn by the triangle engine if the gateware has it, otherwise by the CPU with a note in `stats`.
+/// The triangle engine draws smooth shading if the gateware supports it, otherwise the CPU draws it, with a note in `stats`.
 #[test]
 fn smooth_shading_is_the_models_on_every_backend() {
     let mut board = emulator();
@@ -40,7 +40,7 @@ fn smooth_shading_is_the_models_on_every_backend() {
     }
 }
 
-/// A frame of the shown mesh from another camera takes few cycles of the soft core in addition to the engine's passes.
+/// After a change of the camera, drawing a mesh takes few cycles of the soft core in addition to the engine's passes.
 #[test]
 fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     let mut board = running_board();
@@ -58,8 +58,8 @@ fn a_new_camera_takes_few_cycles_of_the_soft_core() {
     }
 }
 
-/// A coloured light from a direction, a light at the camera, ambient light and a background, on each backend. The default comes last:
-/// its commands remove light and background. The board draws each frame into both of its frame buffers.
+/// A coloured directional light, a light at the camera, ambient light and a background, with each backend. The default is tested
+/// last: its commands remove light and background. The board draws each frame into both frame buffers.
 #[test]
 fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     let mut board = emulator();
@@ -97,7 +97,7 @@ fn light_and_background_of_meshes_are_the_models_on_every_backend() {
     }
 }
 
-/// In orthographic projection the triangle engine draws the model's picture, and so does the CPU, even with smooth shading.
+/// In orthographic projection, the pictures of the triangle engine and of the CPU, also with smooth shading, equal the model's.
 #[test]
 fn orthographic_pictures_are_the_models_on_every_backend() {
     let mut board = emulator();
@@ -122,8 +122,8 @@ fn orthographic_pictures_are_the_models_on_every_backend() {
     }
 }
 
-/// Renders a mesh on the board from three positions of the camera, one of them inside the mesh, and compares the picture on the
-/// monitor, the depth buffer and the counts with the model's.
+/// Renders a mesh on the board from three camera positions, one of them inside the mesh, and compares the picture on the monitor,
+/// the depth buffer and the counts with the model's.
 fn the_monitor_shows_what_the_model_renders<S: Simulation>(
     board: &mut SimulatedBoard<S>,
     name: &str,
@@ -132,7 +132,7 @@ fn the_monitor_shows_what_the_model_renders<S: Simulation>(
     let outside = |camera: &str| (view::spherical(camera).unwrap(), true);
     let inside = r#"{"eye":[0.21,-0.1,0.05],"u":[0.6,0.8,0],"v":[0,0,-1],"n":[-0.8,0.6,0],"half_width":1.5,"near":0.3}"#;
     let inside: View = view::parse(inside.as_bytes()).unwrap();
-    // Each camera has a flag that turns back-face culling on. A camera inside a mesh sees mostly back faces, so its flag is off.
+    // The flag of each camera turns back-face culling on. A camera inside a mesh sees mostly back faces, so its flag is off.
     let cameras = [outside("2,30,60"), outside("2.5,200,130"), (inside, false)];
 
     let mut renderer = renderer(board).with_backend(Backend::Cpu);
@@ -193,7 +193,7 @@ fn the_monitor_shows_the_larger_sizes() {
     }
 }
 
-/// The monitor shows the old frame until the new one is complete: no picture has parts of both.
+/// The monitor shows the old frame until the new frame is complete: no picture contains parts of both frames.
 #[test]
 fn no_frame_is_torn() {
     let mesh = mesh("cube");
@@ -213,7 +213,7 @@ fn no_frame_is_torn() {
     assert!(shown > 0, "the frame changed before it can have been drawn");
 }
 
-/// Whether the next picture on the monitor is the old frame; otherwise it must be the new one.
+/// Returns whether the next picture on the monitor is the old frame; any other picture must be the new frame.
 fn captured_is(renderer: &mut BoardRenderer<SimulatedBoard>, old: &[u16], new: &[u16]) -> bool {
     let shown = captured(renderer, 4);
     assert!(shown == old || shown == new, "a torn frame");
@@ -241,7 +241,7 @@ fn colours_and_depths_come_over_the_line() {
     );
 }
 
-/// The animation of `glint orbit` on the emulated board has the pictures of the model, by either backend.
+/// The pictures of the animation of `glint orbit` on the emulated board equal the model's, with each backend.
 #[test]
 fn an_orbit_on_a_board_is_the_models() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-orbit");
@@ -276,8 +276,8 @@ fn an_orbit_on_a_board_is_the_models() {
     }
 }
 
-/// `pixels_tested` is the count of the model and of the soft core alone. The gateware tests groups of pixels, and counts those under
-/// another name.
+/// Only the model and the soft core count `pixels_tested`. The gateware tests groups of pixels, and counts them under another
+/// name.
 #[test]
 fn pixels_tested_are_counted_alike_or_have_another_name() {
     let mesh = mesh("icosphere:4");

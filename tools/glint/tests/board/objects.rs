@@ -1,4 +1,4 @@
-//! Objects on the board: meshes under names, side by side in memory, drawn as the model draws them.
+//! Objects on the board: several named meshes in memory, drawn as the model draws them.
 
 use crate::common::{address, console, drawn_alike, emulator, info, mesh, object, read, renderer};
 use glint::board::{EmulatedBoard, SimulatedBoard};
@@ -7,7 +7,7 @@ use glint::render::{Frame, Subject};
 use glint::{transfer, view};
 use glint_core::picture::Size;
 
-/// Objects of three meshes, one of them twice, from a camera that sees them overlap.
+/// Objects of three meshes, one of which occurs twice, from a camera that sees them overlap.
 #[test]
 fn objects_are_the_models() {
     let meshes = ["cube", "icosphere:1", "sponge:1"].map(mesh);
@@ -31,7 +31,8 @@ fn objects_are_the_models() {
     assert_eq!(found, expected);
 }
 
-/// Uploads lie side by side. A refused one leaves the others, and after `unload` the others move together.
+/// Uploads are stored one after another. A refused upload does not change the others, and `unload` closes the gap between the
+/// others.
 #[test]
 fn meshes_have_names_and_share_the_memory() {
     let [a, b, c] = ["cube", "icosphere:1", "icosphere:2"].map(mesh);
@@ -72,14 +73,14 @@ fn meshes_have_names_and_share_the_memory() {
     assert!(read(&mut console, start, c.len()) == c);
     let end = start + c.len() as u32;
     assert_eq!(address(&mut console, "staging"), end);
-    // The moved mesh is drawn from its new position.
+    // The moved mesh is drawn from its new address.
     transfer::stage(&mut console, &b).unwrap();
     let lines = console.command("render").unwrap();
     assert!(
         lines.iter().any(|line| line == "triangles_in 80"),
         "{lines:?}"
     );
-    // An object shows the mesh that replaces its own.
+    // An object shows the new mesh after an upload replaces its mesh.
     transfer::upload(&mut console, &b, Some("c"), 5, quiet).unwrap();
     console.command("object show").unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);

@@ -12,10 +12,10 @@ const BIOS_PROMPT: &str = "litex";
 /// Address of main memory, where the program begins.
 const MAIN_RAM: u32 = 0x4000_0000;
 
-/// Milliseconds of board time in which a board must have started.
+/// Time-out of the board's start, in milliseconds of the board's time.
 const START_MS: u64 = 3000;
 
-/// An image with the built firmware, without a bitstream and scenes.
+/// An image with the built firmware, without a bitstream or scenes.
 fn image() -> Vec<u8> {
     encode(&[], &built_firmware(None).unwrap(), &[]).unwrap()
 }
@@ -49,7 +49,7 @@ fn assert_answers(board: &mut SimulatedBoard<EmulatedBoard>) {
     assert!(info.iter().any(|line| line == "triangles 12"), "{info:?}");
 }
 
-/// Checks that the BIOS says `complaint` about an image, offers its prompt, and that a host can load the firmware then.
+/// Checks that the BIOS prints `complaint` about an image and offers its prompt, and that a host can then load the firmware.
 fn assert_refused(image: Vec<u8>, complaint: &str) {
     let mut board = board(image);
     let output = read_until(&mut board, BIOS_PROMPT);
@@ -74,7 +74,7 @@ fn a_board_starts_alone_from_its_flash() {
     let output = read_until(&mut board, "Liftoff");
     assert!(output.contains("Timeout"), "{output}");
     assert_answers(&mut board);
-    // A host can still replace the program.
+    // A host can replace the program afterwards.
     load(&mut board);
 }
 

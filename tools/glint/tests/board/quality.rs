@@ -1,4 +1,4 @@
-//! Qualities: each is the size and the precision that it states, on the model and on a board.
+//! Qualities: each sets its size and its precision, on the model and on a board.
 
 use crate::common::{console, drawn_alike, emulator, info, renderer};
 use glint::render::{self, FieldSubject, Frame, Subject};
@@ -74,7 +74,7 @@ fn a_board_has_the_qualities_of_the_model() {
     for quality in Quality::ALL {
         for text in FIELDS {
             let field = Field::parse(text).unwrap();
-            // The quality with its own size, and with another one.
+            // The quality with its own size, and with another size.
             let own = frame(&field, &appearance, quality);
             let small = Frame {
                 size: Size::W320,
@@ -90,7 +90,7 @@ fn a_board_has_the_qualities_of_the_model() {
             }
         }
     }
-    // The small pictures of the sponge: more evaluations with each quality.
+    // Small pictures of the sponge take more evaluations with each higher quality.
     let [fast, balanced, exact] = [1, 4, 7].map(|place| evaluations[place]);
     assert!(fast < balanced && balanced < exact, "{evaluations:?}");
 }

@@ -1,4 +1,4 @@
-//! Scenes: those in the firmware are the files of the folder `scenes`, and are drawn as the model draws them.
+//! The scenes in the firmware equal the files of the folder `scenes`, and are drawn as the model draws them.
 
 use crate::common::{console, drawn_alike, emulator, info, renderer};
 use glint::render::{self, Route, size_command, view_command};
@@ -7,8 +7,8 @@ use glint_core::colour::Shading;
 use glint_core::picture::Size;
 use glint_scene_file::{NAMES, SceneFile, built_in};
 
-/// Every scene in the firmware is the host's, drawn by the gateware, without what moves its camera. Its shading is flat here, because the
-/// soft core takes 131 million cycles to draw the smooth frame of `objects`.
+/// Every scene in the firmware equals the host's scene, drawn by the gateware, without the commands that move its camera. Shading
+/// is flat, because the soft core takes 131 million cycles to draw the smooth frame of `objects`.
 #[test]
 fn scenes_are_the_models() {
     let mut board = emulator();
@@ -39,7 +39,7 @@ fn scenes_are_the_models() {
         let found = renderer.colour(Size::W320, Route::Memory, &mut |_, _| {});
         assert!(found.unwrap() == expected.image.colour, "{name}");
     }
-    // The scene at start has nothing of the others.
+    // The scene at start contains no settings of the other scenes.
     let console = renderer.console();
     console.command("scene default").unwrap();
     assert_eq!(info::<String>(console, "scene"), "cube");
@@ -47,7 +47,7 @@ fn scenes_are_the_models() {
     assert_eq!(info::<u32>(console, "size"), 320);
 }
 
-/// A scene file with a mesh that the board has not built in.
+/// A scene file with a mesh that is not built into the firmware.
 #[test]
 fn a_scene_file_is_the_models() {
     const FILE: &str = "title = \"a\"\nmodel = \"icosphere:2\"\ncamera = \"2 30 60\"\nfov = 60\nlight = \"1,2,3,ff8040\"\n";

@@ -13,7 +13,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
 
     let found = sensor::calibrate(&mut console, 64, &mut |_| {}).unwrap();
     assert_eq!(found.samples, 64);
-    // The measured biases are those of the virtual sensor, within the noise of 64 samples.
+    // The measured biases equal the virtual sensor's, within the noise of 64 samples.
     for (found, bias) in found.bias.iter().zip([-4.5, 1.25, 2.0]) {
         assert!((found - bias).abs() < 0.1, "{found}, expected {bias}");
     }
@@ -23,7 +23,7 @@ fn a_sensor_is_found_calibrated_and_gives_samples() {
     assert_eq!(entries.len(), 10);
     assert_eq!(entries[0].t_us, 0);
     for pair in entries.windows(2) {
-        // The board prints no sample twice, and leaves out the samples that it measures while it prints one.
+        // The board prints no sample twice, and skips the samples that it measures while it prints a sample.
         let step = pair[1].t_us - pair[0].t_us;
         let samples = (step + 500) / 1_000;
         assert!(

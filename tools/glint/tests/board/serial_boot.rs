@@ -1,5 +1,5 @@
-//! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. On the verilated board, the firmware's transfer would take
-//! minutes.
+//! Serial boot through the BIOS, by LiteX's own terminal and by `glint flash`. The firmware's transfer to the verilated board
+//! would take minutes.
 
 use crate::power_up::read_until;
 use crate::terminal::Terminal;
@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use virtual_board::pty::Pty;
 use virtual_board::{Start, VirtualBoard};
 
-/// Time-out of a test on the verilated board in its clock cycles: several times as many as the test needs.
+/// Time-out of a test on the verilated board in its clock cycles: several times the duration of the test.
 const LIMIT: u64 = 400_000_000;
 
 /// Time-out of litex_term with the firmware, in clock cycles of the emulated board: ten minutes.
@@ -60,7 +60,7 @@ fn printer(text: &str) -> Vec<u8> {
     code.into_iter().flat_map(u32::to_le_bytes).collect()
 }
 
-/// Starts litex_term with the program at `kernel`, on a port.
+/// Starts litex_term on a port, with the program at `kernel`.
 fn litex_term(kernel: &Path, port: &Path) -> Terminal {
     let kernel = format!("--kernel={}", kernel.display());
     let program = root().join(".venv/bin/litex_term");
@@ -70,7 +70,7 @@ fn litex_term(kernel: &Path, port: &Path) -> Terminal {
 #[test]
 fn litex_term_loads_a_program_into_the_verilated_board() {
     let mut program = printer("Program runs\n");
-    // The transfer takes several frames.
+    // The transfer consists of several frames.
     program.resize(4096, 0);
     let mut kernel = tempfile::NamedTempFile::new().unwrap();
     kernel.write_all(&program).unwrap();

@@ -1,4 +1,4 @@
-//! A board that stays, and the programs that use it in turn.
+//! A board that keeps running, and the programs that use it in turn.
 
 use crate::common::{begin_upload, mesh, piped};
 use crate::terminal::{Terminal, patience};
@@ -12,7 +12,7 @@ use virtual_board::pty::Pty;
 /// Seconds without output after which litex_term counts as failed.
 const PATIENCE: u32 = 120;
 
-/// `glint board` in a process of its own, with an emulated board.
+/// `glint board` in its own process, with an emulated board.
 struct Stay {
     child: Child,
     folder: PathBuf,
@@ -23,7 +23,7 @@ impl Stay {
         Self::start_with("board-stays", &[])
     }
 
-    /// Starts the board in a folder of this name, with further arguments.
+    /// Starts the board in a folder with this name, with additional arguments.
     fn start_with(folder: &str, arguments: &[&str]) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder);
         std::fs::create_dir_all(&folder).unwrap();
@@ -65,13 +65,13 @@ impl Stay {
 
 impl Drop for Stay {
     fn drop(&mut self) {
-        // The program has ended already, unless the test failed.
+        // The program has already ended, unless the test failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Begins an upload, and closes the port in the middle of it. Meanwhile no other program can use the port.
+/// Begins an upload, and closes the port in the middle of the upload. Until then, no other program can use the port.
 fn upload_a_part(stay: &Stay, port: &Path, mesh: &[u8]) {
     let mut board = SerialBoard::open(port.to_str().unwrap(), 115_200).unwrap();
     let mut console = Console::new(&mut board);
@@ -164,12 +164,12 @@ fn a_board_starts_from_an_image() {
     let image = image.to_str().unwrap();
     make_image(&["--scene", "demo"], image);
     let stay = Stay::start_with("board-of-an-image", &["--flash", image]);
-    // A command that comes before the firmware is lost, and repeated. Whatever scene the demo shows by now.
+    // A command that is sent before the firmware runs is lost, and repeated. The demo may already show any of its scenes.
     let scenes = stay.succeed("console port --send scene", "");
     assert!(scenes.contains("scene start flash\n"), "{scenes}");
 }
 
-/// The step `the board starts` ends at the prompt of the BIOS, or of the firmware from the flash, and counts the board's cycles.
+/// The step `the board starts` ends at the prompt of the BIOS, or of the firmware from the flash, and shows the board's cycles.
 #[test]
 fn the_start_with_the_bios_has_progress() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("board-progress");

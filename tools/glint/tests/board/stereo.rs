@@ -1,5 +1,5 @@
-//! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board are the model's, and those are composed of two
-//! pictures of one eye.
+//! Two eyes: pictures of meshes, edges, objects, and meshes in fields on the emulated board equal the model's, which are composed
+//! of two pictures for one eye.
 
 use crate::common::{console, drawn_alike, emulator, mesh, plain, renderer, two_objects};
 use glint::board::Board;
@@ -29,7 +29,7 @@ fn composed(eyes: &[Frame; 2], tint: Tint) -> Vec<u16> {
         .collect()
 }
 
-/// The counts that the model and boards have in common.
+/// The counts that both the model and boards provide.
 fn counts(rendered: &Rendered) -> impl PartialEq + std::fmt::Debug {
     let stats = &rendered.stats;
     let triangles = stats.triangles();
@@ -66,7 +66,7 @@ fn two_eyes_are_the_models() {
         ..plain(&sponge)
     };
     let outside = view::spherical("2.5,30,60").unwrap();
-    // In a hole of the sponge. With eyes 1 aside, each eye is in a solid part or beyond the sponge.
+    // The camera is in a hole of the sponge. With a half separation of 1, each eye is in a solid part or beyond the sponge.
     let inside = view::look("0,-0.3,0.1,20,10").unwrap();
     let (gateware, cpu) = (Backend::Gateware, Backend::Cpu);
     let mesh = |mesh| Subject::Mesh(plain(mesh));
@@ -86,7 +86,7 @@ fn two_eyes_are_the_models() {
         (Subject::Objects(&objects), outside, "0.1,2", gateware),
         (in_field, outside, "0.1,2,red-cyan", gateware),
         (in_field, outside, "0.3,1", cpu),
-        // Afterwards: one eye, and a field without a mesh.
+        // Returns to one eye, and to a field without a mesh.
         (mesh(&sphere), outside, "", gateware),
         (Subject::Field(field), outside, "0.1,2", gateware),
     ];
@@ -117,7 +117,8 @@ fn two_eyes_are_the_models() {
     }
 }
 
-/// While two eyes are drawn, and while the mode changes, the screen shows the complete old or the complete new picture.
+/// While a picture for two eyes is drawn, and while the mode changes, the screen shows either the complete old or the complete
+/// new picture.
 #[test]
 fn no_picture_is_half_composed() {
     let mut board = emulator();
@@ -136,7 +137,7 @@ fn no_picture_is_half_composed() {
     for setting in settings.iter().cycle().take(9) {
         let text = format!("{setting}\r");
         console.board().write(text.as_bytes()).unwrap();
-        // A picture takes a million cycles.
+        // A picture takes about a million cycles.
         for _ in 0..60 {
             let board = console.board().inner();
             board.run(50_000);

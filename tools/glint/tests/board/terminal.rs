@@ -1,4 +1,4 @@
-//! A program that needs a terminal, such as litex_term.
+//! A program that requires a terminal, such as litex_term.
 
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use std::fs::{File, OpenOptions};
@@ -30,7 +30,7 @@ impl Terminal {
             .write(true)
             .open(path)
             .unwrap();
-        // Ctrl-C works in a controlling terminal only, which `setsid --ctty` makes of the input.
+        // Ctrl-C works only in a controlling terminal; `setsid --ctty` makes the input the controlling terminal.
         let mut child = Command::new("setsid")
             .arg("--ctty")
             .arg(program)
@@ -64,13 +64,13 @@ impl Terminal {
         }
     }
 
-    /// Waits until the program prints `wanted`, and fails when `is_over`. The search starts after the text that the previous wait has
-    /// found.
+    /// Waits until the program prints `wanted`; fails when `is_over` returns true. The search starts after the text that the
+    /// previous wait found.
     pub fn wait_for(&mut self, wanted: &str, is_over: &mut dyn FnMut() -> bool) {
         self.wait_for_one_of(&[wanted], is_over);
     }
 
-    /// Waits until the program prints one of the texts, as [`wait_for`](Self::wait_for); returns the first that it has printed.
+    /// Waits like [`wait_for`](Self::wait_for) until the program prints one of the texts; returns the first printed text.
     pub fn wait_for_one_of<'a>(
         &mut self,
         wanted: &[&'a str],
@@ -85,7 +85,7 @@ impl Terminal {
                 self.seen.drain(..at + text.len());
                 return text;
             }
-            // Only the end of the output is kept, because the progress bar prints megabytes.
+            // Only the last part of the output is kept, because the progress bar prints megabytes.
             let keep = self
                 .seen
                 .floor_char_boundary(self.seen.len().saturating_sub(KEPT));
@@ -107,7 +107,7 @@ impl Terminal {
     }
 }
 
-/// Is over after a number of calls, of which a wait for a terminal makes one a second.
+/// Returns true after a number of calls; a wait for a terminal makes one call a second.
 pub fn patience(seconds: u32) -> impl FnMut() -> bool {
     let mut left = seconds;
     move || {
@@ -118,7 +118,7 @@ pub fn patience(seconds: u32) -> impl FnMut() -> bool {
 
 impl Drop for Terminal {
     fn drop(&mut self) {
-        // The program has ended already, unless the test failed.
+        // The program has already ended, unless the test failed.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! Transfers beside the other tasks: over a line of a serial port's speed, with the motion sensor at 1 kHz.
+//! Transfers that run concurrently with the other tasks: at the speed of a serial line, with the motion sensor at 1 kHz.
 
 use std::collections::{HashSet, VecDeque};
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -13,31 +13,31 @@ use virtual_board::virtual_mpu6050::{Chip, Fault, Imperfections, Source, State, 
 
 /// Number of cycles of a byte on a line of 1 Mbaud, 8N1.
 const BYTE: u64 = 10 * MS / 1_000;
-/// Number of cycles between two looks at the picture, six blankings.
+/// Interval of the samples of picture and LEDs in cycles: six blankings.
 const LOOK: u64 = 100 * MS;
-/// Number of cycles after which a board without an answer has failed.
+/// Number of cycles without an answer after which the board counts as failed.
 const PATIENCE: u64 = 60_000 * MS;
-/// The mesh of 1 MB.
+/// A mesh of 1 MB.
 const LARGE: &str = "icosphere:46";
 
-/// A board on a serial line, and what it shows during transfers.
+/// A board on a serial line, with samples of its picture and LEDs during transfers.
 struct Line {
     board: EmulatedBoard,
     to_board: VecDeque<u8>,
     from_board: VecDeque<u8>,
-    /// Bytes from the board that have come over the line.
+    /// Bytes from the board that have passed the line.
     arrived: Vec<u8>,
-    /// Cycles at the last byte to the board.
+    /// Cycle of the last byte to the board.
     last_byte: u64,
-    /// Pictures at all looks.
+    /// Hashes of the sampled pictures.
     pictures: Vec<u64>,
-    /// States of the LEDs at all looks.
+    /// Sampled states of the LEDs.
     leds: HashSet<u16>,
     next_look: u64,
 }
 
 impl Line {
-    /// A board that has started, with a sensor that turns by 20° per second.
+    /// A started board with a motion sensor that turns at 20° per second.
     fn start() -> Self {
         let mut board = EmulatedBoard::fast(&built_firmware(None).unwrap()).unwrap();
         let motion = |_| State {
@@ -60,7 +60,7 @@ impl Line {
         }
     }
 
-    /// The reply to a command, without the time that the line would take.
+    /// Returns the reply to a command; the line's delay is not simulated.
     fn say(&mut self, line: &str) -> String {
         self.board.run(10 * MS);
         self.board.uart_read(&mut self.arrived);
@@ -72,8 +72,8 @@ impl Line {
         answer
     }
 
-    /// Samples that the sensor has measured and the firmware has not processed, while the sensor makes a pause. The sensor steers no
-    /// longer.
+    /// Number of samples that the sensor has measured and the firmware has not processed, counted while the sensor is stalled.
+    /// Ends the steering by the sensor.
     fn lost(&mut self) -> u64 {
         self.say("imu off");
         self.board.run(500 * MS);
@@ -113,8 +113,8 @@ impl Line {
         }
     }
 
-    /// Calls `transfer`. Returns how many of the pictures meanwhile differed from the one before, and the number of pictures. The
-    /// first LED must have blinked.
+    /// Calls `transfer`. Returns the number of sampled pictures that differ from the previous one, and the number of pictures.
+    /// Checks that the first LED has blinked.
     fn watch(&mut self, transfer: impl FnOnce(&mut Console<Self>)) -> (usize, usize) {
         self.pictures.clear();
         self.leds.clear();
@@ -172,7 +172,8 @@ fn the_sensor_steers_the_picture_during_transfers() {
     });
     assert_eq!(changes, all, "the picture follows");
     assert_eq!(line.lost(), lost, "samples were lost");
-    // One picture, although others were drawn: of a cube there are up to three faces before the background.
+    // The download is a single picture, although others were drawn: a picture of the cube has up to three faces and the
+    // background.
     let colours: HashSet<_> = frame.chunks(2).collect();
     assert!((2..=4).contains(&colours.len()), "{colours:?}");
 }
@@ -194,7 +195,7 @@ fn the_demo_goes_on_during_an_upload() {
     assert_eq!(line.lost(), lost, "samples were lost");
 }
 
-/// A frame by the CPU takes longer than the board waits for bytes of a transfer.
+/// A frame of the CPU takes longer than the board's time-out for bytes of a transfer.
 #[test]
 fn an_upload_goes_on_while_the_cpu_draws() {
     let mesh = mesh("icosphere:10");
@@ -205,7 +206,7 @@ fn an_upload_goes_on_while_the_cpu_draws() {
     }
     let start = line.board.cycles();
     line.watch(|console| upload(console, &mesh));
-    // The acknowledgements have come in time, so the line has not waited for the end of a frame. The reply has.
+    // The acknowledgements came in time, so the transfer did not wait for the end of a frame. The reply has.
     let (sent, all) = (line.last_byte - start, line.board.cycles() - start);
     assert!(sent < 2 * BYTE * mesh.len() as u64, "{sent} cycles");
     assert!(

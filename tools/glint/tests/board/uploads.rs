@@ -1,4 +1,4 @@
-//! Uploads of meshes over a line with faults, and uploads of invalid meshes.
+//! Uploads of meshes over a faulty line, and uploads of invalid meshes.
 
 use crate::common::{address, console, emulator, info, mesh, read, running_board};
 use glint::board::{Board, BoardError};
@@ -7,7 +7,7 @@ use glint::fuzz::Random;
 use glint::transfer::{self, TransferError};
 use glint_core::wire::{Failure, Manifest, Reason};
 
-/// A line with faults: in both directions it drops, flips or repeats one byte in a hundred.
+/// A faulty line: in both directions it drops, flips or repeats one byte in a hundred.
 struct BadLine<'b> {
     board: &'b mut dyn Board,
     random: Random,
@@ -91,7 +91,7 @@ fn a_bad_upload_leaves_the_old_model() {
     transfer::upload(&mut console, &good, None, 1, quiet).unwrap();
     let shown = frame(&mut console);
 
-    // The announced CRC-32 is not that of the mesh that is sent.
+    // The announced CRC-32 does not match the mesh that is sent.
     let Manifest { length, crc32 } = Manifest::of(&good);
     let command = format!("load {length} {:08x}", !crc32);
     console
@@ -111,8 +111,8 @@ fn a_bad_upload_leaves_the_old_model() {
         Err(ConsoleError::Refused { .. })
     ));
 
-    // Bytes that arrive unchanged but form no mesh: a reserved byte of a chunk's header is not 0, or an index is
-    // beyond the vertices.
+    // Bytes that arrive undamaged but are not a mesh: a reserved byte of a chunk's header is not 0, or an index exceeds the
+    // number of vertices.
     let last_triangle = other.len() - 16;
     for (number, at) in [(3, 40), (4, last_triangle + 1)] {
         let mut damaged = other.clone();
@@ -124,7 +124,7 @@ fn a_bad_upload_leaves_the_old_model() {
     assert_eq!(info::<u32>(&mut console, "triangles"), 12);
     assert!(frame(&mut console) == shown);
 
-    // A good upload still works.
+    // A valid upload still succeeds.
     transfer::upload(&mut console, &other, None, 5, quiet).unwrap();
     assert_eq!(info::<u32>(&mut console, "triangles"), 20);
     assert!(frame(&mut console) != shown);

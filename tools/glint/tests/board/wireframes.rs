@@ -1,4 +1,4 @@
-//! The wireframe simulator on the emulated board: buttons with bounce, switches, commands and uploads, with every frame checked.
+//! The wireframe simulator on the emulated board: bouncing buttons, switches, commands and uploads, with a check of every frame.
 
 use crate::common::{address, console, emulator, info, renderer};
 use glint::board::{EmulatedBoard, SimulatedBoard};
@@ -25,7 +25,7 @@ fn cube() -> Vec<u8> {
     wireframe::make(cube, Some(4.0), &viewing).unwrap().bytes
 }
 
-/// The picture of a program after a motion, by the model.
+/// The model's picture of a program after a motion.
 fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
     let subject = Subject::Wireframe(WireframeSubject {
         program: Program::new_checked(program).unwrap(),
@@ -35,7 +35,7 @@ fn picture(program: &[u8], motion: &Motion) -> Vec<u16> {
     on_model(&frame).unwrap().image.colour
 }
 
-/// The shown picture of a board, and the one of the previous frame.
+/// The pictures of a board's current and previous frame.
 fn shown(console: &mut Console<SimulatedBoard<EmulatedBoard>>) -> [Vec<u16>; 2] {
     let front = address(console, "frame");
     let back = BUFFERS.into_iter().find(|&buffer| buffer != front).unwrap();
@@ -87,7 +87,7 @@ fn a_session_with_buttons() {
     console.command("backend gateware").unwrap();
     console.command("render").unwrap();
 
-    // One press that bounces at both ends is one step: of one frame.
+    // A press that bounces at both ends is one step, in one frame.
     let bounces = [
         (1, 1),
         (0, 1),
@@ -105,7 +105,7 @@ fn a_session_with_buttons() {
     assert!(motion.apply(Key::Up.step(false)));
     assert!(shown(&mut console) == [picture(&program, &motion), start]);
 
-    // Two buttons in one frame are two steps, in two frames.
+    // Two buttons that are pressed in one frame are two steps, in two frames.
     let mut requests = Requests::default();
     [Key::Up, Key::Right]
         .into_iter()
@@ -121,7 +121,7 @@ fn a_session_with_buttons() {
     let [first, second] = pictures;
     assert!(shown(&mut console) == [second, first]);
 
-    // Switch 0 rotates instead of panning, switch 1 makes zoom keys of up and down.
+    // With switch 0 the keys rotate instead of pan; with switch 1 the keys up and down zoom.
     for (switches, button, step) in [
         (0b01, 1 << 2, Key::Left.step(true)),
         (0b10, 1 << 1, Key::ZoomOut.step(false)),
@@ -132,7 +132,7 @@ fn a_session_with_buttons() {
         assert!(shown(&mut console)[0] == picture(&program, &motion));
     }
 
-    // Noise shorter than the time for which a button must be pressed does nothing.
+    // Noise shorter than the debounce time has no effect.
     buttons(&mut console, &[(4, 1), (0, 10), (4, 1), (0, 3), (4, 2)]);
     assert!(shown(&mut console)[0] == picture(&program, &motion));
 }
@@ -166,7 +166,7 @@ fn a_session_with_commands() {
         assert!(shown(console)[0] == picture(&program, &motion), "{command}");
     }
 
-    // A refused program leaves the shown one.
+    // A refused program does not replace the current program.
     let mut damaged = program.clone();
     damaged[3 * 16 + 12] = 0b011;
     let Err(TransferError::Console(error)) = upload(console, &damaged) else {
@@ -178,7 +178,7 @@ fn a_session_with_commands() {
     assert!(motion.apply(Key::Right.step(false)));
     assert!(shown(console)[0] == picture(&program, &motion));
 
-    // Another scene ends the session, and the wireframe starts again after it.
+    // Another scene ends the session; `scene wireframe` then starts it again.
     console.command("scene cube").unwrap();
     assert!(console.command("press up").is_err());
     console.command("program").unwrap();

@@ -1,12 +1,12 @@
-//! `glint imu replay` by the model.
+//! `glint imu replay` with the model.
 
 use crate::common::{all_refused, folder, refused, report, succeed};
 
 #[test]
 fn logs_of_a_gyroscope() {
     let folder = folder("imu");
-    // The sensor is at rest for 0.1 s, with noise and a bias, then turns at 90 °/s about z for a second. Of the samples in the
-    // last 10 ms, the log has the last one only.
+    // The sensor is at rest for 0.1 s, with noise and a bias, then rotates at 90 °/s about z for a second. The log contains only
+    // the last sample of the last 10 ms.
     let mut log = String::from("gx,gy,gz,t_us,temp,ax,ay,az\n");
     for i in (0..=1090).chain([1100]) {
         let noise = i * 7 % 5 - 2;
@@ -38,8 +38,8 @@ fn logs_of_a_gyroscope() {
     );
     let last = numbers(said.last().unwrap());
     assert_eq!(last[0], 4_100_000.0);
-    // The angle is less than 90°: half a step is lost between the last sample at rest and the first one in motion, and the jump
-    // of the rate adds the error of the cubic interpolation.
+    // The angle is less than 90°: half a step is lost between the last sample at rest and the first sample in motion, and the
+    // jump of the rate adds the error of the cubic interpolation.
     assert!(
         (last[5] - 89.96).abs() < 0.02 && last[6].abs() < 0.1 && last[7].abs() < 0.1,
         "{last:?}"
@@ -54,7 +54,7 @@ fn logs_of_a_gyroscope() {
     let yaw = summary["end"]["yaw"].as_f64().unwrap();
     assert!((yaw - last[5]).abs() < 1e-6, "{yaw}");
 
-    // Twice the sample period and half the rate per count give the same attitude. The gap of 10 ms becomes an ordinary step,
+    // Twice the sample period and half the rate per count give an equal attitude. The gap of 10 ms becomes an ordinary step,
     // because the period is fixed.
     let said = replay("turn.csv", "--dt-us 2000 --gyro-lsb 32.8 --no-tilt");
     assert!(
@@ -63,11 +63,11 @@ fn logs_of_a_gyroscope() {
         said[0]
     );
     let turned = numbers(said.last().unwrap())[5];
-    // Without calibration, the bias of 5 LSB stays in the rate.
+    // Without calibration, the rate includes the bias of 5 LSB.
     let expected = (991.0 * 1481.0 + 100.5 * 5.0) * 0.002 / 32.8;
     assert!((turned - expected).abs() < 0.1, "{turned} {expected}");
 
-    // A sensor on its side: gravity gives the roll, unless tilt correction is off.
+    // A sensor that lies on its side: gravity gives the roll, unless tilt correction is off.
     let side = "t_us,ax,ay,az,gx,gy,gz\n0,0,4096,0,0,0,0\n1000,0,4096,0,0,0,0\n";
     std::fs::write(folder.join("side.csv"), side).unwrap();
     let angles = |more: &str| numbers(replay("side.csv", more).last().unwrap())[5..].to_vec();
@@ -101,7 +101,7 @@ fn logs_of_a_gyroscope() {
     assert!(!folder.join("x.csv").exists());
 }
 
-/// `--still 0` is a replay without a calibration, even of a log that begins in motion.
+/// `--still 0` replays without a calibration, even a log that begins in motion.
 #[test]
 fn a_rest_of_zero_seconds_is_none() {
     let folder = folder("no-rest");
@@ -119,7 +119,7 @@ fn a_rest_of_zero_seconds_is_none() {
     for zero in ["0", "0.0"] {
         assert!(replay(&format!("--still {zero}")) == expected);
     }
-    // A sensor that should rest is checked for motion.
+    // The sensor is checked for motion during the requested rest.
     let error = refused(&folder, "imu replay log.csv --out r.csv --still 0.1");
     assert!(error.contains("keep it still"), "{error}");
 }

@@ -1,8 +1,8 @@
-//! The camera that shows the whole model, and the options of the lens.
+//! The camera that shows the whole model, and the lens options.
 
 use crate::common::{SQUARE, drawn, folder, picture, refused, said};
 
-/// The drawn rows and columns of a picture with a black background: the first and the last one of each.
+/// The first and the last drawn row and column of a picture with a black background.
 fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
     let is_drawn = |i: &usize| pixels[3 * i..3 * i + 3] != [0; 3];
     let drawn: Vec<_> = (0..320 * 180).filter(is_drawn).collect();
@@ -16,7 +16,7 @@ fn extent(pixels: &[u8]) -> [[usize; 2]; 2] {
 #[test]
 fn the_whole_model_fills_four_fifths_of_the_height() {
     let folder = folder("framing");
-    // A sphere fills its own bounding sphere; at another position and size the picture is the same.
+    // A sphere fills its bounding sphere; at another position and size the picture is identical.
     for model in [
         "icosphere:20",
         "--object 'icosphere:20 scale 0.3 move 1,-1,0.5'",
@@ -36,7 +36,7 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
             );
         }
     }
-    // Every model is in the picture as a whole.
+    // Every model is completely in the picture.
     for model in ["cube", "gear", "teapot", "torus-knot", "sponge:2"] {
         let [[top, bottom], [left, right]] = extent(&drawn(&folder, &format!("render {model}")));
         assert!(
@@ -57,7 +57,7 @@ fn the_whole_model_fills_four_fifths_of_the_height() {
 #[test]
 fn the_axis_that_is_up() {
     let folder = folder("up");
-    // A column along y, and the same along z.
+    // A column along y, and a column along z.
     let column = |to: [usize; 3]| {
         let line = |[x, y, z]: [f64; 3]| {
             let v = [x, y, z];

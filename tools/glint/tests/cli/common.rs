@@ -15,7 +15,7 @@ pub fn folder(name: &str) -> PathBuf {
     path
 }
 
-/// The words of a command; single quotes join words.
+/// The arguments of a command line; single quotes join words.
 pub fn words(command: &str) -> Vec<&str> {
     let parts = command.split('\'').enumerate();
     let words = parts.flat_map(|(i, part)| match i % 2 {
@@ -25,12 +25,12 @@ pub fn words(command: &str) -> Vec<&str> {
     words.collect()
 }
 
-/// Runs a command with 256 MiB of address space, so that unbounded use of memory fails.
+/// Runs a command with 256 MiB of address space, so that unbounded memory use fails.
 pub fn glint(folder: &Path, command: &str) -> Output {
     glint_in(folder, command, &[])
 }
 
-/// Runs a command with variables of the environment in which it finds its settings.
+/// Runs a command with environment variables that set its configuration.
 pub fn glint_in(folder: &Path, command: &str, variables: &[(&str, &str)]) -> Output {
     glint_within(256, folder, command, variables)
 }
@@ -55,7 +55,7 @@ pub fn glint_within(
         .unwrap()
 }
 
-/// Runs a command as it stands, and returns what it prints on standard output and on standard error.
+/// Runs a command with exactly these arguments, and returns its standard output and standard error.
 pub fn said(folder: &Path, command: &str) -> [String; 2] {
     let output = glint(folder, command);
     let [out, error] = [output.stdout, output.stderr].map(|text| String::from_utf8(text).unwrap());
@@ -63,7 +63,7 @@ pub fn said(folder: &Path, command: &str) -> [String; 2] {
     [out, error]
 }
 
-/// Runs a command, which replaces what it has written before, and returns what it prints.
+/// Runs a command that replaces its earlier output files, and returns its standard output.
 pub fn succeed(folder: &Path, command: &str) -> String {
     let [out, _] = said(folder, &format!("{command} --force"));
     out
@@ -80,7 +80,7 @@ pub fn drawn(folder: &Path, command: &str) -> Vec<u8> {
     picture(&folder.join("a.png"))
 }
 
-/// Runs a command on input that it must reject; returns its single line of error.
+/// Runs a command on input that it must reject; returns its error, which has one line.
 pub fn refused(folder: &Path, command: &str) -> String {
     let output = glint(folder, command);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -94,7 +94,8 @@ pub fn refused(folder: &Path, command: &str) -> String {
     error.trim_end().to_owned()
 }
 
-/// Runs commands that must be rejected. Each is a line, with its error on the next line; `…` there stands for any text at the end.
+/// Runs commands that must be rejected. Each command is a line, and its error is the next line; `…` stands for any text at the
+/// end of the error.
 pub fn all_refused(folder: &Path, cases: &str) {
     let lines: Vec<&str> = cases.lines().map(str::trim).collect();
     let lines: Vec<&str> = lines.into_iter().filter(|line| !line.is_empty()).collect();
@@ -108,7 +109,8 @@ pub fn all_refused(folder: &Path, cases: &str) {
     }
 }
 
-/// Writes files that each command, with `FILE` for the name, must reject; `errors` has a line for each file as in [`all_refused`].
+/// Writes files that each command, in which `FILE` stands for the name, must reject; `errors` has a line for each file as in
+/// [`all_refused`].
 pub fn files_refused<const N: usize>(
     folder: &Path,
     commands: [&str; N],

@@ -15,7 +15,7 @@ fn conversions_by_every_way_agree() {
         let read = |name: &str| std::fs::read(folder.join(name)).unwrap();
         assert_eq!(read("straight.glm"), read("back.glm"), "{extension}");
     }
-    // STL has neither shared points nor point colours: each face has its own colour, and so its own vertices.
+    // STL has neither shared points nor point colours: each face has its own colour, and therefore its own vertices.
     succeed(&folder, "convert straight.glm between.stl --keep-scale");
     let report = report(&folder, "convert between.stl back.glm --keep-scale");
     assert_eq!(
@@ -126,7 +126,8 @@ fn a_material_file_beside_the_mesh() {
     );
 }
 
-/// 260 concave polygons of 8,000 corners have nearly as many triangles as a mesh may have. They take at most 512 MiB.
+/// 260 concave polygons with 8,000 corners have nearly the maximum number of triangles of a mesh. Their conversion takes at most
+/// 512 MiB.
 #[test]
 fn concave_polygons_of_8000_corners_load_in_bounded_memory() {
     let folder = folder("large-polygons");

@@ -1,11 +1,11 @@
-//! `glint render` of distance fields, alone and with a mesh, by the model.
+//! `glint render` of distance fields, alone and with a mesh, with the model.
 
 use crate::common::{SQUARE, VIEW, depths, drawn, folder, json, picture, refused, said, succeed};
 
 #[test]
 fn fields_and_their_files() {
     let folder = folder("fields");
-    // The camera is 20 away from the box, which would be too far for a mesh.
+    // The camera is at distance 20 from the box, which is too far for a mesh.
     let view = VIEW.replace("[0,-2,0]", "[0,-20,0]");
     let view = view.replace("0.9", "0.05").replace("0.1}", "0.5}");
     std::fs::write(folder.join("far.json"), view).unwrap();
@@ -30,7 +30,7 @@ fn fields_and_their_files() {
     assert_eq!(stats["evaluations_per_ray"], mean);
     assert!(stats["cycles"].is_null() && stats.get("triangles_in").is_none());
 
-    // The picture shows the box's front face, in the colour of its normal, on a white background.
+    // The picture shows the box's front face in the colour of its normal, on a white background.
     let depth = depths(&folder.join("a.f32"));
     for (z, pixel) in depth.iter().zip(one.chunks_exact(3)) {
         assert!(
@@ -60,7 +60,8 @@ fn fields_and_their_files() {
         ),
         "error: --light: expected at most 4 lights, found 5"
     );
-    // One blue light from above and no ambient light: the box's top is blue, its other sides are black, the background is white.
+    // One blue light from above and no ambient light: the box's top is blue, its other sides are black, and the background is
+    // white.
     let blue = "--material ivory --light 0,0,1,0000ff --ambient 000000";
     let (lit, _) = render("box:1,1,1", blue);
     let mut colours: Vec<&[u8]> = lit.chunks_exact(3).collect();
@@ -76,8 +77,8 @@ fn fields_and_their_files() {
         let with = render("menger:2", more).0;
         assert_ne!(with, render("menger:2", "").0, "{more}");
     }
-    // The default camera sees the whole sponge: the picture's first pixel is background. A camera at distance 3 gives another
-    // picture.
+    // The default camera shows the whole sponge: the first pixel of the picture is background. A camera at distance 3 gives a
+    // different picture.
     let (sponge, _) = render("menger:3", "");
     assert_eq!(sponge[..3], [0xff; 3]);
     assert_ne!(sponge, render("menger:3", "--camera 3,30,60").0);
@@ -102,7 +103,8 @@ fn a_mesh_in_a_field() {
     let mut seen = [0, 0];
     for (i, pixel) in both.chunks_exact(3).enumerate() {
         let (a, b) = (mesh_depth[i], field_depth[i]);
-        // When drawn alone, mesh and field have depth codes of different scales, so close distances count as equal.
+        // The depth codes of the mesh and of the field, each drawn alone, have different scales, so similar distances count as
+        // equal.
         if (a - b).abs() < 1e-3 {
             continue;
         }
@@ -159,8 +161,8 @@ fn warnings_of_pictures_that_show_nothing() {
     }
 }
 
-/// Rays that reach the step limit have the colour of the horizon, which the sky and the fog have in the distance. They are counted, and
-/// magenta on request alone.
+/// Rays that reach the step limit have the colour of the horizon, like sky and fog in the distance. They are counted; an option
+/// draws them in magenta.
 #[test]
 fn undecided_rays_have_the_colour_of_the_horizon() {
     let folder = folder("undecided");

@@ -1,4 +1,4 @@
-//! Images for SPI flash: making, listing, checking and writing them.
+//! Makes, lists, checks and writes images for SPI flash.
 
 use crate::common::{folder, glint, refused, report, succeed};
 use glint_core::flash::{CONTENTS, FIRMWARE, Image, Kind};
@@ -7,7 +7,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Command;
 
-/// Makes `board.bin` of a firmware and scenes.
+/// Makes `board.bin` from a firmware and scenes.
 fn make(folder: &Path, scenes: &str) -> String {
     fs::write(folder.join("firmware.bin"), [0x13; 400]).unwrap();
     let pieces = format!("--firmware firmware.bin --scene {scenes}");
@@ -126,11 +126,11 @@ fn damaged_images_are_refused_with_the_place() {
     let error = check(&damaged);
     assert!(error.contains("expected the CRC-32 0x"), "{error}");
     assert!(refused(&folder, "image list bad.bin").contains("expected the CRC-32"));
-    // A damaged image is not written, whether there is a loader or not.
+    // A damaged image is not written, with or without openFPGALoader.
     assert!(refused(&folder, "flash --spi bad.bin").contains("expected the CRC-32"));
 }
 
-/// Runs `glint flash --spi board.bin` with `folder` as the only folder of programs.
+/// Runs `glint flash --spi board.bin` with `folder` as the program search path.
 fn flash(folder: &Path) -> (bool, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_glint"))
         .args(["flash", "--spi", "board.bin"])
@@ -142,8 +142,8 @@ fn flash(folder: &Path) -> (bool, String) {
     (output.status.success(), String::from_utf8(text).unwrap())
 }
 
-/// Without openFPGALoader the error says how to install it. A substitute program records its arguments, because the
-/// loader itself needs a board.
+/// Without openFPGALoader, the error states how to install it. A substitute program records its arguments, because openFPGALoader
+/// itself requires a board.
 #[test]
 fn an_image_without_a_bitstream_is_written_behind_its_slot() {
     let folder = folder("image-flash");

@@ -1,4 +1,4 @@
-//! Bad input: one line of error, exit code 2, and no output file.
+//! Bad input gives one line of error, exit code 2, and no output file.
 
 use crate::common::{SQUARE, VIEW, all_refused, files_refused, folder, glint, succeed};
 
@@ -174,7 +174,7 @@ fn failures_other_than_bad_input() {
     }
 }
 
-/// The checksum catches damage that still parses as a mesh; a file without a checksum is refused.
+/// The checksum detects damage that still parses as a mesh; a file without a checksum is rejected.
 #[test]
 fn a_damaged_glm_is_refused() {
     let folder = folder("damaged_glm");
@@ -186,7 +186,7 @@ fn a_damaged_glm_is_refused() {
         bytes[at] ^= bit;
         bytes
     };
-    // The colour of the first vertex is damaged, the checksum, and the format.
+    // Damages the colour of the first vertex, the checksum, and the format.
     let files = [
         ("colour.glm", damaged(60, 4)),
         ("checksum.glm", damaged(25, 1)),

@@ -1,4 +1,4 @@
-//! The program from outside: exit codes, messages, files.
+//! The program as seen from outside: exit codes, messages, files.
 
 mod attitudes;
 mod cameras;

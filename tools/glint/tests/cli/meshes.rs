@@ -1,4 +1,4 @@
-//! `glint render` of meshes by the model.
+//! `glint render` of meshes with the model.
 
 use crate::common::{VIEW, all_refused, depths, drawn, folder, json, refused};
 
@@ -39,14 +39,14 @@ fn renders_and_their_files() {
     assert!(number("pixels_tested") >= number("pixels_covered"));
     assert!(stats["cycles"].is_null() && stats["clock"].is_null());
 
-    // The teapot lies between 1.5 and 2.5 from the eye along n.
+    // The teapot's distance from the eye along n is between 1.5 and 2.5.
     let parallel = depths(&folder.join("orthographic.f32"));
     let covered = parallel.iter().filter(|z| z.is_finite());
     assert!(covered.clone().count() > 5_000 && covered.clone().all(|z| (1.4..2.6).contains(z)));
     let depth = depths(&folder.join("a.f32"));
     assert_eq!(depth.len(), 320 * 180);
     for (z, pixel) in depth.iter().zip(picture.chunks_exact(3)) {
-        // The teapot lies between 1.5 and 2.5 from the eye along n.
+        // The teapot's distance from the eye along n is between 1.5 and 2.5.
         assert!(
             *z == f32::INFINITY && pixel == [0; 3] || (1.4..2.6).contains(z),
             "{z} {pixel:?}"
@@ -55,7 +55,7 @@ fn renders_and_their_files() {
     assert!(depth.iter().any(|z| z.is_finite()));
 }
 
-/// Light on a mesh: at the camera or from a direction, with a colour, and ambient light.
+/// Light on a mesh: a light at the camera or a directional light, with a colour, and ambient light.
 #[test]
 fn light_on_a_mesh() {
     let folder = folder("light-on-a-mesh");
@@ -66,7 +66,7 @@ fn light_on_a_mesh() {
     };
     let default = render("");
     assert_eq!(render("--light camera --ambient 000000"), default);
-    // The light comes from above, so that the lower half is dark: without ambient light it is black.
+    // The light comes from above, so the lower half is black without ambient light.
     let above = render("--light 0,0,1,ff0000 --ambient 000000");
     let bright = lit(&default, 0);
     assert!((bright / 4..bright * 9 / 10).contains(&lit(&above, 0)));
@@ -86,7 +86,7 @@ fn light_on_a_mesh() {
     );
 }
 
-/// The background of a mesh, and its material instead of its colours.
+/// The background of a mesh, and the material that replaces its colours.
 #[test]
 fn background_and_material_of_a_mesh() {
     let folder = folder("background-of-a-mesh");
@@ -105,7 +105,7 @@ fn background_and_material_of_a_mesh() {
             assert_eq!(after, expected, "{text}");
         }
     }
-    // Each triangle is grey at first, and then has the material's mixture of red, green and blue.
+    // Each triangle is grey without the option, and has the material's ratio of red, green and blue with it.
     let gold = render("--material gold");
     let lit = gold.chunks_exact(3).filter(|pixel| pixel[0] > 100);
     assert!(lit.clone().count() > 5_000);
@@ -114,7 +114,7 @@ fn background_and_material_of_a_mesh() {
             .all(|pixel| pixel[0] > pixel[1] && pixel[1] > pixel[2])
     );
     assert!(drawn(&folder, "render --object icosphere:4 --material gold") == gold);
-    // An object's own colour stays.
+    // An object's own colour does not change.
     let blue = "render --object 'icosphere:4 colour 0000ff' --material gold";
     let blue = drawn(&folder, blue);
     assert!(blue.chunks_exact(3).all(|pixel| pixel[..2] == [0; 2]));
@@ -131,7 +131,7 @@ fn background_and_material_of_a_mesh() {
     );
 }
 
-/// A supersampled picture is the mean of one of twice the size, and has colours between those of the mesh.
+/// A supersampled picture is the mean of a picture of twice the size, and contains mixed colours of the mesh.
 #[test]
 fn supersampled_pictures() {
     let folder = folder("supersampled");
@@ -146,7 +146,7 @@ fn supersampled_pictures() {
         let sum = of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1);
         assert_eq!(u32::from(found), (sum + 2) / 4);
     }
-    // A scene too, by a factor of four.
+    // A scene with a factor of four.
     let scene = "render --scene cubes --size 320x180 --supersample 4";
     assert_eq!(drawn(&folder, scene).len(), 3 * 320 * 180);
     all_refused(

@@ -18,7 +18,7 @@ fn frames_of_png(path: &Path) -> Vec<Vec<u8>> {
     (0..count).map(|_| frame()).collect()
 }
 
-/// The frames of a GIF, and the time of the first one in 1/100 s.
+/// The frames of a GIF, and the duration of the first frame in 1/100 s.
 fn frames_of_gif(path: &Path) -> (Vec<Vec<u8>>, u16) {
     let mut options = gif::DecodeOptions::new();
     options.set_color_output(gif::ColorOutput::RGBA);
@@ -46,17 +46,17 @@ fn both_forms_show_one_turn() {
     for (i, frame) in frames.iter().enumerate() {
         assert!(!frames[..i].contains(frame), "frame {i}");
     }
-    // With at most 256 colours in a frame the GIF is exact.
+    // With at most 256 colours per frame, the GIF is exact.
     assert!(frames_of_gif(&folder.join("orbit.gif")) == (frames.clone(), 10));
-    // The turn begins with the camera of a picture.
+    // The turn begins with the camera of `glint render`.
     assert!(drawn(&folder, "render icosphere:2") == frames[0]);
-    // Another axis and field of view.
+    // Another axis, and another field of view.
     let quarters = "orbit cube --frames 4 --out a.png --up y --fov 30";
     succeed(&folder, quarters);
     assert_eq!(frames_of_png(&folder.join("a.png")).len(), 4);
 }
 
-/// An animation of a field or a scene begins with the picture of `glint render`, and goes about the z axis.
+/// An animation of a field or a scene begins with the picture of `glint render`, and turns about the z axis.
 #[test]
 fn fields_and_scenes() {
     let folder = folder("orbit-fields");
@@ -76,7 +76,7 @@ fn fields_and_scenes() {
         succeed(&folder, &format!("orbit --frames 4 --out a.png {subject}"));
         let frames = frames_of_png(&folder.join("a.png"));
         assert_eq!(frames.len(), 4);
-        // Some subjects have the same picture after a quarter or half a turn.
+        // Some subjects have an identical picture after a quarter or half turn.
         assert!(frames.iter().any(|frame| *frame != frames[0]), "{subject}");
         let first = drawn(&folder, &format!("render {subject}"));
         assert!(first == frames[0], "{subject}");

@@ -1,4 +1,4 @@
-//! Output files: written whole or not at all, never over an input, and checked before the work.
+//! Output files are written completely or not at all, never over an input, and are checked before the work begins.
 
 use crate::common::{SQUARE, VIEW, all_refused, folder, glint, refused, succeed, words};
 use std::fs;
@@ -6,7 +6,7 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
 
-/// Runs the program with files of at most 512 bytes, as on a full file system.
+/// Runs the program with a file size limit of 512 bytes, as on a full file system.
 fn when_full(folder: &Path, arguments: &str) -> String {
     let output = Command::new("sh")
         .args([
