@@ -1,4 +1,4 @@
-//! Roots, reciprocal roots and directions, compared with f64.
+//! Tests of roots, reciprocal roots and directions against f64.
 
 use glint_core::root::{inverse_root, root};
 use glint_core::vector::unit;
@@ -29,7 +29,7 @@ fn a_root_is_the_nearest_number() {
         let exact = f64::from(square).sqrt().round().min(65_535.0);
         assert_eq!(f64::from(root(square)), exact, "{square}");
     }
-    // The squares of 65,535.5 and more have roots that do not fit.
+    // From the square of 65,535.5 on, the rounded root does not fit 16 bits.
     assert_eq!([0, 1, u32::MAX].map(root), [0, 1, 65_535]);
 }
 
@@ -46,7 +46,7 @@ fn directions_along_an_axis_are_exact() {
     assert_eq!(unit::<30>([0; 3]), None);
 }
 
-/// Numbers of all lengths.
+/// Random numbers of all bit lengths.
 fn component() -> impl Strategy<Value = i64> {
     (any::<i64>(), 0..64).prop_map(|(x, shift)| x >> shift)
 }

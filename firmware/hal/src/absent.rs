@@ -12,7 +12,7 @@ pub struct Absent {
 }
 
 impl Absent {
-    /// Checks that the value `found` in a block's register `ident` is the expected one.
+    /// Checks the value `found` of a block's register `ident`.
     pub(crate) const fn check(found: u32, expected: u32) -> Result<(), Self> {
         if found == expected {
             Ok(())

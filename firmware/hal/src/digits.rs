@@ -1,14 +1,14 @@
-//! Two displays of four digits, each of seven segments and a point.
+//! Driver of two displays of four digits, each digit with seven segments and a point.
 
 use litex_pac::digits;
 
-/// The displays. A board without them shows nothing.
+/// The displays. On a board without displays it has no effect.
 pub struct Digits {
     registers: digits::Digits,
 }
 
 impl Digits {
-    /// Returns the displays, dark.
+    /// Returns the displays, switched off.
     #[must_use]
     pub fn new(registers: digits::Digits) -> Self {
         let mut digits = Self { registers };

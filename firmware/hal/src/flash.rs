@@ -5,7 +5,8 @@ use core::slice;
 use litex_pac::identity::Identity;
 use litex_pac::memories::FLASH;
 
-/// The bytes of the flash; `None` if the gateware cannot read it. `bit` is the bit of the block `flash` in `identity.blocks`.
+/// The bytes of the flash; `None` if the gateware has no block `flash`. `bit` is the bit of the block `flash` in
+/// `identity.blocks`.
 #[must_use]
 pub fn bytes(identity: &Identity, bit: u32) -> Option<&'static [u8]> {
     // SAFETY: the window has this size at this address in every gateware with the block, and is read-only: nothing writes the flash

@@ -7,7 +7,7 @@ use core::time::Duration;
 
 use litex_pac::constants::CONFIG_CLOCK_FREQUENCY;
 
-/// Cycles per second of a clock with one cycle in 4 µs. Every frequency is a multiple of this number.
+/// Unit of frequencies in Hz: one cycle in 4 µs. Every frequency is a multiple.
 const UNIT: u32 = 250_000;
 
 /// Lowest frequency in units of `UNIT`.
@@ -86,7 +86,7 @@ impl Frequency {
         cycles / (self.hertz / 1000) as u64
     }
 
-    /// Converts a span to clock cycles, rounded up; saturates.
+    /// Converts a duration to clock cycles, rounded up; saturates.
     #[must_use]
     pub const fn cycles(self, span: Duration) -> u64 {
         let hertz = self.hertz as u64;
@@ -95,7 +95,7 @@ impl Frequency {
         span.as_secs().saturating_mul(hertz).saturating_add(part)
     }
 
-    /// Converts ns to clock cycles, rounded up. Up to 4 ms this takes few cycles itself, without a division of 64 bits.
+    /// Converts ns to clock cycles, rounded up. Up to 4 ms the conversion needs no 64-bit division and takes few cycles.
     #[must_use]
     pub const fn cycles_of_nanoseconds(self, nanoseconds: u32) -> u64 {
         match nanoseconds.checked_mul(self.hertz / UNIT) {
@@ -117,7 +117,7 @@ mod tests {
 
     use super::*;
 
-    /// The lowest and the highest frequency, those of the boards, and one whose number of units is a power of 2.
+    /// The lowest and the highest frequency, the boards' frequencies, and a frequency of a power of 2 units.
     const FREQUENCIES: [u32; 6] = [
         1_250_000,
         40_000_000,
@@ -137,7 +137,7 @@ mod tests {
                 assert_eq!(frequency.microseconds(cycles), exact(cycles), "{hertz}");
             }
             for turn in 0..1_000_u64 {
-                // The last cycle of a microsecond is where a reciprocal that is too large shows first.
+                // The last cycle of a microsecond is the first to detect a reciprocal that is too large.
                 let cycles = ((turn << 43) + 4) * u64::from(hertz / UNIT) / 4 - 1;
                 let cycles = cycles & ((1 << 54) - 1);
                 assert_eq!(frequency.microseconds(cycles), exact(cycles), "{hertz}");

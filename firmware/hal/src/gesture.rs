@@ -1,7 +1,7 @@
 //! The gesture engine `gesture`, which counts the pixels of a hand in the frames of an image sensor, and the pins of the sensor.
 //!
-//! After each whole frame the engine raises an interrupt and has the [`Counts`] of this frame; a frame with a fault leaves
-//! them as they are. Windows, region and run take effect with the next frame.
+//! After each whole frame the engine raises an interrupt and has the [`Counts`] of this frame; a frame with a fault leaves the
+//! counts unchanged. Windows, region and run take effect with the next frame.
 //!
 //! Software moves the sensor's bus (SCCB): the driver implements [`Wires`].
 
@@ -17,7 +17,7 @@ use crate::Absent;
 /// Largest coordinate of a region.
 const LAST: u16 = 2047;
 
-/// Output of the image sensor, for messages.
+/// State of the image sensor's output, for messages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Signal {
     /// Whether the sensor's clock PCLK runs.
@@ -28,10 +28,10 @@ pub struct Signal {
     pub seen: [u16; 2],
 }
 
-/// What the engine counted in a frame.
+/// Counts of the engine for a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Counts {
-    /// Columns and rows of the frame.
+    /// Number of columns and rows of the frame.
     pub size: [u16; 2],
     /// Number of pixels of the hand's colour.
     pub count: u32,
@@ -44,7 +44,7 @@ pub struct Counts {
 /// Driver of the gesture engine, whose presence has been checked.
 pub struct GestureEngine {
     registers: gesture::Gesture,
-    /// Levels of the sensor's pins, as they were written last.
+    /// Last written levels of the sensor's pins.
     camera: Camera,
     size: [u16; 2],
 }
@@ -68,7 +68,7 @@ impl GestureEngine {
         Ok(engine)
     }
 
-    /// Gives the image sensor its clock and ends its reset, or stops the engine and turns the sensor off.
+    /// Starts the image sensor's clock and ends its reset, or stops the engine and turns the sensor off.
     pub fn set_power(&mut self, on: bool) {
         if !on {
             self.registers.control().write(Control::default());
@@ -81,7 +81,7 @@ impl GestureEngine {
         self.registers.camera().write(self.camera);
     }
 
-    /// Takes frames of this size from the next VSYNC on. `vsync_low` says that VSYNC is low between frames.
+    /// Processes frames of this size from the next VSYNC on. `vsync_low` states that VSYNC is low between frames.
     pub fn receive(&mut self, size: [u16; 2], vsync_low: bool) {
         let registers = &self.registers;
         let control = Control::default().with_vsync_low(vsync_low);
@@ -94,7 +94,7 @@ impl GestureEngine {
         self.size = size;
     }
 
-    /// Sets the windows of the channels Cr and Cb: the smallest and the largest value.
+    /// Sets the accepted windows of the channels Cr and Cb: smallest and largest value.
     pub fn set_windows(&mut self, [cr, cb]: [[u8; 2]; 2]) {
         let first = WindowA::default().with_channel(Channel::Cr);
         self.registers
@@ -106,7 +106,7 @@ impl GestureEngine {
             .write(second.with_lower(cb[0]).with_upper(cb[1]));
     }
 
-    /// Sets what the engine counts: pixels in the region with these corners, in runs of at least this length.
+    /// Selects the counted pixels: those in the region with these corners and in runs of at least this length.
     pub fn set_gate(&mut self, [[left, top], [right, bottom]]: [[u16; 2]; 2], least_run: u8) {
         let columns = RegionX::default().with_first(left);
         let rows = RegionY::default().with_first(top);
@@ -136,7 +136,7 @@ impl GestureEngine {
         (registers.sequence().read() == sequence).then_some(counts)
     }
 
-    /// Output of the image sensor.
+    /// State of the image sensor's output.
     #[must_use]
     pub fn signal(&self) -> Signal {
         let status = self.registers.status().read();
@@ -154,19 +154,19 @@ impl GestureEngine {
         Counters::read(&self.registers)
     }
 
-    /// Requests a small picture of the next whole frame: every 2^`step`-th pixel of every 2^`step`-th line, as colours or as marks of
-    /// the hand's colour. `step` is at most 5.
+    /// Requests a small picture of the next whole frame: every 2^`step`-th pixel of every 2^`step`-th line, as colours, or as one
+    /// bit per pixel for the hand's colour. `step` is at most 5.
     pub fn request_picture(&mut self, step: u8, is_colour: bool) {
         let request = Snapshot::default().with_step(step).with_colour(is_colour);
         self.registers.snapshot().write(request.with_start(true));
     }
 
-    /// The words of the small picture: a colour each, or 16 marks each, the first in the highest bit; `None` before the frame has
-    /// ended.
+    /// The words of the small picture: one colour per word, or 16 bits for 16 pixels, the first in the highest bit; `None` before
+    /// the frame has ended.
     #[must_use]
     pub fn picture(&self) -> Option<impl Iterator<Item = u16> + Clone> {
         let state = self.registers.snapshot_state().read();
-        // A place for each word, because an iterator may be cloned and both may continue.
+        // Each word is read by its index, because the iterator may be cloned and both copies may continue.
         let words = (0..state.words()).map(|place| {
             self.registers.snapshot_place().write(place);
             self.registers.snapshot_word().read()

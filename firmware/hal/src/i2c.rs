@@ -1,18 +1,18 @@
 //! The I2C master `i2c`, which executes a queue of commands.
 //!
 //! The master must be the only one on the bus. It supports 7-bit addresses, 400 kHz and clock stretching. The driver puts
-//! a transaction into the queue, and an interrupt reports the end of the transaction: [`embedded_hal_async::i2c::I2c`]
-//! yields the CPU meanwhile, [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may
-//! hold SDA low; before each start the master therefore sends clocks until the device releases SDA.
+//! a transaction into the queue, and an interrupt reports the end of the transaction: [`embedded_hal_async::i2c::I2c`] yields
+//! until then, [`embedded_hal::i2c::I2c`] polls. A device that was interrupted in the middle of a byte may hold SDA low; before
+//! each start the master therefore sends clocks until the device releases SDA.
 //!
-//! Periodic reads ([`PeriodicI2c`], the register `rounds`) are one transaction that the master repeats at a steady pace, with an
+//! Periodic reads ([`PeriodicI2c`], the register `rounds`) are a transaction that the master repeats periodically, with an
 //! interrupt after each batch of reads.
 //!
 //! A future that is dropped before its transaction has ended may leave the bus in the middle of a byte; the next
 //! transaction clears the master and begins with a start.
 //!
 //! # Limits
-//! There is no arbitration between masters: a wire that is low instead of high is reported as an error.
+//! The master does no arbitration: a wire that another device holds low is reported as an error.
 
 use core::fmt;
 use core::future::poll_fn;
@@ -68,8 +68,8 @@ pub enum BusError {
     DataStuck,
     /// The transaction made no progress for 100 ms.
     Timeout,
-    /// A periodic read was not over when the next read was due, because the device stretches the clock or the receive
-    /// queue is full.
+    /// A periodic read had not ended when the next read was due, because the device stretches the clock or the receive queue is
+    /// full.
     Late,
     /// The requested periodic reads exceed the master's limits, or no periodic reads have begun.
     Reads,
@@ -271,7 +271,7 @@ struct Transfer<'o, 'b> {
     stage: Stage,
     /// Whether the last start began a read; `None` before the first start.
     reads: Option<bool>,
-    /// Index in `operations` of the operation that the next command is for.
+    /// Index in `operations` of the operation of the next command.
     operation: usize,
     /// Number of bytes of that operation for which a command is already in the queue.
     sent: usize,

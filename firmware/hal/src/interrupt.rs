@@ -7,7 +7,7 @@ use litex_pac::Interrupt;
 
 /// Calls `handle` for each interrupt of `pending`, lowest number first. Returns the pending lines that have no [`Interrupt`].
 ///
-/// Handlers match on [`Interrupt`], so the compiler finds an interrupt without a handler.
+/// Handlers match on [`Interrupt`], so the compiler reports an interrupt without a handler.
 pub fn dispatch(pending: u32, mut handle: impl FnMut(Interrupt)) -> u32 {
     let mut unknown = pending;
     for interrupt in Interrupt::ALL {

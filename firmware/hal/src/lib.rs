@@ -15,7 +15,7 @@
 //! | [`gesture`] | `gesture`, which finds a hand in the frames of a camera, and the camera's pins | |
 //! | [`raymarch`] | `raymarch`, which draws distance fields into the frames of `triangle` | |
 //!
-//! Drivers know registers (`litex-pac`) and numbers, nothing of scenes, frames or the hand: `glint-engines` ties them to these. On a
+//! Drivers depend only on registers (`litex-pac`) and numbers; `glint-engines` connects them to scenes, frames and the hand. On a
 //! host a model replaces the bus, so tests run the same drivers.
 
 #![no_std]

@@ -12,14 +12,14 @@ use crate::Absent;
 /// Build options of a raymarcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capabilities {
-    /// Number of lanes, each of which evaluates the field once a clock.
+    /// Number of lanes, each of which evaluates the field once per clock.
     pub lanes: u8,
     /// Largest number of levels of a sponge that this build draws; 0 if it draws no sponges.
     pub levels: u8,
     /// Kinds of flat fields (fields with plane faces) that this build draws: bit k is 1 if it draws the kind with the value k
     /// in `Kind`.
     pub flat: u8,
-    /// Whether this build draws two eyes.
+    /// Whether this build draws stereo pictures.
     pub stereo: bool,
     /// Whether this build draws spheres.
     pub round: bool,
@@ -46,7 +46,8 @@ pub type Tables<'a> = [&'a [u8; 256]; 2];
 /// A colour: red, green, blue.
 pub type Rgb = [u8; 3];
 
-/// The constants of a field, by the registers that hold them (docs/registers.md). Numbers have the formats of docs/formats/raymarch.md.
+/// The constants of a field, named after their registers (docs/registers.md). Numbers have the formats of
+/// docs/formats/raymarch.md.
 #[derive(Clone, Copy)]
 pub struct Field<'a> {
     /// Fields of the register `control`, except `enable`, which the driver sets.
@@ -59,7 +60,7 @@ pub struct Field<'a> {
     pub half: [u32; 3],
     /// Precision of the march.
     pub tuning: Tuning,
-    /// The far limit and the near limit.
+    /// The far limit and the near limit of the rays.
     pub limits: [u32; 2],
     /// The left and the right eye.
     pub eyes: [Eye<'a>; 2],
@@ -67,13 +68,13 @@ pub struct Field<'a> {
     pub bounds: &'a [u32; 3],
     /// Change of the direction per pixel to the right, per pixel down, and from the first pixel of a cone's block to its middle.
     pub steps: [&'a [i32; 3]; 3],
-    /// Growth of a cone.
+    /// Growth of a cone's radius.
     pub cone_spread: u16,
     /// The scale of depth codes.
     pub depth_scale: DepthScale,
     /// The colours of the faces.
     pub faces: &'a [Rgb; 8],
-    /// The colours of undecided rays, of the zenith and of the horizon.
+    /// The colours of rays at the step limit, of the zenith and of the horizon.
     pub sky: [Rgb; 3],
     /// Exponent of the depth step of the table of fog.
     pub fog_shift: u8,
@@ -119,8 +120,8 @@ impl Raymarcher {
         self.capabilities
     }
 
-    /// Enables the field in every following raster pass, in which it is drawn after the triangles. The picture size of these passes
-    /// must be that of the constants, and the tables and the spheres those of the field.
+    /// Enables the field in every following raster pass, which draws the field after the triangles. The constants must have been
+    /// computed for the picture size of these passes, and the tables and spheres must belong to the field.
     pub fn set_field(&mut self, field: &Field) {
         let registers = &self.registers;
         registers.solid().write(field.solid);
@@ -190,7 +191,8 @@ impl Raymarcher {
         self.registers.sphere().write(constant);
     }
 
-    /// Whether the raymarcher's tables are equal to these. This comparison takes longer than writing the registers of a frame.
+    /// Whether the raymarcher's tables already have this content. The comparison takes longer than writing the registers of a
+    /// frame.
     #[must_use]
     pub fn has_tables(&self, tables: Tables) -> bool {
         let held = self.tables.as_ref();

@@ -17,7 +17,7 @@ use litex_pac::scanout::{self, Control, EvEnable, EvPending};
 
 use crate::Absent;
 
-/// Number of screen pixels, horizontally and vertically, that show one pixel of a frame.
+/// Enlargement on the screen: one pixel of a frame covers this number of screen pixels horizontally and vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Scale {
@@ -30,7 +30,7 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// The scale at which a frame with this number of pixels a line fills the lines of a screen; `None` if there is none.
+    /// The scale at which lines of `frame` pixels fill screen lines of `screen` pixels; `None` if no scale does.
     fn new(frame: u32, screen: u32) -> Option<Self> {
         [Self::One, Self::Two, Self::Four]
             .into_iter()
@@ -41,7 +41,7 @@ impl Scale {
 /// The registers of the scan-out block, whose presence in this SoC has been checked.
 pub struct Scanout {
     registers: scanout::Scanout,
-    /// Number of pixels of a line of the screen.
+    /// Number of pixels in a line of the screen.
     width: u32,
 }
 
@@ -59,9 +59,9 @@ impl Scanout {
         Ok(Self { registers, width })
     }
 
-    /// Keeps the frame at the address `shown` on the screen if the frame at the address `next`, which should replace it,
-    /// is not shown yet. Returns whether the frame at `shown` was kept. If the two frames have different scales, nothing
-    /// changes, because a frame would be shown with the wrong scale.
+    /// Keeps the frame at the address `shown` on the screen if its successor at the address `next` is not shown yet. Returns
+    /// whether the frame at `shown` was kept. If the two frames have different scales, nothing changes, because a frame would be
+    /// shown with the wrong scale.
     fn withdraw(&self, next: u32, shown: u32) -> bool {
         let registers = &self.registers;
         if registers.fb_next().read() != next
@@ -79,7 +79,7 @@ impl Scanout {
         withdrawn
     }
 
-    /// Whether the frame at `address` is shown or waits to be shown, so that it must not be drawn on.
+    /// Whether the frame at `address` is shown or waits to be shown, and must not be drawn on.
     fn holds(&self, address: u32) -> bool {
         // `next` is read first: a frame that becomes current between the two reads is then found as the next frame.
         self.registers.fb_next().read() == address || self.registers.fb_current().read() == address
@@ -143,8 +143,7 @@ impl Display {
         (!held).then_some(&mut *self.back)
     }
 
-    /// Takes back the frame of the last [`show`](Self::show) if it is not on the screen yet, to replace an outdated
-    /// picture before it is shown.
+    /// Withdraws the frame of the last [`show`](Self::show) if it is not on the screen yet, to replace an outdated picture.
     pub fn withdraw(&mut self) {
         let withdrawn = self
             .scanout

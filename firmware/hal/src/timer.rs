@@ -32,7 +32,7 @@ impl core::fmt::Display for Stopped {
 
 impl core::error::Error for Stopped {}
 
-/// The whole milliseconds of a duration below 49 days, for messages: those of [`Duration::as_millis`] have 128 bits, and the code that
+/// The whole milliseconds of a duration below 49 days, for messages. [`Duration::as_millis`] returns 128 bits, and the code that
 /// prints such a number takes 2.7 KB.
 #[must_use]
 pub const fn whole_millis(duration: Duration) -> u32 {
@@ -74,13 +74,13 @@ impl Clock {
         self.frequency.milliseconds(self.cycles())
     }
 
-    /// The point in time `span` from now.
+    /// Returns the point in time at the duration `span` from now.
     #[must_use]
     pub fn after(self, span: Duration) -> Deadline {
         self.after_cycles(self.frequency.cycles(span))
     }
 
-    /// The point in time `cycles` from now.
+    /// Returns the point in time `cycles` clock cycles from now.
     #[must_use]
     pub fn after_cycles(self, cycles: u64) -> Deadline {
         Deadline {
@@ -113,7 +113,7 @@ impl DelayNs for Clock {
     }
 }
 
-/// A delay for futures that are not polled meanwhile: it blocks the CPU, as `embedded_hal`'s delays do.
+/// A blocking delay: it occupies the CPU, as the delays of `embedded_hal` do.
 pub struct Waiting(pub Clock);
 
 impl embedded_hal_async::delay::DelayNs for Waiting {
@@ -124,7 +124,7 @@ impl embedded_hal_async::delay::DelayNs for Waiting {
     }
 }
 
-/// Polls a future until it is ready; the CPU does nothing else meanwhile.
+/// Polls a future until it is ready, and blocks the CPU until then.
 pub fn block_on<T>(future: impl Future<Output = T>) -> T {
     let mut future = pin!(future);
     let mut context = Context::from_waker(Waker::noop());
@@ -136,8 +136,8 @@ pub fn block_on<T>(future: impl Future<Output = T>) -> T {
 }
 
 /// A delay ends at the first poll after its time; an interrupt of `timer0` causes this poll. `timer0` has a single
-/// interrupt: of several simultaneous delays only the delay that began last gets the interrupt. Earlier delays end at a
-/// poll with another cause.
+/// interrupt: of several simultaneous delays only the latest one gets the interrupt. Earlier delays end at a poll with another
+/// cause.
 impl embedded_hal_async::delay::DelayNs for Clock {
     async fn delay_ns(&mut self, ns: u32) {
         self.wait(self.frequency.cycles(Duration::from_nanos(ns.into())))
@@ -157,7 +157,7 @@ impl embedded_hal_async::delay::DelayNs for Clock {
 impl Clock {
     async fn wait(self, cycles: u64) {
         let deadline = self.after_cycles(cycles);
-        // If the interrupt comes early, it only causes one additional poll.
+        // An early interrupt only causes an additional poll.
         alarm(u32::try_from(cycles).unwrap_or(u32::MAX));
         poll_fn(|_| {
             if deadline.passed() {

@@ -71,7 +71,7 @@ pub struct Lists {
     pub descriptor_limit: u32,
     /// Address of the band lists.
     pub lists: u32,
-    /// In these passes and in the raster pass, a band list has room for 4 << `list_shift` entries.
+    /// In these passes and in the raster pass, the capacity of a band list is 4 << `list_shift` entries.
     pub list_shift: u8,
     /// Address of the list of exceptions, the triangles that need clipping: their numbers in their mesh, of 4 bytes each.
     pub exceptions: u32,
@@ -91,13 +91,13 @@ pub struct Geometry<'a> {
     pub options: GeometryStart,
     /// The register `scale_shift`.
     pub scale_shift: u8,
-    /// The row u of the camera, and the rows v, n and that of the light below.
+    /// Row u of the camera's frame constants.
     pub u: &'a [i32; 3],
-    /// The row v.
+    /// Row v of the camera's frame constants.
     pub v: &'a [i32; 3],
-    /// The row n.
+    /// Row n of the camera's frame constants.
     pub n: &'a [i32; 3],
-    /// The row of the light.
+    /// Row of the light's direction.
     pub light: &'a [i32; 3],
     /// The translation, s44.
     pub translation: &'a [i64; 3],
@@ -105,13 +105,13 @@ pub struct Geometry<'a> {
     pub near: i64,
     /// The scale of depth codes.
     pub depth_scale: DepthScale,
-    /// Light and ambient light, u1.8 for each channel, at most 1; a pass without `lists` leaves them as they are. There must be no
-    /// ambient light with smooth shading and without `cull`.
+    /// Light and ambient light, u1.8 for each channel, at most 1; a pass without `lists` leaves them unchanged. With smooth
+    /// shading and without `cull`, the ambient light must be 0.
     pub lights: [[u16; 3]; 2],
-    /// Colour instead of those of the mesh, RGB565.
+    /// Colour that replaces the colours of the mesh, RGB565.
     pub colour: Option<u16>,
-    /// Output of the pass, empty before it; `None` if it continues the output of the previous pass, for a picture of the same size with the
-    /// same colours of the light.
+    /// Output of the pass, initially empty; `None` appends to the output of the previous pass, which must have an equal picture
+    /// size and equal light colours.
     pub lists: Option<Lists>,
 }
 
@@ -139,7 +139,7 @@ pub struct Raster {
     pub size: Size,
     /// Address of the frame to write.
     pub frame: u32,
-    /// Number of the frame buffer that is written: `false` for 0, `true` for 1.
+    /// The frame buffer that the pass writes: `false` for 0, `true` for 1.
     pub slot: bool,
     /// Whether every pixel of the frame buffer is written, because its contents are unknown.
     pub whole: bool,
@@ -147,18 +147,18 @@ pub struct Raster {
     pub depth: Option<u32>,
     /// Colour of pixels without a triangle, RGB565.
     pub clear: u16,
-    /// A band list has room for 4 << `list_shift` entries; [`Lists::list_shift`] of the next geometry pass must be the same.
+    /// The capacity of a band list is 4 << `list_shift` entries; the next geometry pass must have an equal [`Lists::list_shift`].
     pub list_shift: u8,
     /// The sets of descriptors and band lists, drawn in this order in each band.
     pub sets: [Option<Set>; 2],
 }
 
-/// Counts of the last geometry pass, and of the passes that it continued.
+/// Counts of the last geometry pass, and of the earlier passes whose output it continued.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
     /// Number of triangles of the mesh of the last pass.
     pub triangles: u32,
-    /// Descriptors made by all passes.
+    /// Number of descriptors from all passes.
     pub descriptors: u32,
     /// Number of triangles that need clipping, in all passes.
     pub exceptions: u32,
@@ -183,7 +183,8 @@ impl TriangleEngine {
         Ok(Self { registers })
     }
 
-    /// Sets whether the end of a pass raises an interrupt. A pass that has ended before raises none, so check for it afterwards.
+    /// Sets whether the end of a pass raises an interrupt. A pass that has already ended raises no interrupt, so check its result
+    /// afterwards.
     pub fn set_interrupts(&mut self, on: bool) {
         acknowledge();
         let events = EvEnable::default().with_geometry(on).with_raster(on);
@@ -203,20 +204,20 @@ impl TriangleEngine {
         self.registers.caps().read().lines()
     }
 
-    /// Whether this gateware has the memory of depths. If not, the depth codes that a raster pass writes are 0.
+    /// Whether this gateware has a depth memory. If not, a raster pass writes depth codes of 0.
     #[must_use]
     pub fn has_depths(&self) -> bool {
         self.registers.caps().read().depths()
     }
 
-    /// Whether this gateware shades smoothly. It then has descriptors of twice the length.
+    /// Whether this gateware supports smooth shading, which doubles the length of descriptors.
     #[must_use]
     pub fn shades_smoothly(&self) -> bool {
         self.registers.caps().read().gouraud()
     }
 
-    /// Writes the registers of a geometry pass, so that the start itself is short. The pass before may still run, if it was started
-    /// at least 128 clock cycles ago; the engine has copied its registers.
+    /// Writes the registers of a geometry pass in advance, so that the start itself is short. The previous pass may still run if
+    /// it was started at least 128 clock cycles ago, because the engine has then copied its registers.
     pub fn prepare_geometry(&mut self, pass: &Geometry) -> Prepared {
         let registers = &self.registers;
         registers.mesh().write(pass.mesh.as_ptr().addr() as u32);
@@ -271,7 +272,7 @@ impl TriangleEngine {
         registers.mesh().write(segments.as_ptr().addr() as u32);
         registers.mesh_bytes().write(size_of_val(segments) as u32);
         self.write_output(lists);
-        // Lines have no exceptions: their list has an address, because the engine checks it, and no room.
+        // Lines have no exceptions: the list has a valid address, because the engine checks it, and the capacity 0.
         registers.exceptions().write(lists.lists);
         registers.exception_limit().write(0);
         Prepared {
@@ -282,7 +283,7 @@ impl TriangleEngine {
         }
     }
 
-    /// Writes the registers that tell where a geometry pass puts its output.
+    /// Writes the registers with the output addresses of a geometry pass.
     fn write_output(&self, lists: &Lists) {
         let registers = &self.registers;
         registers.geometry_descriptors().write(lists.descriptors);
@@ -350,7 +351,7 @@ impl TriangleEngine {
         (!status.raster_busy()).then(|| EngineError::check(status.raster_error()))
     }
 
-    /// Cancels the running passes. The next frame in the frame buffer of a cancelled raster pass must be written whole
+    /// Cancels the running passes. The next raster pass to the frame buffer of a cancelled pass must write all pixels
     /// ([`Raster::whole`]).
     pub fn cancel(&mut self) {
         self.registers
@@ -378,8 +379,8 @@ impl TriangleEngine {
 
 /// Clears the triangle engine's interrupt, for the interrupt handler.
 pub fn acknowledge() {
-    // SAFETY: only this function writes the pending register. Both events may be cleared, because `status` keeps the
-    // states of the passes.
+    // SAFETY: only this function writes the pending register. Clearing both events loses no information, because `status` keeps
+    // the states of the passes.
     let registers = unsafe { triangle::Triangle::steal() };
     registers
         .ev_pending()

@@ -43,7 +43,7 @@ struct State<const RX: usize, const TX: usize> {
 }
 
 impl<const RX: usize, const TX: usize> Uart<RX, TX> {
-    /// A UART that does not have its registers yet: it receives no bytes, and keeps bytes to send in its queue.
+    /// A UART before [`Self::start`]: it receives no bytes, and keeps bytes to send in its queue.
     #[must_use]
     pub const fn new() -> Self {
         let state = State {
@@ -64,7 +64,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
             .write(EvEnable::default().with_rx(true).with_tx(true));
         self.with(|state| {
             state.registers = Some(registers);
-            // Bytes that arrived before this point have already raised their event, so they are taken here.
+            // Earlier bytes have already raised their event, so they are received here.
             state.serve();
         });
     }
@@ -124,7 +124,7 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Returns the sending end. Each write waits at most `timeout` for room in the queue.
+    /// Returns the sending end. Each write waits at most `timeout` for space in the queue.
     pub const fn writer(&self, clock: Clock, timeout: Duration) -> Writer<'_, RX, TX> {
         Writer {
             uart: self,
@@ -133,8 +133,8 @@ impl<const RX: usize, const TX: usize> Uart<RX, TX> {
         }
     }
 
-    /// Sends the bytes in the transmit queue without interrupts, before the program ends. Stops when the line makes no
-    /// progress. Does nothing if the program ends inside another function of this UART, which still borrows its state.
+    /// Sends the bytes in the transmit queue without interrupts, before the program ends. Stops if the line makes no progress.
+    /// Does nothing if the program ends inside another function of this UART, which still borrows its state.
     pub fn drain(&self) {
         critical_section::with(|token| {
             let Ok(mut state) = self.state.borrow(token).try_borrow_mut() else {
@@ -175,8 +175,7 @@ impl<const RX: usize, const TX: usize> State<RX, TX> {
                 self.lost = self.lost.saturating_add(1);
             }
         }
-        // The event is cleared before the hardware's queue is filled: room that appears in this queue later raises the
-        // event again.
+        // The event is cleared before the hardware's queue is filled, so space that becomes free later raises the event again.
         registers
             .ev_pending()
             .write(EvPending::default().with_tx(true));
@@ -298,8 +297,8 @@ impl<const RX: usize, const TX: usize> WriteReady for Writer<'_, RX, TX> {
     }
 }
 
-/// Number of polls of a full transmitter after which sending is given up: about 0.1 s, far longer than a byte takes at
-/// 115,200 baud.
+/// Number of polls of a full transmitter after which sending is cancelled: about 0.1 s, much longer than a byte takes at 115,200
+/// baud.
 const PATIENCE: u32 = 1_000_000;
 
 /// Writes text directly to the hardware, without queues or interrupts, for the messages of traps and panics.

@@ -15,21 +15,21 @@ use glint_core::picture::Size;
 pub enum SettingError<'l> {
     /// The camera is out of range.
     View(ViewError),
-    /// The board has no memory or no screen for this picture size.
+    /// The board's memory or screen does not support this picture size.
     Size(Size),
     /// The SoC has no triangle engine.
     NoEngine,
-    /// `stereo` was requested while the wireframe is shown, which has an eye of its own.
+    /// `stereo` was requested while the wireframe is shown, whose program sets its single eye.
     StereoOfWireframe,
-    /// Edges were requested while no mesh is shown alone.
+    /// Edges were requested while the scene is not a single mesh.
     EdgesOfOthers,
     /// `fit` was requested while neither a single mesh nor objects are shown.
     FitOfOthers,
-    /// No camera shows the whole of the meshes.
+    /// No allowed camera shows the meshes completely.
     Fit(FramingError),
     /// The list of lights is full.
     Lights,
-    /// The name is not a mesh, so it cannot be an object.
+    /// No mesh has this name.
     ObjectMesh(&'l str),
     /// The list of objects cannot be changed.
     Object(ObjectError),

@@ -1,8 +1,8 @@
 //! Scenes: everything that a picture depends on.
 //!
-//! A [`Scene`] is a value. Options of the console change it ([`Scene::apply`]), a frame of the model or of the gateware shows it
-//! ([`Scene::frame`]), and console commands make it again ([`Scene::write_lines`]). A picture is out of date if its scene differs
-//! from the present one. Firmware and host share this crate, so that a scene means the same on both.
+//! A [`Scene`] is a value. Console options change the scene ([`Scene::apply`]), [`Scene::frame`] converts it to a frame of the
+//! model or the gateware, and [`Scene::write_lines`] writes it as console commands. A picture is outdated if its scene differs
+//! from the present scene. Firmware and host share this crate, so that a scene has the same meaning on both.
 #![no_std]
 #![forbid(unsafe_code)]
 

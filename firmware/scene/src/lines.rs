@@ -1,4 +1,4 @@
-//! Scenes as text: console commands, a line each.
+//! Text form of scenes: console commands, one per line.
 
 use core::fmt;
 
@@ -8,16 +8,16 @@ use glint_core::feature::{BASE, Feature, WIREFRAME};
 use crate::error::SettingError;
 use crate::scene::{Board, Scene};
 
-/// Reason why a text is not a scene.
+/// Error in the text form of a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct LineError<'a> {
     /// Number of the line, from 1.
     pub line: usize,
-    /// Reason why the line is refused.
+    /// Reason why the line is rejected.
     pub reason: Reason<'a>,
 }
 
-/// Reason why a line of a scene is refused.
+/// Reason why a line of a scene is rejected.
 #[derive(Clone, Copy, Debug)]
 pub enum Reason<'a> {
     /// The line is not a command.
@@ -86,7 +86,7 @@ impl<'l> Line<'l> {
         }
     }
 
-    /// The part of the firmware that has the line's command.
+    /// The feature that contains the line's command.
     pub const fn feature(&self) -> Feature {
         match self {
             Self::Option(setting) => setting.name().feature(),
@@ -98,8 +98,7 @@ impl<'l> Line<'l> {
 
     /// Applies the line to `scene`, unless it is a motion.
     ///
-    /// # Errors
-    /// As [`Scene::apply`].
+    /// # Errors The errors of [`Scene::apply`].
     pub fn apply(&self, scene: &mut Scene, board: &mut dyn Board) -> Result<(), SettingError<'l>> {
         match self {
             Self::Option(setting) => scene.apply(setting, board)?,

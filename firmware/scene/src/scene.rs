@@ -24,28 +24,28 @@ use heapless::{String, Vec};
 
 use crate::error::{ObjectError, SettingError};
 
-/// Name of the mesh that is shown at start.
+/// Name of the mesh that the start scene shows.
 pub const CUBE: &str = "cube";
 
 /// The name of a mesh.
 pub type Name = String<MAX_NAME>;
 
-/// Queries of a scene to its board.
+/// Capabilities and meshes of the board of a scene.
 pub trait Board {
-    /// Whether the board draws and shows pictures of this size.
+    /// Whether the board supports pictures of this size.
     fn has_size(&self, size: Size) -> bool;
 
-    /// Whether the board has the gateware that draws.
+    /// Whether the board has a triangle engine.
     fn has_engine(&self) -> bool;
 
-    /// Whether there is a mesh with this name. The mesh is created if necessary.
+    /// Whether a mesh with this name exists. The board creates the mesh if necessary.
     fn has_mesh(&mut self, name: &str) -> bool;
 
     /// The mesh with this name, for which [`has_mesh`](Self::has_mesh) has returned true.
     fn mesh(&self, name: &str) -> Option<Mesh<'_>>;
 }
 
-/// A board without limits. Its meshes are read when the scene is drawn.
+/// A board without limits. Its meshes are loaded only when the scene is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyBoard;
 
@@ -79,7 +79,7 @@ pub struct Sphere {
 }
 
 impl Sphere {
-    /// The camera at start, which shows the whole model from above and in front.
+    /// The camera of the start scene, which shows the whole model from above and in front.
     const START: Self = Self {
         r: Q32_32::lit("2.5"),
         // Azimuth 40°, and 65° from the z axis.
@@ -92,12 +92,12 @@ impl Sphere {
     }
 }
 
-/// A mesh of the list of objects, with its place and colour.
+/// An entry of the list of objects: a mesh with its placement and colour.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlacedMesh {
     /// Name of the mesh.
     pub mesh: Name,
-    /// Place and colour.
+    /// Placement and colour.
     pub place: Place,
 }
 
@@ -108,16 +108,16 @@ pub enum Kind {
     Solid,
     /// The objects.
     Objects,
-    /// The wireframe, after this motion.
+    /// The wireframe, moved by this motion.
     Wireframe(Motion),
 }
 
-/// Content of a scene. `Display` is its name: that of a mesh, a field, or both.
+/// Content of a scene. `Display` writes its name.
 #[derive(Clone, Copy, Debug)]
 pub enum Shown<'s> {
     /// The mesh with this name.
     Mesh(&'s str),
-    /// The edges of this mesh.
+    /// The edges of the mesh with this name.
     Edges(&'s str, Edges),
     /// A field.
     Field(&'s Field),
@@ -144,7 +144,7 @@ impl fmt::Display for Shown<'_> {
 /// The meshes and the wireframe program of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Content<'a> {
-    /// The mesh that is shown alone or in a field; `None` draws none.
+    /// The mesh that is shown alone or in a field; `None` if no such mesh is shown.
     pub mesh: Option<Mesh<'a>>,
     /// The objects.
     pub objects: &'a [Object<'a>],
@@ -155,7 +155,7 @@ pub struct Content<'a> {
 /// Everything that a picture depends on.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scene {
-    /// Which of mesh and field, objects, and wireframe is shown.
+    /// The shown subject: mesh and field, objects, or wireframe.
     pub kind: Kind,
     /// Name of the mesh.
     pub mesh: Name,
@@ -165,23 +165,23 @@ pub struct Scene {
     pub field: Option<Field>,
     /// Whether a field is shown with the mesh in it.
     pub with_mesh: bool,
-    /// The edges of a mesh that is shown alone; `None` for its faces alone, and as soon as anything else is shown.
+    /// Drawing mode of the edges of a single mesh; `None` for faces only, and for every other subject.
     pub edges: Option<Edges>,
-    /// Two eyes; `None` for one eye, which wireframes always have.
+    /// Stereo settings; `None` for one eye, as always for wireframes.
     pub stereo: Option<Stereo>,
     /// The appearance of a field, with lights and background of meshes.
     pub appearance: Appearance,
-    /// The quality that was set last. The size may be another one.
+    /// The last set quality. The picture size may differ from it.
     pub quality: Quality,
     /// Whether a prepass marches cones before the rays of a field.
     pub prepass: bool,
     /// The camera.
     pub view: View,
-    /// The camera on a sphere that was set last.
+    /// The last set camera on a sphere.
     pub sphere: Sphere,
     /// Size of the picture.
     pub size: Size,
-    /// The options of all meshes.
+    /// The drawing options of all meshes.
     pub options: MeshOptions,
     /// Backend that draws the picture.
     pub backend: Backend,
@@ -190,10 +190,10 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The scene at start, drawn by `backend`.
+    /// Returns the start scene, drawn by `backend`.
     ///
     /// # Errors
-    /// [`ViewError`] for the camera at start.
+    /// [`ViewError`] if the camera of the start scene is invalid.
     pub fn new(backend: Backend) -> Result<Self, ViewError> {
         let sphere = Sphere::START;
         Ok(Self {
@@ -216,10 +216,10 @@ impl Scene {
         })
     }
 
-    /// Resets everything except backend and overlay to the values at start.
+    /// Resets all options except backend and overlay to those of the start scene.
     ///
     /// # Errors
-    /// [`ViewError`] for the camera at start.
+    /// [`ViewError`] if the camera of the start scene is invalid.
     pub fn reset(&mut self) -> Result<(), ViewError> {
         *self = Self {
             overlay: self.overlay,
@@ -232,7 +232,7 @@ impl Scene {
     ///
     /// # Errors
     /// The scene or the board excludes the value; the scene is then unchanged.
-    // Not inlined, as the firmware has several callers.
+    // Not inlined, because the firmware has several callers.
     #[inline(never)]
     pub fn apply<'l>(
         &mut self,
@@ -287,7 +287,7 @@ impl Scene {
                 }
             }
             Setting::Quality { quality } => {
-                // The largest size of this board up to that of the quality.
+                // The largest size that the board supports, up to the quality's size.
                 let mut sizes = (Size::ALL.into_iter().rev())
                     .skip_while(|size| *size != quality.size())
                     .filter(|size| board.has_size(*size));
@@ -367,7 +367,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Shows a field, or the mesh alone for `None`. A field sets the edges of a mesh off.
+    /// Shows a field, or the mesh alone for `None`. A field turns the edges of a mesh off.
     fn show_field(&mut self, field: Option<Field>) {
         self.kind = Kind::Solid;
         if field.is_some() {
@@ -382,18 +382,18 @@ impl Scene {
         self.show_field(None);
     }
 
-    /// Sets the mesh to the one with this name, whether it is shown or not.
+    /// Selects the mesh with this name, without showing it.
     pub fn set_mesh(&mut self, mesh: &str) {
         self.mesh = name(mesh);
     }
 
-    /// Shows the objects. Edges of a mesh are off from now on.
+    /// Shows the objects, and turns the edges of a mesh off.
     fn show_objects(&mut self) {
         self.kind = Kind::Objects;
         self.edges = None;
     }
 
-    /// Shows the wireframe as its program has it. Edges of a mesh and two eyes are off from now on.
+    /// Shows the wireframe without motion, and turns edges of a mesh and stereo off.
     pub fn show_wireframe(&mut self) {
         self.kind = Kind::Wireframe(Motion::default());
         self.edges = None;
@@ -426,12 +426,12 @@ impl Scene {
         self.field.is_some() && self.kind == Kind::Solid
     }
 
-    /// Sets position and basis of the camera to those of `view`, and keeps projection, half width and near plane.
+    /// Moves the camera to the position and basis of `view`, and keeps projection, half width and near plane.
     pub fn move_view(&mut self, view: View) {
         self.view = view.with_lens_of(&self.view);
     }
 
-    /// Sets position and basis of the camera to those of a camera on a sphere.
+    /// Moves the camera to the position and basis of a camera on a sphere.
     ///
     /// # Errors
     /// [`ViewError`] for a camera out of range; the scene is then unchanged.
@@ -473,7 +473,7 @@ impl Scene {
         }
     }
 
-    /// The object with this mesh at a place.
+    /// Makes an object from a mesh and its placement.
     pub fn object<'a>(&self, place: &Place, mesh: Mesh<'a>) -> Object<'a> {
         Object {
             subject: self.options.subject(mesh),
@@ -482,7 +482,7 @@ impl Scene {
         }
     }
 
-    /// The frame of the scene.
+    /// Converts the scene to a frame.
     pub fn frame<'a>(&'a self, content: Content<'a>) -> Frame<'a> {
         let mesh = content.mesh.map(|mesh| self.options.subject(mesh));
         let field = |field| FieldSubject {
@@ -509,10 +509,10 @@ impl Scene {
         }
     }
 
-    /// The sphere around the mesh that is shown alone, or around the objects.
+    /// The sphere around the single shown mesh, or around the objects.
     fn bounds(&self, board: &dyn Board) -> Option<framing::Sphere> {
         let mut meshes: Vec<(Mesh, Matrix), MAX_OBJECTS> = Vec::new();
-        // The list has room for all objects.
+        // The list has space for all objects, so no object is dropped.
         match self.shown() {
             Shown::Mesh(mesh) | Shown::Edges(mesh, _) => {
                 meshes.extend(board.mesh(mesh).map(|mesh| (mesh, Matrix::IDENTITY)));
@@ -528,8 +528,8 @@ impl Scene {
         framing::Sphere::around(meshes.iter().copied())
     }
 
-    /// The optional blocks of the gateware that draw and show the scene, a bit for each ([`Block::bit`]). A picture of the soft core needs
-    /// no engine.
+    /// The optional gateware blocks that the scene needs, one bit per block ([`Block::bit`]). A picture drawn by the soft core
+    /// needs no engine.
     pub fn blocks(&self) -> u32 {
         let engines = match self.shown() {
             Shown::Mesh(_) | Shown::Objects => Block::Triangle.bit(),

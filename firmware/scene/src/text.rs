@@ -19,7 +19,7 @@ struct OrOff<T>(Option<T>);
 #[derive(PartialEq)]
 struct OrDefault<T>(Option<T>);
 
-/// Displays width and height as the arguments of `size`.
+/// Displays width and height as arguments of `size`.
 #[derive(PartialEq)]
 struct Pixels(Size);
 
@@ -56,19 +56,18 @@ impl<T: Display> Display for OrDefault<T> {
 }
 
 impl Scene {
-    /// Writes an option as the console shows it.
+    /// Writes an option in the console's form.
     ///
-    /// # Errors
-    /// Those of `out`.
+    /// # Errors The errors of `out`.
     pub fn show(&self, option: OptionName, out: &mut dyn Write) -> fmt::Result {
         let appearance = &self.appearance;
         match option {
-            // The lights that are drawn, even where the scene states none.
+            // The lights in use, including default lights.
             OptionName::Light => {
                 let mut lights = appearance.lighting().lights;
                 if appearance.lights.is_empty() && !self.shows_field() {
                     lights.clear();
-                    // The list has room for one light.
+                    // The empty list has space for one light.
                     let _ = lights.push(appearance.mesh_lighting().light);
                 }
                 if lights.is_empty() {
@@ -96,17 +95,18 @@ impl Scene {
         }
     }
 
-    /// Writes the console commands that make this scene from the scene `from`, which has no objects. Steps of the wireframe are left out.
+    /// Writes the console commands that change the scene `from`, which has no objects, to this scene. Steps of the wireframe are
+    /// left out.
     ///
-    /// # Errors
-    /// Those of `out`.
+    /// # Errors The errors of `out`.
     pub fn write_lines(&self, from: &Self, out: &mut dyn Write) -> fmt::Result {
         for &option in OptionName::ALL {
             if !matches!(option, OptionName::Field | OptionName::Edges) {
                 self.write_option(option, Some(from), out)?;
             }
         }
-        // Objects were shown when they were added. The mesh leaves them, the field follows the mesh, and edges are those of a mesh alone.
+        // Adding objects has shown them, so `scene` must show the mesh again. The field follows the mesh, and edges come last
+        // because they require a single mesh.
         let shows_mesh = self.kind == Kind::Solid && self.field.is_none();
         if self.mesh != from.mesh || shows_mesh && !self.objects.is_empty() {
             writeln!(out, "scene {}", self.mesh)?;
@@ -120,7 +120,7 @@ impl Scene {
         }
     }
 
-    /// Writes the commands that set an option, unless the scene `from` has the same value.
+    /// Writes the commands that set an option, unless its value is equal in the scene `from`.
     fn write_option(
         &self,
         option: OptionName,
@@ -166,11 +166,11 @@ impl Scene {
             }),
             OptionName::Camera => self.put(name, from, out, |scene| scene.sphere),
             OptionName::View => {
-                // The camera on a sphere has set another view.
+                // A changed camera on a sphere has also changed the view.
                 let from = from.filter(|from| from.sphere == self.sphere);
                 self.put(name, from, out, |scene| scene.view)
             }
-            // The view contains them.
+            // The command `view` covers these options.
             OptionName::Look
             | OptionName::LookAt
             | OptionName::FieldOfView
@@ -179,7 +179,7 @@ impl Scene {
             | OptionName::Fit => Ok(()),
             OptionName::Quality => self.put(name, from, out, |scene| scene.quality),
             OptionName::Size => {
-                // The quality has set another size.
+                // A changed quality has also changed the size.
                 let from = from.filter(|from| from.quality == self.quality);
                 self.put(name, from, out, |scene| Pixels(scene.size))
             }
@@ -197,7 +197,7 @@ impl Scene {
         }
     }
 
-    /// Writes the command that sets an option to its value, unless the scene `from` has the same value.
+    /// Writes the command that sets an option to its value, unless the value is equal in the scene `from`.
     fn put<T: Display + PartialEq>(
         &self,
         name: &str,

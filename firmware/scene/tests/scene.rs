@@ -1,4 +1,4 @@
-//! Scenes change by options, need blocks, and come back from their text.
+//! Tests of scenes: options, needed blocks, and the text form.
 
 use glint_core::block::Block;
 use glint_core::console::{Command, ObjectAction, OptionName, Setting};
@@ -8,7 +8,7 @@ use glint_core::quality::Quality;
 use glint_scene::{AnyBoard, Board, Kind, Reason, Scene};
 use proptest::prelude::*;
 
-/// A scene and its board, which has no picture of more than 640×360 and no mesh of the name `none`.
+/// A scene and its board, which supports pictures up to 640×360 and has no mesh named `none`.
 struct SmallBoard;
 
 impl Board for SmallBoard {
@@ -57,7 +57,7 @@ fn lines(scene: &Scene) -> String {
     text
 }
 
-/// A line of each option that a scene can have, with random values. Some of them fail in some scenes.
+/// Returns lines for all options of a scene, with random values. Some lines are errors in some scenes.
 fn line() -> impl Strategy<Value = String> {
     let number = |low: i32, high: i32| (low..high).prop_map(|x| format!("{}", f64::from(x) / 64.0));
     let word = |words: &'static [&'static str]| proptest::sample::select(words);
@@ -140,7 +140,7 @@ fn line() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// The text of a scene makes the same scene of the one at start. A line that fails changes nothing.
+    /// The text of a scene converts the start scene to this scene. A line with an error changes nothing.
     #[test]
     fn a_scene_comes_back_from_its_text(made in proptest::collection::vec(line(), 0..24)) {
         let mut scene = start();
@@ -153,7 +153,7 @@ proptest! {
                 prop_assert_eq!(&scene, &before);
             }
         }
-        // No scene has the text over the picture.
+        // The text over the picture belongs to no scene.
         scene.overlay = false;
         let text = lines(&scene);
         let mut again = start();
@@ -198,7 +198,7 @@ fn scenes_need_the_blocks_of_what_they_show() {
     }
 }
 
-/// A quality sets the largest size of the board up to its own; a size that the board lacks is refused.
+/// A quality sets the largest size that the board supports, up to its own size; an unsupported size is an error.
 #[test]
 fn a_board_limits_the_scene() {
     let mut scene = start();
@@ -255,7 +255,7 @@ fn an_option_is_shown_as_it_is_set() {
     assert_eq!(scene.shown().to_string(), "b");
 }
 
-/// Objects are left and shown again; without objects the mesh is shown.
+/// A mesh replaces the objects, and `object show` shows them again; without objects the mesh is shown.
 #[test]
 fn objects_come_and_go() {
     let mut scene = scene("object add a\nobject add b\nscene c");

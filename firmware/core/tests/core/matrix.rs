@@ -1,4 +1,4 @@
-//! Model matrices compared with computations in f64.
+//! Tests of model matrices against computations in f64.
 
 use std::f64::consts::TAU;
 
@@ -63,7 +63,7 @@ fn rotation(axis: Axis, angle: Turns) -> Rows {
     }
 }
 
-/// A rotation about three axes, a scale for each axis, a second rotation and a translation: any matrix is one of these.
+/// A rotation about three axes, a scale for each axis, a second rotation and a translation: every matrix is such a product.
 fn any_matrix(scales: [f64; 3], angles: [u32; 4], by: [f64; 3]) -> Result<Matrix, MatrixError> {
     let [a, b, c, d] = angles.map(Turns);
     Matrix::rotation(Axis::Z, a)
@@ -90,7 +90,7 @@ proptest! {
         let found = rows(&Matrix::rotation(axis, Turns(angle)));
         let error = difference(found.as_flattened(), rotation(axis, Turns(angle)).as_flattened());
         prop_assert!(error <= 1.02 * HALF_UNIT, "{error:e}");
-        // The matrix of the opposite angle is the transpose.
+        // The rotation by the opposite angle is the transposed matrix.
         let back = rows(&Matrix::rotation(axis, -Turns(angle)));
         prop_assert_eq!(back, [0, 1, 2].map(|i| [0, 1, 2].map(|j| found[j][i])));
     }
@@ -118,7 +118,7 @@ proptest! {
         prop_assert_eq!(both.mirrors(), first.mirrors() != next.mirrors());
     }
 
-    /// Normals go by the inverse transpose and have length 1.
+    /// Normals are transformed by the inverse transpose and scaled to length 1.
     #[test]
     fn normals_go_by_the_inverse_transpose(
         scales in [factor(), factor(), factor()],
@@ -138,8 +138,8 @@ proptest! {
         prop_assert!(error <= 0.51, "{error}");
     }
 
-    /// With one scale for all axes, a light that is brought to the mesh makes the same angle with the mesh's normals. Rounding may hide
-    /// a scale below 1/128.
+    /// With a uniform scale, a light transformed to the mesh has the same angle to the mesh's normals. For a scale below 1/128,
+    /// rounding errors may hide that the scale is uniform.
     #[test]
     fn a_light_comes_to_a_mesh_of_one_scale(
         scale in factor(),
@@ -237,14 +237,14 @@ fn refusals_name_the_row() {
         error.to_string(),
         "matrix row 3: translation 32.5: expected within ±32"
     );
-    // Sizes at both ends of the range, and just beyond.
+    // Scales at both ends of the range, and just outside.
     for size in [MIN_ROW, MAX_ENTRY, -MIN_ROW, -MAX_ENTRY] {
         assert!(Matrix::scale([size, one, one]).is_ok());
     }
     for size in [MIN_ROW - Q8_24::DELTA, MAX_ENTRY + Q8_24::DELTA, zero] {
         assert!(Matrix::scale([one, size, one]).is_err());
     }
-    // A composition out of range is refused, even far out of the format's range.
+    // An out-of-range composition is an error, even far outside the range of the format.
     let large = Matrix::scale([MAX_ENTRY; 3]).unwrap();
     assert!(matches!(
         large.then(&large),

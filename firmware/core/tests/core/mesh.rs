@@ -29,7 +29,7 @@ fn small() -> Vec<u8> {
     encode(&vertices, &[triangle([0, 1, 2]), triangle([0, 2, 3])]).expect("a good mesh")
 }
 
-/// Returns the triangles of a mesh with their vertices instead of the indices.
+/// Returns the triangles of a mesh with vertices in place of indices.
 fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
     let corner =
         |chunk: &glint_core::mesh::Chunk, i: u16| chunk.vertex(i.into()).expect("a checked index");
@@ -46,7 +46,7 @@ fn triangles(mesh: &Mesh) -> Vec<([Vertex; 3], Rgb565, [i16; 3])> {
         .collect()
 }
 
-/// An optional attribute is an array after the chunks, with an element for each vertex in the order of the chunks.
+/// An optional attribute is an array after the chunks: one element per vertex, in the order of the chunks.
 #[test]
 fn an_optional_attribute_follows_the_chunks() {
     let vertices: Vec<Vertex> = (0..5).map(vertex).collect();
@@ -60,7 +60,7 @@ fn an_optional_attribute_follows_the_chunks() {
     let without = Mesh::new_checked(&plain).expect("a good mesh");
     assert_eq!(mesh.records(), without.records());
     assert_eq!(bytes.len(), plain.len() + 4 * 8);
-    // Vertices have the order of their first use, and the first one is not used.
+    // Vertices are in the order of their first use; the first vertex of the input is unused and left out.
     let found = [4, 1, 2, 3].map(element);
     let attribute =
         |mesh: &Mesh| (mesh.attribute(Attribute::TextureCoordinates)).map(<[u8]>::to_vec);
@@ -225,7 +225,7 @@ fn the_largest_radius_holds_every_position() {
     );
 }
 
-/// A flipped bit in any byte, including the checksum, is detected; nothing else changes the checksum.
+/// A flipped bit in any byte, including the checksum, is detected.
 #[test]
 fn the_checksum_covers_every_byte() {
     let good = small();
@@ -242,7 +242,7 @@ fn the_checksum_covers_every_byte() {
     assert_eq!((stated_checksum(&short), &short[..]), (None, &good[..31]));
 }
 
-/// The error of the small mesh after a change of its bytes.
+/// Returns the error of the small mesh after a change of its bytes.
 fn error(change: impl FnOnce(&mut Vec<u8>)) -> String {
     let mut bytes = small();
     change(&mut bytes);
@@ -373,7 +373,7 @@ fn a_mesh_that_is_cut_off_is_refused_at_every_length() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// An accepted mesh can be iterated to its end, and its counts are right.
+    /// An accepted mesh can be iterated to its end, and its counts are correct.
     #[test]
     fn no_bytes_upset_the_reader(changes in proptest::collection::vec((0..144_usize, any::<u8>()), 0..4), noise in any::<Vec<u8>>()) {
         let mut bytes = small();

@@ -15,7 +15,7 @@ use virtual_mpu6050::{Bus, Chip, Fault, Imperfections, Source, State};
 const MILLISECOND: u64 = 1_000_000;
 const SECOND: u64 = 1_000 * MILLISECOND;
 
-/// Delays on the clock of the bus: a delay advances this clock, and then gives control to the test once.
+/// Delays on the clock of the bus: a delay advances this clock, and then yields to the test once.
 struct Clock(Bus);
 
 impl DelayNs for Clock {
@@ -37,7 +37,7 @@ impl DelayNs for Clock {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Trouble {
     Bus(virtual_mpu6050::Error),
-    /// A periodic read was not finished when the next one was due.
+    /// A periodic read was not finished when the next read was due.
     Late,
 }
 
@@ -50,7 +50,7 @@ impl embedded_hal_async::i2c::Error for Trouble {
     }
 }
 
-/// A bus that repeats a read at a steady pace.
+/// A bus that repeats a read periodically.
 struct Master {
     bus: Bus,
     read: Option<PeriodicRead>,
@@ -105,7 +105,7 @@ impl PeriodicI2c for Master {
     }
 }
 
-/// The events that the stream reports, each with the time on the bus's clock in ns. A sample also has its time stamp in µs.
+/// The events reported by the stream, each with the time on the bus's clock in ns. A sample also has a time stamp in µs.
 #[derive(Default)]
 struct Record {
     starts: Vec<(u64, Identity)>,
@@ -130,8 +130,7 @@ impl Sink<Trouble> for Recorder {
     }
 }
 
-/// A motion with a steadily increasing rate about x, so that the rate in a sample shows when it was measured: the rate grows by
-/// one count every 61 µs.
+/// A motion whose rate about x grows by one count every 61 µs, so that the rate in a sample shows the time of the measurement.
 fn ramp(time: f64) -> State {
     State {
         rate: [1_000.0 * time - 1_900.0, 0.0, 0.0],
@@ -191,8 +190,8 @@ fn every_sample_comes_once_with_its_time() {
         let found = record.samples.len() as f64;
         assert!((found - expected).abs() <= 2.0, "{found} of {expected}");
         for (index, (_, time, measurement)) in record.samples.iter().enumerate() {
-            // The time in µs at which the chip has measured this rate: the motion's time plus the delay of the chip's
-            // filter, 2.8 ms.
+            // The time in µs at which the chip measures this rate: the time of the motion plus 2.8 ms, the delay of the chip's
+            // filter.
             let measured = (f64::from(measurement.gyro[0]) / 16.4 + 1_900.0) * 1e3 + 2_800.0;
             let late = *time as f64 - measured;
             let most = if index < 100 { 300.0 } else { 100.0 };
@@ -272,7 +271,7 @@ fn relatives_are_known_and_strangers_are_not() {
     assert!(record.samples.is_empty());
 }
 
-/// The state of a sensor at rest, at any time.
+/// The motion of a sensor at rest.
 fn still(_: f64) -> State {
     State::default()
 }
@@ -320,7 +319,7 @@ fn it_comes_back_from_faults_of_the_bus() {
 
 #[test]
 fn a_sample_that_is_cut_off_is_refused() {
-    // A read has 16 bytes. The last one follows the sample, so a chip that vanishes before it gives no sample.
+    // A read has 16 bytes. The last byte follows the sample, so a chip that vanishes before this byte gives no sample.
     for bytes in 0..32 {
         let record = recovers(|chip| chip.fault = Some(Fault::Vanishing(bytes)), 100);
         if bytes % 16 != 0 {
@@ -342,7 +341,7 @@ fn a_chip_that_lost_its_configuration_is_set_up_again() {
     };
     let record = recovers(unplug, 250);
     assert_eq!(record.starts.len(), 2);
-    // The supply fails for a moment, and the chip answers again before the next read.
+    // The supply fails briefly, and the chip responds again before the next read.
     let (record, _) = run(
         chip(still, Imperfections::TYPICAL),
         2 * SECOND,

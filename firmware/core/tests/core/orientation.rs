@@ -1,4 +1,4 @@
-//! Attitudes compared with closed forms: accuracy, length 1 of the quaternions, and freedom from panics.
+//! Tests of attitudes against closed forms: accuracy, length 1 of the quaternions, and absence of panics.
 
 use glint_core::fixed::{Q2_30, Q32_32, Turns};
 use glint_core::orientation::{
@@ -39,14 +39,14 @@ fn excess(quaternion: Quaternion) -> f64 {
 fn spun(rate: [f64; 3], seconds: f64) -> Parts {
     let [x, y, z] = rate.map(|lsb| (lsb / 16.4).to_radians() * seconds / 2.0);
     let half = (x * x + y * y + z * z).sqrt();
-    // After many turns the angle's error in f64 is about 1e-16 of the whole angle, which is small enough.
+    // After many turns the error of the angle in f64 is about 1e-16 of the whole angle, which is negligible.
     let scale = half.sin() / half;
     [half.cos(), x * scale, y * scale, z * scale]
 }
 
 #[test]
 fn a_constant_rate_is_exact() {
-    // Each run has the rate about each axis in LSB, the step in µs, the duration in s, and the largest accepted error in degrees.
+    // For each run: rate about each axis in LSB, step in µs, duration in s, and largest accepted error in degrees.
     // The measurements for docs/report/imu.md also integrate a whole day at 1 kHz.
     for (rate, step, seconds, most) in [
         ([1, 0, 0], 1_000, 3_600_u32, 1e-5),
@@ -189,8 +189,8 @@ fn angles_are_those_of_f64_and_the_way_back() {
         assert!(excess(quaternion) <= 2e-9);
         let got = quaternion.angles();
         let level = degrees(angles.pitch).to_radians().cos();
-        // Near the pole yaw and roll turn about almost the same axis, so the error of each is the error of the
-        // quaternion over cos(pitch).
+        // Near the pole yaw and roll turn about almost the same axis, so the error of each angle is the error of the quaternion
+        // divided by cos(pitch).
         let most = 6e-7 / level + 1e-7;
         for (got, want, most) in [
             (got.yaw, angles.yaw, most),
@@ -361,7 +361,7 @@ fn what_becomes_of_samples() {
     );
 }
 
-/// A log has the low words of times: a difference below 2^31 means a later sample, another one an earlier sample.
+/// A log contains the low words of times: a difference below 2^31 means a later sample, a larger difference an earlier sample.
 #[test]
 fn times_of_a_log_go_on_beyond_32_bits() {
     let mut time = log::START;
@@ -374,12 +374,12 @@ fn times_of_a_log_go_on_beyond_32_bits() {
     assert_eq!(next(500), (1 << 32) + 500);
     assert_eq!(next(500 + (1 << 31) - 1), (1 << 32) + 499 + (1 << 31));
     assert_eq!(next(400), (2 << 32) + 400);
-    // An earlier time than 0 becomes 0, which is no later than the sample before it.
+    // A negative time becomes 0, which is not later than the previous sample.
     assert_eq!(log::sample([u32::MAX, 0, 0, 0], 3).t_us, 0);
     assert_eq!(log::sample([0; 4], log::START).t_us, 0);
 }
 
-/// Times that are one step apart in 32 bits are more than an hour apart.
+/// Times whose low 32 bits differ by one step are more than an hour apart.
 #[test]
 fn a_pause_of_2_to_the_32_us_is_a_gap() {
     for pause in [(1 << 32) + 1, (1 << 32) + 1_000, 1 << 33, 1 << 63] {
@@ -394,8 +394,8 @@ fn a_pause_of_2_to_the_32_us_is_a_gap() {
     }
 }
 
-/// Saturation of the gyroscope turns the estimated attitude upside down while the body is level. Even this error of the tilt is
-/// corrected in a bounded time.
+/// Saturation of the gyroscope turns the estimated attitude upside down while the body is level. Even such a tilt error is
+/// corrected within a bounded time.
 #[test]
 fn tilt_comes_back_after_saturation() {
     for axis in [0, 1] {
@@ -412,7 +412,7 @@ fn tilt_comes_back_after_saturation() {
             t_us += 1_000;
             let mut gyro = [0; 3];
             gyro[axis] = i16::MAX;
-            // In free fall the accelerometer gives no direction.
+            // In free fall the accelerometer does not determine the tilt.
             tracker.on_sample(&Sample {
                 t_us,
                 accel: [0; 3],

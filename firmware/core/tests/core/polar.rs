@@ -1,4 +1,4 @@
-//! Length and angle of vectors, compared with computations in f64.
+//! Tests of the length and angle of vectors against computations in f64.
 
 use std::f64::consts::TAU;
 

@@ -1,11 +1,11 @@
-//! Tests of the regions of a memory.
+//! Tests of the allocation of memory regions.
 
 use glint_core::regions::{ALIGNMENT, Region, Regions};
 use proptest::prelude::*;
 
 const LENGTH: usize = 4096;
 
-/// Regions with a known content, in a memory of bytes.
+/// Regions with known content, in a memory of bytes.
 struct Memory {
     regions: Regions<6>,
     bytes: Vec<u8>,
@@ -25,7 +25,7 @@ impl Memory {
         self.kept.push((region, content));
     }
 
-    /// Checks that all regions have their content and are apart, and that the gap is apart from all.
+    /// Checks that all regions have their content, and that neither regions nor the largest gap overlap.
     fn check(&self) {
         let mut ranges = vec![self.regions.gap()];
         for (region, content) in &self.kept {

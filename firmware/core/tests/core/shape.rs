@@ -25,7 +25,7 @@ fn shapes_are_meshes() {
     }
 }
 
-/// Faces of round shapes look outwards, as their order and their normals say, and vertices have the normals of the surface.
+/// Faces of round shapes point outwards by their vertex order and by their normals, and vertices have the normals of the surface.
 #[test]
 fn round_shapes_are_closed_and_look_outwards() {
     for shape in [Shape::Sphere, Shape::Torus, Shape::Cylinder] {

@@ -1,4 +1,4 @@
-//! Sine and cosine, compared with f64, whose error of 2^-53 is negligible.
+//! Tests of sine and cosine against f64, whose error of 2^-53 is negligible.
 
 use std::f64::consts::TAU;
 
@@ -61,7 +61,7 @@ fn q30_order<const ORDER: u32>(angle: Turns) -> [i32; 2] {
     [sin.to_bits(), cos.to_bits()]
 }
 
-/// Angles near all nodes and all midpoints between nodes, and 2^21 angles spread over the circle.
+/// Test angles: near all nodes and all midpoints between nodes, and 2^21 angles over the whole circle.
 fn dense() -> impl Iterator<Item = u32> {
     let edges = (0..1024_u32).flat_map(|half_step| {
         let phase = half_step << 22;
@@ -92,7 +92,7 @@ fn q30_is_within_one_ulp_for_every_phase() {
 #[test]
 fn lower_orders_are_as_far_off_as_their_remainder_says() {
     let one = 2f64.powi(30);
-    // The limit of the error for order n is d^(n + 1)/(n + 1)! with d = π/512, plus one unit for rounding.
+    // The error limit for order n is d^(n + 1)/(n + 1)! with d = π/512, plus one unit for rounding.
     for (errors, remainder) in [
         (Errors::measure(30, dense(), q30_order::<0>), 6.14e-3),
         (Errors::measure(30, dense(), q30_order::<1>), 1.89e-5),

@@ -56,7 +56,7 @@ impl Line {
         self.random >> 32 & 0xFFFF_FFFF < per_10000 * (1 << 32) / 10_000
     }
 
-    /// Whether the line's buffer has room for a frame.
+    /// Whether the line's buffer has space for a frame.
     fn takes_more(&self, now_us: f64) -> bool {
         self.free_at_us - now_us < 512.0 * BYTE_US
     }
@@ -94,7 +94,8 @@ struct TransferResult {
 }
 
 impl TransferResult {
-    /// Computes the number of transferred data bytes divided by the number of bytes that the line can carry in the same time.
+    /// Computes the line utilisation: the number of transferred data bytes divided by the number of bytes that the line can carry
+    /// in this time.
     fn efficiency(&self) -> f64 {
         let bytes = self.received.as_ref().map_or(0, Vec::len);
         bytes as f64 * BYTE_US / 1e6 / self.seconds
@@ -135,8 +136,8 @@ impl Scene {
         let mut receiver = Receiver::new(&mut buffer, self.announced, Timing::CONSOLE, 0);
         let mut there = Line::new(self.faults, self.seed, self.latency_us);
         let mut back = Line::new(self.faults, self.seed + 1_000, self.latency_us);
-        // Before the transfer, the line still carries earlier output of the console in one direction, and the end of the
-        // command's line in the other direction.
+        // Before the transfer, the line still carries earlier console output in one direction, and the end of the command line in
+        // the other.
         back.send(0.0, b"glint> load 1234 deadbeef\r\nready\r\n");
         there.send(0.0, b"\n");
         let mut frame = [0; MAX_FRAME];
@@ -233,7 +234,7 @@ fn a_clean_line_is_used_to_85_percent() {
     }
 }
 
-/// Sends data over a line with faults; prints and returns how the line was used.
+/// Sends data over a line with faults; prints and returns the line utilisation.
 #[track_caller]
 fn assert_arrives_in_spite_of(faults: Faults, seed: u64, length: usize) -> (f64, u32) {
     let scene = Scene {

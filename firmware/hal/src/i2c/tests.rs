@@ -26,8 +26,8 @@ struct Master {
     next: u8,
     commands: VecDeque<Command>,
     answers: VecDeque<u8>,
-    /// Trace of the bus: S is a start, P a stop, and `d0` a byte. A received byte has < before it; an acknowledged byte
-    /// has + after it, any other byte -.
+    /// Trace of the bus: S is a start, P a stop, and `d0` a byte. `<` precedes a received byte; `+` follows an acknowledged byte,
+    /// `-` any other byte.
     log: Vec<String>,
     /// Whether the next byte is an address.
     addressing: bool,

@@ -14,8 +14,8 @@ fn registers() -> raymarch::Raymarch {
     unsafe { Peripherals::steal() }.raymarch
 }
 
-/// Probes a block whose register `ident` has the given value, and whose build has two lanes, draws sponges of up to six levels, boxes,
-/// spheres, fillets and two eyes, and has the prepass. Returns the result, and the block's registers.
+/// Probes a block with the given value of the register `ident`. Its build has two lanes and the prepass, and draws sponges of up
+/// to six levels, boxes, spheres, fillets and stereo pictures. Returns the result, and the block's registers.
 fn probe(ident: u32) -> (Result<Raymarcher, Absent>, Rc<RefCell<Block>>) {
     let r = registers();
     let caps = 2 | 6 << 4 | 0b1111 << 9 | 0b11 << 16;
@@ -106,7 +106,7 @@ fn a_field_is_described_before_it_is_enabled() {
     ];
     for (eye, registers) in field.eyes.iter().zip(eyes) {
         let [origin, outside, first] = registers.map(|row| row.map(|x| x.read()));
-        // Coordinates have 25 bits.
+        // Coordinates of an eye have 25 bits.
         assert_eq!(&origin.map(|x| x.cast_signed() << 7 >> 7), eye.origin);
         assert_eq!(&outside, eye.outside);
         assert_eq!(&first.map(u32::cast_signed), eye.first);

@@ -19,7 +19,7 @@ fn probe(ident: u32) -> (Result<TriangleEngine, Absent>, Rc<RefCell<Block>>) {
     (TriangleEngine::probe(registers()), block)
 }
 
-/// A pass whose numbers are all different.
+/// A geometry pass with different values in all parameters.
 fn pass(options: GeometryStart) -> Geometry<'static> {
     Geometry {
         mesh: &[0; 80],
@@ -123,7 +123,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
     unsafe { engine.start_geometry(prepared) };
     let wide = |low: u32, high: u16| {
         let bits = u64::from(high) << 32 | u64::from(low);
-        // Extends the sign of the number, which has 44 bits.
+        // Sign-extends the number from 44 bits.
         (bits << 20).cast_signed() >> 20
     };
     let translation = [
@@ -138,7 +138,7 @@ fn a_geometry_pass_is_described_before_it_is_started() {
         [r.row_n0(), r.row_n1(), r.row_n2()],
         [r.light_0(), r.light_1(), r.light_2()],
     ];
-    // Rows have 25 bits.
+    // Entries of rows have 25 bits.
     let rows = rows.map(|row| row.map(|value| value.read().cast_signed() << 7 >> 7));
     assert_eq!(rows.each_ref(), [pass.u, pass.v, pass.n, pass.light]);
     assert_eq!([r.near_low().read(), r.near_high().read().into()], [0, 8]);

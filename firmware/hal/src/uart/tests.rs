@@ -46,7 +46,7 @@ impl Line {
         assert!(self.to_cpu.len() <= DEPTH);
     }
 
-    /// Takes `count` sent bytes at the other end of the line.
+    /// Removes `count` bytes from the transmit queue, as sent over the line.
     fn take(&mut self, count: usize) {
         if self.from_cpu.len() == DEPTH && count > 0 {
             self.pending |= TX;
@@ -207,6 +207,6 @@ fn the_end_drains_the_queue_and_speaks_directly() {
     write!(direct, "!").unwrap();
     line.borrow_mut().take(DEPTH);
     assert_eq!(line.borrow().sent, b"....................!");
-    // Sending stops if the line takes no bytes.
+    // Sending stops if the line accepts no bytes.
     assert!(write!(direct, "{:20}", "").is_err());
 }

@@ -18,7 +18,7 @@ fn closed_and_open_meshes() {
     assert_eq!(unique_edges(&mut of_triangles(&tetrahedron)).len(), 6);
     assert_eq!(unique_edges(&mut of_triangles(&tetrahedron[1..])).len(), 6);
     assert_eq!(unique_edges(&mut of_triangles(&tetrahedron[2..])).len(), 5);
-    // A triangle that uses a vertex twice has one edge, and one that is a point has none.
+    // A triangle that uses a vertex twice has one edge, and a triangle that is a point has none.
     assert_eq!(unique_edges(&mut of_triangles(&[[7, 7, 3]])), [[3, 7]]);
     assert!(unique_edges(&mut of_triangles(&[[7; 3]])).is_empty());
     assert!(unique_edges::<u16>(&mut []).is_empty());

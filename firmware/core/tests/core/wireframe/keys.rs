@@ -1,4 +1,4 @@
-//! Keys, requests, contact bounce.
+//! Tests of keys, requests and contact bounce.
 
 use glint_core::wireframe::{DEBOUNCE_MS, Debouncer, Key, Requests, Step};
 
@@ -15,7 +15,7 @@ fn a_request_waits_for_its_frame() {
 #[test]
 fn one_request_a_frame_and_keys_take_turns() {
     let mut requests = Requests::default();
-    // Two keys in one frame move the segments in two frames; the second press of a key that waits is the same request.
+    // Two keys in one frame move the segments in two frames; a second press of a key with a pending request has no effect.
     for key in [Key::Right, Key::Up, Key::Right] {
         requests.press(key);
     }
@@ -23,7 +23,7 @@ fn one_request_a_frame_and_keys_take_turns() {
         [(); 3].map(|()| requests.take()),
         [Some(Key::Up), Some(Key::Right), None]
     );
-    // A key that is pressed before every frame does not hold up the others.
+    // A key that is pressed before every frame does not block other keys.
     requests.press(Key::ZoomOut);
     let mut waited = 0;
     loop {
@@ -45,7 +45,7 @@ fn steps() {
     assert_eq!(Key::ZoomIn.step(false), Key::ZoomIn.step(true));
 }
 
-/// Samples of a level every millisecond: returns the times of the presses of button 0 that count.
+/// Takes one sample per millisecond, and returns the times of the accepted presses of button 0.
 fn presses(levels: &str) -> Vec<u32> {
     let mut debouncer = Debouncer::default();
     // The clock wraps during the samples.
@@ -64,7 +64,7 @@ fn bounces_do_not_count() {
     assert_eq!(DEBOUNCE_MS, 5);
     assert_eq!(presses("0011111111110000000000"), [7]);
     assert_eq!(presses("0010110101111111111100"), [14]);
-    // Bounces at the release make no second press.
+    // Bounces at the release do not cause a second press.
     assert_eq!(presses("0111111111001011010000000000"), [6]);
     assert_eq!(presses("0111111001111111111"), [6]);
     assert!(presses("0111110000001111100000").is_empty());

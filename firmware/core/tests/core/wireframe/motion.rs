@@ -1,4 +1,4 @@
-//! The motion by steps; tools/reference measures it against f64.
+//! Tests of the motion by steps; tools/reference measures its error against f64.
 
 use glint_core::fixed::{Q5_11, Q12_20};
 use glint_core::wireframe::{
@@ -12,7 +12,7 @@ fn any_step() -> impl Strategy<Value = Step> {
     (prop::sample::select(&Key::ALL[..]), any::<bool>()).prop_map(|(key, rotate)| key.step(rotate))
 }
 
-/// The step that undoes a step.
+/// Returns the inverse of a step.
 fn inverse(step: Step) -> Step {
     match step {
         Step::Pan(direction) => Step::Pan(direction.map(|x| -x)),
@@ -81,7 +81,7 @@ fn pans_end_at_16() {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Undoing the steps in reverse order leads back to the start, except for an error below the pose's precision.
+    /// The inverse steps in reverse order lead back to the start, within the precision of the pose.
     #[test]
     fn the_way_back_leads_to_the_start(steps in prop::collection::vec(any_step(), 0..500)) {
         let mut motion = Motion::default();
@@ -92,7 +92,7 @@ proptest! {
         prop_assert_eq!(motion.pose(), Motion::default().pose());
     }
 
-    /// A step either moves all end points of the accumulated form, or none.
+    /// A step of the accumulated form moves either all end points or none.
     #[test]
     fn a_step_in_place_moves_all_or_none(bits in prop::collection::vec(any::<[[i16; 3]; 2]>(), 1..5), step in any_step()) {
         let before: Vec<Segment> = bits.iter().map(|ends| ends.map(|point| point.map(Q5_11::from_bits))).collect();

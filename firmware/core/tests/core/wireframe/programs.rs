@@ -1,4 +1,4 @@
-//! Programs: both forms, and every error.
+//! Tests of programs: text form, binary form, and every error.
 
 use glint_core::fixed::Q5_11;
 use glint_core::wireframe::text::{assemble, parse_line};
@@ -80,7 +80,7 @@ fn the_fields_are_at_the_bits_of_the_original() {
         assert_eq!(Instruction::decode(&word), Ok(instruction));
         assert_eq!(instruction.encode(), word);
     }
-    // 99 ones are the end, 96 ones after the opcode of a segment are a segment.
+    // A word of 99 ones is an end; the opcode of a segment with 96 ones is a segment.
     assert_eq!(
         Instruction::End.encode(),
         ((1_u128 << 99) - 1).to_le_bytes()

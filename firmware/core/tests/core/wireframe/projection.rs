@@ -1,4 +1,4 @@
-//! The projection against f64, and its stiff cases.
+//! Tests of the projection against f64, and of its stiff cases.
 
 use glint_core::fixed::{Q5_11, Q12_20};
 use glint_core::picture::Size;
@@ -9,14 +9,14 @@ use proptest::prelude::*;
 
 use super::{point, q, viewing};
 
-/// The ends on the screen in units of 2^−8 pixels by f64, from positions after the motion.
+/// Computes in f64 the ends on the screen, in units of 2^−8 pixels, from positions after the motion.
 fn exact(viewing: &Viewing, size: Size, [a, b]: [[f64; 3]; 2]) -> Option<[[f64; 2]; 2]> {
     let f = |x: Q5_11| x.to_num::<f64>();
     let [ex, ey, ez] = viewing.eye.map(f);
     let plane = f(viewing.plane);
     let ([xl, yl], [xh, yh]) = (viewing.window.low.map(f), viewing.window.high.map(f));
     let [width, height] = size.pixels().map(|pixels| 256.0 * f64::from(pixels));
-    // Numerators and denominators of both axes are linear along the segment, and so is each distance to a limit.
+    // Numerators and denominators of both axes, and the distances to the limits, are linear along the segment.
     let fractions = |[x, y, z]: [f64; 3]| {
         let (depth, distance) = (ez - plane, ez - z);
         [
@@ -58,12 +58,12 @@ fn moved(segment: [[f64; 3]; 2]) -> [[Q12_20; 3]; 2] {
     segment.map(|point| point.map(Q12_20::from_num))
 }
 
-/// The projection without a motion to a picture 640 wide.
+/// The projection without motion, to a picture 640 pixels wide.
 fn line(viewing: &Viewing, segment: Segment) -> Option<ScreenLine> {
     Projection::new(viewing, Size::W640).line(Motion::default().pose().segment(segment))
 }
 
-/// The largest distance of two lines in units of 2^−8 pixels.
+/// The largest distance between two lines, in units of 2^−8 pixels.
 fn distance(line: ScreenLine, exact: [[f64; 2]; 2]) -> f64 {
     let ends = line.as_flattened().iter().zip(exact.as_flattened());
     ends.map(|(&found, exact)| (f64::from(found) - exact).abs())
@@ -101,7 +101,8 @@ fn any_coordinate() -> impl Strategy<Value = i32> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// Behind the view plane every end is the f64 position rounded to nearest, even after a cut by the guard band.
+    /// For segments behind the view plane every end is the f64 position rounded to nearest, even after clipping to the guard
+    /// band.
     #[test]
     fn every_end_is_rounded_once(
         viewing in any_viewing(),
@@ -125,7 +126,7 @@ proptest! {
         match (found, exact(&viewing, Size::W1280, segment)) {
             (Some(found), Some(exact)) => prop_assert!(distance(found, exact) <= 0.5 + 1e-4, "{:?} {:?}", found, exact),
             (None, None) => {}
-            // A segment that only touches the guard band's corner is beyond the accuracy of f64.
+            // For a segment that only touches the guard band's corner the accuracy of f64 is insufficient.
             (found, exact) => {
                 let ends = found.map(|line| line.map(|end| end.map(f64::from))).or(exact).expect("one of them");
                 let corner = |end: [f64; 2]| end.iter().all(|x| (x.abs() - f64::from(GUARD)).abs() < 2.0);
@@ -164,8 +165,8 @@ proptest! {
         }
     }
 
-    /// From the program to the screen, with motion: within 1/256 pixel of f64 for windows at least 1 wide and high, with the eye at
-    /// least 2 in front of the view plane.
+    /// From program to screen, with motion, the error is at most 1/256 pixel for windows at least 1 wide and high, with the eye
+    /// at least 2 in front of the view plane.
     #[test]
     fn the_whole_way_is_within_a_unit(
         depth in 2.0..8.0_f64,
@@ -211,7 +212,7 @@ proptest! {
     }
 }
 
-/// The window ±2 × ±1.125 at z = 2, seen from z = 4: 160 pixels a unit at the view plane.
+/// The window ±2 × ±1.125 at z = 2, seen from z = 4: 160 pixels per unit at the view plane.
 fn usual() -> Viewing {
     viewing([0.0, 0.0, 4.0], 2.0, [-2.0, -1.125, 2.0, 1.125])
 }
@@ -224,7 +225,7 @@ fn ends_round_to_nearest_on_both_sides_of_zero() {
         line(&usual(), [p, p]).expect("a line")[0][0] - (320 << 8)
     };
     assert_eq!([unit(1, 2.0), unit(-1, 2.0)], [20, -20]);
-    // 20/3 and 20/8 units: half units round up.
+    // 20/3 and 20/8 units are rounded to nearest, half units up.
     assert_eq!([unit(1, -2.0), unit(-1, -2.0)], [7, -7]);
     assert_eq!([unit(1, -12.0), unit(-1, -12.0)], [3, -2]);
 }
