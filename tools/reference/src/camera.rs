@@ -23,12 +23,12 @@ pub(crate) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A ray: the points origin + t·direction for all t ≥ 0. The number t is the parameter of a point.
+/// A ray: the points origin + t·direction for all t ≥ 0. t is the parameter of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
     /// The point with the parameter 0, in world units.
     pub origin: Vector,
-    /// Change of the point, in world units, if the parameter grows by 1. Must not be zero.
+    /// Change of the point per unit of the parameter, in world units. Must not be zero.
     pub direction: Vector,
 }
 
@@ -42,24 +42,23 @@ impl Ray {
 /// One of the two eyes of a stereo picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left eye, at eye − offset·u: `eye` and `u` are fields of `Camera`, and `offset` is a field of `Stereo`.
+    /// The left eye, at eye − offset·u, where `eye` and `u` are fields of `Camera`, and `offset` of `Stereo`.
     Left,
-    /// The right eye, at eye + offset·u, with the same fields.
+    /// The right eye, at eye + offset·u.
     Right,
 }
 
-/// Parameters of a stereo picture: two eyes beside each other look in the same direction, and their pictures are shifted
-/// horizontally (off-axis projection).
+/// Parameters of a stereo picture: two eyes side by side with parallel viewing directions, and pictures shifted horizontally
+/// (off-axis projection).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stereo {
     /// Distance of each of the two eyes from the camera's `eye`, along the camera's direction `u`, in world units.
     pub offset: f64,
-    /// Depth of the plane without parallax, in world units: both eyes see a point of it in the same pixel.
+    /// Depth of the zero-parallax plane, in world units: both eyes see a point of the plane in the same pixel.
     pub zero: f64,
 }
 
-/// A pinhole camera: an eye and an orthonormal basis with u × v = n. Its picture lies in the plane at distance 1 from the eye
-/// along n.
+/// A pinhole camera: an eye and an orthonormal basis with u × v = n. The image plane is at distance 1 from the eye along n.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// The centre of projection, in world units.
@@ -77,7 +76,7 @@ pub struct Camera {
 }
 
 impl From<&View> for Camera {
-    /// Converts the fixed-point numbers of a view to f64, which is exact.
+    /// Converts the fixed-point numbers of a view to f64, exactly.
     fn from(view: &View) -> Self {
         Self {
             eye: view.eye().map(|c| c.to_num()),
@@ -117,12 +116,12 @@ impl Camera {
         }
     }
 
-    /// Returns this camera turned about its eye, as [`View::look`] turns a view. `angles` are in degrees and apply in this
+    /// Returns this camera rotated about its eye, as [`View::look`] rotates a view. `angles` are in degrees and apply in this
     /// order: yaw to the right, pitch downwards, roll.
     #[must_use]
     pub fn turned(&self, angles: Vector) -> Self {
         let [(sy, cy), (sp, cp), (sr, cr)] = angles.map(|angle| angle.to_radians().sin_cos());
-        // The axes of the turned camera before the roll, each in coordinates of this camera: right, up and forward.
+        // The right, up and forward axes of the rotated camera before the roll, in coordinates of this camera.
         let right = [cy, 0.0, -sy];
         let up = [sp * sy, cp, sp * cy];
         let forward = [cp * sy, -sp, cp * cy];
@@ -138,7 +137,7 @@ impl Camera {
         }
     }
 
-    /// Converts the camera to a view. Each number is rounded to the nearest number of its fixed-point format.
+    /// Converts the camera to a view. Rounds each number to the nearest number of its fixed-point format.
     ///
     /// # Errors
     /// The errors of [`View::new_checked`].
@@ -157,8 +156,8 @@ impl Camera {
         )
     }
 
-    /// Returns the ray from the eye through a point of the picture. `x` is the column and `y` the row of the point, counted
-    /// from 0. Whole numbers are the centres of pixels, and fractions lie between the centres.
+    /// Returns the ray from the eye through a point of the picture. `x` is the column and `y` the row of the point, from 0.
+    /// Integers are pixel centres.
     ///
     /// The ray's direction has a component of 1 along n, so the parameter t of a point of the ray is the point's depth.
     pub fn ray(&self, [x, y]: [f64; 2], size: Size) -> Ray {
@@ -186,8 +185,7 @@ impl Camera {
         }
     }
 
-    /// Converts a point of the world to camera coordinates: how far it lies to the right of the eye, below the eye and in
-    /// front of the eye, in world units.
+    /// Converts a point from world to camera coordinates: right of, below and in front of the eye, in world units.
     pub fn coordinates(&self, point: Vector) -> Vector {
         let d = subtract(point, self.eye);
         [dot(d, self.u), dot(d, self.v), dot(d, self.n)]
@@ -202,13 +200,13 @@ impl Camera {
         ]
     }
 
-    /// Number of pixels that one world unit spans in the plane at distance 1, horizontally and vertically.
+    /// Number of pixels per world unit in the image plane, horizontally and vertically.
     pub fn pixels_per_unit(&self, size: Size) -> f64 {
         f64::from(size.width) / 2.0 / self.half_width
     }
 
-    /// Clips a convex polygon in camera coordinates: returns its part on or beyond the near plane. The method is that of
-    /// Sutherland and Hodgman (1974), before the division by z.
+    /// Clips a convex polygon in camera coordinates: returns its part on or beyond the near plane. The method of Sutherland and
+    /// Hodgman (1974), applied before the division by z.
     pub fn clip_near(&self, polygon: &[Vector]) -> Vec<Vector> {
         let mut kept = Vec::with_capacity(polygon.len() + 1);
         for (i, &a) in polygon.iter().enumerate() {
@@ -230,7 +228,7 @@ impl Camera {
     }
 
     /// Computes the factor K of depth codes, with code = K/z: (2^18 − 4)·max(near, −eye·n − radius·(1 + 2^-13)), truncated to 17
-    /// significant bits. The factor 1 + 2^-13 allows for a length of n slightly above 1.
+    /// significant bits. The factor 1 + 2^-13 covers lengths of n slightly above 1.
     ///
     /// `radius` is the radius of a sphere about the origin that contains the scene, in world units.
     pub fn depth_scale(&self, radius: f64) -> f64 {
@@ -290,8 +288,8 @@ mod tests {
         for ray in [left, right] {
             assert!(length(subtract(ray.at(stereo.zero), meeting)) < 1e-12);
         }
-        // In front of the plane without parallax, the left eye's ray through a pixel is to the left of the right eye's ray.
-        // So the left eye sees a near point further to the right than the right eye does.
+        // In front of the zero-parallax plane, the left eye's ray through a pixel is to the left of the right eye's ray. So a
+        // near point appears farther right in the left eye's picture.
         assert!(left.at(1.0)[0] < right.at(1.0)[0]);
     }
 
@@ -331,10 +329,10 @@ mod tests {
 
     #[test]
     fn depth_scale_leaves_four_codes_at_the_nearest_depth() {
-        // The nearest depth is 3: 3·262140 has 20 bits, and the lowest three of them are truncated.
+        // The nearest depth is 3: 3·262140 has 20 bits, the lowest three of which are truncated.
         assert_eq!(CAMERA.depth_scale(0.0), 786_416.0);
-        // The nearest depth is 2 − 2^-13: (2 − 2^-13)·262140 = 524248.0005 has 19 bits before the point, which end in two zeros.
-        // So only the fraction is truncated.
+        // The nearest depth is 2 − 2^-13: (2 − 2^-13)·262140 = 524248.0005 has 19 integer bits, the lowest two of them 0. So only
+        // the fraction is truncated.
         assert_eq!(CAMERA.depth_scale(1.0), 524_248.0);
         assert_eq!(CAMERA.depth_scale(9.0), 262_140.0);
     }

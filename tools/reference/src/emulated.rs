@@ -1,4 +1,4 @@
-//! The emulated board with the built firmware, and its console.
+//! The emulated board with the built firmware and a console.
 
 use std::sync::LazyLock;
 
@@ -14,10 +14,10 @@ pub type Emulated = SimulatedBoard<EmulatedBoard>;
 static FIRMWARE: LazyLock<Result<Vec<u8>, String>> =
     LazyLock::new(|| built_firmware(None).map_err(|error| error.to_string()));
 
-/// The firmware that `cargo xtask firmware` has built.
+/// The firmware image built by `cargo xtask firmware`.
 ///
 /// # Errors
-/// It has not been built.
+/// The firmware has not been built.
 pub fn firmware() -> Result<&'static [u8]> {
     match &*FIRMWARE {
         Ok(firmware) => Ok(firmware),
@@ -25,7 +25,7 @@ pub fn firmware() -> Result<&'static [u8]> {
     }
 }
 
-/// A board that has just started.
+/// Starts a board.
 ///
 /// # Errors
 /// The firmware has not been built.
@@ -33,12 +33,12 @@ pub fn start() -> Result<Emulated> {
     Ok(board::emulated(firmware()?)?)
 }
 
-/// Clock cycles of a number of milliseconds.
+/// Number of clock cycles in a time in milliseconds.
 pub fn cycles(board: &mut Emulated, milliseconds: u64) -> u64 {
     u64::from(board.inner().clock_hz()) / 1000 * milliseconds
 }
 
-/// Sends a command to a board that waits for one, and returns the lines of its reply.
+/// Sends a command to an idle board, and returns the lines of its reply.
 ///
 /// # Errors
 /// The firmware refuses the command, or does not answer.
@@ -47,10 +47,10 @@ pub fn command(board: &mut Emulated, command: &str) -> Result<Vec<String>> {
     lines.with_context(|| format!("the command {command:?}"))
 }
 
-/// The value of a key in the reply to a command.
+/// The value of a key in a command's reply.
 ///
 /// # Errors
-/// The reply does not have the key, or its value another form.
+/// The key is missing in the reply, or its value has an unexpected form.
 pub fn value<T: std::str::FromStr>(board: &mut Emulated, line: &str, key: &str) -> Result<T> {
     let lines = command(board, line)?;
     Ok(glint::console::value(line, &lines, key)?)
@@ -59,7 +59,7 @@ pub fn value<T: std::str::FromStr>(board: &mut Emulated, line: &str, key: &str) 
 /// The camera of a board, bit for bit.
 ///
 /// # Errors
-/// The board does not print it in the form that the console reads.
+/// The board does not print the camera in the form that the console accepts.
 pub fn view(board: &mut Emulated) -> Result<View> {
     let lines = command(board, "view")?;
     let line = lines.first().context("no camera")?;
@@ -69,11 +69,11 @@ pub fn view(board: &mut Emulated) -> Result<View> {
     }
 }
 
-/// Begins a command whose reply is read later.
+/// Sends a command without reading its reply.
 ///
 /// # Errors
-/// The line is broken.
+/// The connection is broken.
 pub fn begin(board: &mut Emulated, command: &str) -> Result<()> {
-    // As for the console, a zero byte drops an unfinished line.
+    // A zero byte first drops an unfinished line, as in the console.
     Ok(board.write(format!("\0{command}\r").as_bytes())?)
 }

@@ -1,15 +1,14 @@
-//! References that Glint's computations are compared with, written from the specification and not from the model, and the
-//! measurements of the report.
+//! References for Glint's computations, written from the specification and not from the model, and the measurements of the report.
 //!
 //! - [`emulated`]: the emulated board with the built firmware.
-//! - [`errors`]: RMS and maximum of a set of errors.
-//! - [`basis`]: the errors of a camera's basis.
+//! - [`errors`]: RMS and maximum of errors.
+//! - [`basis`]: the deviation of a camera's basis from an orthonormal basis.
 //! - [`camera`]: projection, clipping and depth scale of a camera, in f64.
 //! - [`raymarch`]: hits of rays on distance fields, and the errors of the raymarcher's pictures.
-//! - [`gesture`]: camera frames with a hand, and the errors of the camera's control by it.
-//! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions whose true attitude is known.
-//! - [`line`](mod@line): exact pixels of a segment, by the diamond of each pixel.
-//! - [`picture`]: whole pictures of frames in f64, and the errors of the model's as a monitor shows them.
+//! - [`gesture`]: camera frames with a hand, and the errors of the camera's control by the hand.
+//! - [`imu`]: attitudes from a gyroscope and an accelerometer, for motions with known true attitudes.
+//! - [`line`](mod@line): exact pixels of a segment, by the diamond-exit rule.
+//! - [`picture`]: whole pictures in f64, and the errors of the model's pictures as displayed on a monitor.
 //! - [`report`]: the measurements and pages of docs/report.
 //! - [`sine`]: errors of sine and cosine over all inputs, for Glint's kernels and for other libraries.
 //! - [`stiff`]: the catalogue of stiff and extreme cases.

@@ -1,40 +1,38 @@
 //! Exact pixels of a segment between snapped end points, by the diamond-exit rule of OpenGL and Vulkan.
 //!
-//! Every pixel is decided alone, without a walk: it belongs to the segment if the segment meets the open diamond
-//! |x| + |y| < 1/2 pixel about its centre, and the second end point is not in the diamond. Both end points are first moved by
-//! (−ε, −ε²) for an ε so small that any smaller one gives the same pixels, so that no end point and no segment touches the
-//! border of a diamond without crossing it.
+//! Each pixel is decided independently: it belongs to the segment if the segment intersects the open diamond |x| + |y| < 1/2 pixel about
+//! the pixel's centre, and the second end point is not in the diamond. Both end points are first moved by (−ε, −ε²), to avoid end points
+//! on, and segments along, the border of a diamond. ε is so small that any smaller ε gives the same pixels.
 
 use crate::triangle::exact::{DEPTH_STEPS, ExactDepth, SUBPIXELS, SnappedVertex};
 
-/// Steps of 2^-46 subpixel, in which positions are computed.
+/// Steps per subpixel: positions are computed in 2^-46 subpixel.
 const STEPS: i128 = 1 << 46;
-/// ε and ε² in these steps: 2^-23 and 2^-46 subpixel. Every decision is the sign of i + j·ε + k·ε² with integers i, j and k, and
-/// |j|, |k| at most 2^22: differences of two end points have 21 bits, and a decision has two of them as factors of ε.
+/// ε and ε² in these steps: 2^-23 and 2^-46 subpixel. Every decision is the sign of i + j·ε + k·ε² with integers i, j and k,
+/// where |j|, |k| ≤ 2^22: a factor of ε is the sum of two differences of end points, of 21 bits each.
 const EPSILON: [i128; 2] = [1 << 23, 1];
 
 /// The four outward normals of a diamond's sides.
 const NORMALS: [[i128; 2]; 4] = [[1, 1], [1, -1], [-1, 1], [-1, -1]];
 
-/// A rectangle of pixels: its first column and row, and one past its last ones.
+/// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rectangle {
     /// First column and row.
     pub from: [i64; 2],
-    /// One past the last column and row.
+    /// Column and row after the last.
     pub to: [i64; 2],
 }
 
-/// A segment from a first to a second snapped end point, whose positions differ by less than 2^20 steps of the grid in both
-/// directions.
+/// A segment between two snapped end points, less than 2^20 grid steps apart in both directions.
 #[derive(Clone, Copy, Debug)]
 pub struct ExactSegment {
     ends: [SnappedVertex; 2],
-    /// The moved first end point.
+    /// The first end point, moved by (−ε, −ε²).
     start: [i128; 2],
-    /// The moved second end point.
+    /// The second end point, moved by (−ε, −ε²).
     end: [i128; 2],
-    /// From the first to the second end point, in steps of the grid.
+    /// Vector from the first to the second end point, in grid steps.
     way: [i128; 2],
 }
 
@@ -56,7 +54,7 @@ impl ExactSegment {
     pub fn leaves_diamond(&self, pixel: [i64; 2]) -> bool {
         let centre = pixel
             .map(|i| (i128::from(i) * i128::from(SUBPIXELS) + i128::from(SUBPIXELS) / 2) * STEPS);
-        // Distance to a side of the diamond, positive inside.
+        // Signed distance to a side of the diamond, positive inside.
         let distance = |point: [i128; 2], normal: [i128; 2]| {
             i128::from(SUBPIXELS) / 2 * STEPS
                 - dot(normal, [point[0] - centre[0], point[1] - centre[1]])
@@ -64,7 +62,7 @@ impl ExactSegment {
         if NORMALS.iter().all(|&normal| distance(self.end, normal) > 0) {
             return false;
         }
-        // The open range (low, high) of the parts of the path that are in the diamond, in 2^-46 of the path.
+        // The open interval (low, high) of the path within the diamond, in 2^-46 of the path's length.
         let mut low = Fraction(-STEPS, 1);
         let mut high = Fraction(2 * STEPS, 1);
         for normal in NORMALS {
@@ -79,8 +77,7 @@ impl ExactSegment {
         low.is_below(high) && low.is_below(Fraction(STEPS, 1)) && Fraction(0, 1).is_below(high)
     }
 
-    /// Calls `visit` for each pixel of the segment in a rectangle, in any order. Quarters of the rectangle that the segment
-    /// does not meet are left out.
+    /// Calls `visit` for each pixel of the segment in a rectangle, in any order. Skips parts of the rectangle without an intersection.
     pub fn for_each_pixel(&self, rectangle: Rectangle, visit: &mut impl FnMut([i64; 2])) {
         let Rectangle { from, to } = rectangle;
         let size = [to[0] - from[0], to[1] - from[1]];
@@ -93,7 +90,7 @@ impl ExactSegment {
             }
             return;
         }
-        // Cuts the longer side in two.
+        // Halves the longer side.
         let axis = usize::from(size[1] > size[0]);
         let middle = from[axis] + size[axis] / 2;
         let (mut first, mut second) = (rectangle, rectangle);
@@ -103,8 +100,8 @@ impl ExactSegment {
         self.for_each_pixel(second, visit);
     }
 
-    /// Whether the segment may meet the square of a pixel in a rectangle. If not, one of the rectangle's sides or the segment's
-    /// line separates them.
+    /// Whether the segment may intersect a pixel of a rectangle. If not, a side of the rectangle or the segment's line separates
+    /// segment and rectangle.
     fn meets(&self, rectangle: Rectangle) -> bool {
         let [low, high] = [rectangle.from, rectangle.to]
             .map(|corner| corner.map(|i| i128::from(i) * i128::from(SUBPIXELS) * STEPS));
@@ -119,8 +116,8 @@ impl ExactSegment {
         !apart && sides.iter().any(|&side| side != sides[0] || side == 0)
     }
 
-    /// The depth at a pixel's centre: linear along the major axis, which is that of columns if the end points are at least as far
-    /// apart horizontally as vertically. They must not be at the same position.
+    /// The depth at a pixel's centre: linear along the major axis, which is horizontal if the end points are at least as far
+    /// apart horizontally as vertically. The end points must be at different positions.
     pub fn depth(&self, pixel: [i64; 2]) -> ExactDepth {
         let axis = usize::from(self.way[0].abs() < self.way[1].abs());
         let [from, to] = self.ends;
@@ -194,7 +191,7 @@ mod tests {
 
     #[test]
     fn an_end_on_the_border_counts_as_moved_to_the_left() {
-        // The right corner of the diamond of pixel (0, 0) is in it, the left one is not.
+        // The right corner of pixel (0, 0)'s diamond is inside, the left corner outside.
         assert_eq!(pixels([128, 128], [256, 128]), [[0; 2]; 0]);
         assert_eq!(pixels([256, 128], [300, 128]), [[0, 0]]);
         assert_eq!(pixels([128, 128], [0, 128]), [[0, 0]]);

@@ -26,7 +26,7 @@ struct Arguments {
     /// Folder of CSV files, page and diagrams [default: docs/report, or target/report with --quick or --only]
     #[arg(long, value_name = "DIR", global = true)]
     out: Option<PathBuf>,
-    /// Write the CSV files alone, without page and diagrams
+    /// Write only the CSV files, without page and diagrams
     #[arg(long, global = true)]
     tables: bool,
 }
@@ -35,7 +35,7 @@ struct Arguments {
 enum Page {
     /// Sine and cosine: errors over all inputs, and cycles, compared with other libraries
     Sine {
-        /// Measure a sample of the inputs instead of all (seconds instead of minutes)
+        /// Measure a sample of the inputs instead of all inputs (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
@@ -43,10 +43,10 @@ enum Page {
     },
     /// Speed of the triangle engine on the whole SoC, compared with its requirements
     Triangle {
-        /// Leave out the soft core's frames, which take most of the time
+        /// Skip the soft core's frames, which take most of the time
         #[arg(long)]
         quick: bool,
-        /// Measure only one table: engine, or cpu (the frames that the soft core draws)
+        /// Measure only one table: engine, or cpu (frames drawn by the soft core)
         #[arg(long, value_name = "NAME", conflicts_with = "quick", value_parser = ["engine", "cpu"])]
         study: Option<String>,
         /// Measure only scenes whose name contains TEXT
@@ -55,19 +55,19 @@ enum Page {
     },
     /// Distance fields: errors, frames a second and studies of the raymarcher
     Raymarch {
-        /// Measure only errors of pictures of 320x180 (seconds instead of minutes)
+        /// Measure only the errors of pictures of 320x180 (seconds instead of minutes)
         #[arg(long)]
         quick: bool,
         /// Measure only one table: pictures, rates, or a study: fraction, cap, threshold, norm, end, prepass or normal
         #[arg(long, value_name = "NAME", conflicts_with = "quick")]
         study: Option<String>,
     },
-    /// Smooth shading and other forms of it: errors, clocks and FPGA resources
+    /// Smooth shading and its alternatives: errors, clocks and FPGA resources
     Gouraud {
-        /// Leave out the FPGA resources, which take most of the time
+        /// Skip the FPGA resources, which take most of the time
         #[arg(long)]
         quick: bool,
-        /// Synthesise the engines of earlier commits again, too
+        /// Also synthesise the engines of earlier commits again
         #[arg(long, conflicts_with = "quick")]
         earlier: bool,
     },
@@ -78,13 +78,13 @@ enum Page {
     },
     /// Attitudes from gyroscope and accelerometer, compared with f64 and with the true attitude
     Imu {
-        /// Shorten long motions to a tenth and leave out motions of a day (half a minute instead of ten)
+        /// Shorten long motions to a tenth and skip motions of a day (half a minute instead of ten minutes)
         #[arg(long)]
         quick: bool,
         #[command(flatten)]
         cycles: Source,
     },
-    /// A hand that steers the camera: errors of its centre, and errors, lag and cycles of filters
+    /// Camera control by a hand: errors of the hand's centre, and errors, lag and cycles of filters
     Gesture {
         #[command(flatten)]
         cycles: Source,
@@ -97,9 +97,9 @@ enum Page {
         #[command(flatten)]
         cycles: Source,
     },
-    /// Qualities of pictures: errors and frames a second of each scene in each size
+    /// Picture quality: errors and frames a second of each scene at each size
     Quality {
-        /// Measure only errors of pictures of 320x180
+        /// Measure only the errors of pictures of 320x180
         #[arg(long)]
         quick: bool,
         /// Measure only one table: errors or cycles
@@ -109,7 +109,7 @@ enum Page {
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
     },
-    /// Where the cycles of a frame of each scene go: soft core, passes of the engines, memory, evaluations
+    /// Breakdown of the cycles of a frame of each scene: soft core, engine passes, memory, evaluations
     Timeline {
         /// Measure only scenes whose name contains TEXT
         #[arg(long, value_name = "TEXT")]
@@ -123,7 +123,7 @@ enum Page {
         /// Measure only one table
         #[arg(long, value_name = "NAME", value_parser = long::STUDIES)]
         study: Option<String>,
-        /// Hours of the sensor, each of which takes minutes
+        /// Simulated hours of the sensor, minutes of run time each
         #[arg(
             long,
             value_name = "HOURS",
@@ -132,12 +132,12 @@ enum Page {
         )]
         hours: f64,
     },
-    /// Stiff and extreme cases: runs the catalogue tools/reference/stiff, and fails where an outcome differs
+    /// Stiff and extreme cases: run the catalogue tools/reference/stiff, and fail if an outcome differs
     Stiff {
         /// Run only cases whose name or subject contains TEXT, and write no page
         #[arg(long, value_name = "TEXT")]
         only: Option<String>,
-        /// Run the cases on the virtual board instead, which take minutes
+        /// Run the cases of the virtual board instead, which take minutes
         #[arg(long = "virtual")]
         on_virtual_board: bool,
     },
@@ -146,7 +146,7 @@ enum Page {
 }
 
 impl Page {
-    /// Whether only a part of the page's measurements is made.
+    /// Whether the options select only a part of the page's measurements.
     fn is_partial(&self) -> bool {
         match self {
             Self::Sine { quick, .. }
@@ -164,11 +164,11 @@ impl Page {
     }
 }
 
-/// The folder of the results.
+/// The output folder.
 struct Folder(PathBuf);
 
 impl Folder {
-    /// Writes a table as soon as it is complete, because the next one may take minutes to measure.
+    /// Writes a table as soon as it is complete, because the next table may take minutes to measure.
     fn write<T: Serialize>(&self, name: &str, rows: &[T]) -> Result<()> {
         let path = self.0.join(name).with_extension("csv");
         write_csv(rows, &path)?;
@@ -176,7 +176,7 @@ impl Folder {
         Ok(())
     }
 
-    /// Makes pages from the tables: those named, or all.
+    /// Builds the named pages, or all pages, from the tables.
     fn make_pages(&self, names: &[&str]) -> Result<()> {
         let python = workspace::path(".venv/bin/python");
         let made = Command::new(&python)
@@ -267,7 +267,7 @@ fn measure_sine(quick: bool, cycles: &Source, to: &Folder) -> Result<()> {
     to.write("sine-reference", &[reference])
 }
 
-/// Measures the engine and the soft core, or only the one that `study` names.
+/// Measures the engine and the soft core, or only the table `study`.
 fn measure_triangle(
     quick: bool,
     study: Option<&str>,
@@ -283,7 +283,7 @@ fn measure_triangle(
     Ok(())
 }
 
-/// Measures the pictures, the rates and all studies of the raymarcher, or only what `study` names.
+/// Measures the pictures, the rates and all studies of the raymarcher, or only the table `study`.
 fn measure_raymarch(quick: bool, study: Option<&str>, to: &Folder) -> Result<()> {
     if study.is_none_or(|study| study == "pictures") {
         to.write("raymarch", &raymarch::pictures::measure(quick))?;
@@ -314,7 +314,7 @@ fn measure_gouraud(quick: bool, earlier: bool, to: &Folder) -> Result<()> {
     to.write("gouraud-cost", &costs)
 }
 
-/// Measures errors and cycles, or only the table that `study` names.
+/// Measures errors and cycles, or only the table `study`.
 fn measure_quality(
     quick: bool,
     study: Option<&str>,
@@ -332,7 +332,7 @@ fn measure_quality(
     Ok(())
 }
 
-/// Runs all studies, or only the one that `study` names.
+/// Runs all long runs, or only the table `study`.
 fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Result<()> {
     let is_selected = |name: &str| study.is_none_or(|study| study == name);
     let (turns, hours) = if quick { (4, 0.24) } else { (400, hours) };
@@ -356,7 +356,7 @@ fn measure_long(quick: bool, study: Option<&str>, hours: f64, to: &Folder) -> Re
     Ok(())
 }
 
-/// Runs the cases and prints those that differ from the catalogue. Only those of the host have errors.
+/// Runs the cases and prints the outcomes that differ from the catalogue. Only cases of the host have errors.
 fn measure_stiff(only: Option<&str>, on_virtual_board: bool, to: &Folder) -> Result<()> {
     let part = match on_virtual_board {
         false => stiff::Part::Host,

@@ -1,4 +1,4 @@
-//! Stiff cases of the camera's control: what the camera does when frames do not show one hand.
+//! Stiff cases of the camera's control: frames that do not show exactly one hand.
 
 use glint_core::gesture::{Control, Doubt, Presence};
 use rand::SeedableRng;
@@ -9,12 +9,12 @@ use super::path::{AREA, angles, between};
 
 /// Number of frames per second.
 const RATE: f64 = 60.0;
-/// The second in which the fault begins, and the one in which it ends.
+/// Start and end of the fault in seconds.
 const FAULT: [f64; 2] = [2.0, 3.0];
-/// The second in which a case ends.
+/// End of a case in seconds.
 const END: f64 = 5.0;
 
-/// Content of the frames between the beginning and the end of a case's fault.
+/// Content of the frames during a case's fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// No pixel of the hand's colour.
@@ -25,21 +25,21 @@ pub enum Fault {
     OnePixel,
     /// The hand is cut by the frame's border.
     Border,
-    /// The hand is away and comes back at another position.
+    /// The hand leaves and returns at another position.
     Elsewhere,
     /// A second hand appears far away.
     SecondFar,
-    /// A second hand appears beside the first one, in its region.
+    /// A second hand appears beside the first hand, in its region.
     SecondNear,
-    /// Two hands from the beginning, and one of them leaves at the end of the fault.
+    /// Two hands from the beginning; one leaves at the end of the fault.
     TwoAtStart,
-    /// The light doubles, and a quarter of the hand's area leaves the windows.
+    /// The light doubles, and a quarter of the hand's area leaves the colour windows.
     LightLittle,
-    /// The light doubles, the hand's colour leaves the windows, and the exposure settles after 0.5 s.
+    /// The light doubles, the hand's colour leaves the colour windows, and the exposure settles after 0.5 s.
     LightMuch,
-    /// Frames with a fault: VSYNC lost, lines too short or too long, bytes slipped.
+    /// Faulty frames: VSYNC lost, lines too short or too long, bytes slipped.
     Faulty,
-    /// No frames: the sensor's clock stopped, or it was unplugged.
+    /// No frames: the sensor's clock is stopped, or the sensor is unplugged.
     Stopped,
 }
 
@@ -82,21 +82,21 @@ impl Fault {
 /// Outcome of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CaseResult {
-    /// Presence of the hand after half of the fault's time.
+    /// Presence of the hand at half of the fault's time.
     pub presence: Presence,
-    /// Reason why the last frame of the fault was not used; `None` if it was.
+    /// Reason for not using the last frame of the fault; `None` if it was used.
     pub doubt: Option<Doubt>,
-    /// Largest angle in degrees between the camera during the fault and before it.
+    /// Largest angle in degrees between the camera's directions during and before the fault.
     pub moved: f64,
-    /// Time in ms from the end of the fault until the hand steers the camera again; 0 if it did all the time.
+    /// Time in ms from the end of the fault until the hand steers the camera again; 0 if it always did.
     pub back: f64,
-    /// Largest angle in degrees that the camera turns from a frame to the next one, from the fault's beginning on.
+    /// Largest rotation of the camera in degrees between successive frames, from the fault's beginning on.
     pub step: f64,
-    /// Angle in degrees between camera and hand at the end.
+    /// Angle in degrees between the directions of camera and hand at the end.
     pub end: f64,
 }
 
-/// Runs a case: a hand at rest, with the noise of a sensor, a fault for a second, then the hand again.
+/// Runs a case: a hand at rest with sensor noise, a fault of a second, then the hand again.
 pub fn outcome(fault: Fault) -> CaseResult {
     let mut random = Pcg64Mcg::seed_from_u64(5);
     let noise = Noise::SENSOR;
@@ -146,7 +146,7 @@ pub fn outcome(fault: Fault) -> CaseResult {
             Fault::OnePixel => Some(Frame::of([(100, 110)]).statistics(setting)),
             Fault::Everything => Some(Frame::full().statistics(setting)),
             Fault::Border => {
-                // The hand glides there within half a second.
+                // The hand moves there within half a second.
                 let part = ((seconds - FAULT[0]) * 2.0).min(1.0);
                 Some(draw(&[hand.moved([-100.0 * part, 0.0])], &noise))
             }

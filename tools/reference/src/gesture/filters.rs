@@ -16,15 +16,15 @@ pub enum Filter {
     Average(usize),
     /// Low pass of first order with a corner frequency in Hz.
     LowPass(f64),
-    /// α-β filter with the tracking index λ of Kalata (1984).
+    /// α-β filter with tracking index λ (Kalata, 1984).
     AlphaBeta(f64),
-    /// 1€ filter with the corner frequencies at rest and of the speed in Hz, and the slope in Hz per turn per second.
+    /// 1€ filter: corner frequencies at rest and of the speed in Hz, and slope in Hz per turn per second.
     OneEuro([f64; 3]),
-    /// The filter in use: the 1€ filter and the dead zone, with the firmware's constants.
+    /// The firmware's filter: 1€ filter and dead zone with the firmware's constants.
     Shipped,
 }
 
-/// The filter for one channel.
+/// State of the filter for one channel.
 enum Channel {
     None,
     Average2(Average<2>),
@@ -37,7 +37,7 @@ enum Channel {
     Shipped(OneEuro, Backlash),
 }
 
-/// Gains α and β of the tracking index λ, which compares the path's accelerations with the noise (Kalata, 1984).
+/// Gains α and β for the tracking index λ, the ratio of the path's accelerations to the noise (Kalata, 1984).
 pub fn kalata(index: f64) -> [f64; 2] {
     let r = (4.0 + index - (8.0 * index + index * index).sqrt()) / 4.0;
     let alpha = 1.0 - r * r;
@@ -45,7 +45,7 @@ pub fn kalata(index: f64) -> [f64; 2] {
 }
 
 impl Filter {
-    /// Name of the family of filters: that of its kernel in the console's `bench gesture`.
+    /// Name of the filter family: the kernel's name in the console's `bench gesture`.
     pub const fn kernel(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -57,7 +57,7 @@ impl Filter {
         }
     }
 
-    /// Name of the family of filters, for people.
+    /// Readable name of the filter family.
     pub const fn family(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -69,7 +69,7 @@ impl Filter {
         }
     }
 
-    /// Its parameters as text.
+    /// The filter's parameters as text.
     pub fn parameters(self) -> String {
         match self {
             Self::None => String::new(),
@@ -86,7 +86,7 @@ impl Filter {
         }
     }
 
-    /// Makes the filter of one channel at rest at `input`.
+    /// Makes the filter of one channel, settled at `input`.
     fn at(self, input: Q4_28) -> Channel {
         match self {
             Self::None => Channel::None,
@@ -158,21 +158,21 @@ impl Channel {
 pub struct Quality {
     /// RMS in degrees of the camera's motion about its mean while the hand rests.
     pub rest: f64,
-    /// Delay in ms behind a steady motion.
+    /// Lag in ms behind a steady motion.
     pub lag: f64,
-    /// RMS in degrees of the difference to the true position during reaches.
+    /// RMS in degrees of the deviation from the true position during reaches.
     pub tracking: f64,
-    /// The largest of these differences in degrees.
+    /// Largest deviation from the true position during reaches, in degrees.
     pub largest: f64,
 }
 
-/// The samples that filters are compared on, at a rate in frames per second.
+/// The samples for the comparison of filters.
 pub struct Recordings {
     /// Number of frames per second.
     pub rate: f64,
     /// A hand at rest.
     pub rest: Vec<Sample>,
-    /// A steady motion, without the frames in which the hand jumps back.
+    /// A steady motion, without the frames of the jump back.
     pub sweep: Vec<Sample>,
     /// Reaches.
     pub reaches: Vec<Sample>,
@@ -204,7 +204,7 @@ pub fn quality(filter: Filter, recordings: &Recordings) -> Quality {
     }
 }
 
-/// RMS in degrees of the motion of azimuths and polar angles in turns about their mean.
+/// RMS in degrees of the deviation of azimuths and polar angles (in turns) from their mean.
 pub fn motion(angles: &[[f64; 2]]) -> f64 {
     let mean = [0, 1]
         .map(|axis| angles.iter().map(|angle| angle[axis]).sum::<f64>() / angles.len() as f64);

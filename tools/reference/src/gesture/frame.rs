@@ -1,4 +1,4 @@
-//! Pixels of the hand's colour in camera frames, and the gesture engine's statistics of them.
+//! Camera frames as masks of the hand's colour, and the gesture engine's statistics of a frame.
 
 use glint_core::gesture::{Region, Setting, Statistics};
 use rand::RngExt;
@@ -16,11 +16,11 @@ const ROWS: usize = SIZE[1] as usize;
 pub enum Shape {
     /// A disc.
     Disc,
-    /// A palm with four fingers up and a thumb to the left.
+    /// A palm with four fingers upwards and a thumb to the left.
     Hand,
 }
 
-/// The palm's fingers in units of its radius: the end of each, from the palm's centre, and half its width.
+/// The fingers in units of the palm's radius: for each, the fingertip from the palm's centre, and half the width.
 const FINGERS: [([f64; 2], f64); 5] = [
     ([-0.8, -1.9], 0.27),
     ([-0.3, -2.2], 0.27),
@@ -30,7 +30,7 @@ const FINGERS: [([f64; 2], f64); 5] = [
 ];
 
 impl Shape {
-    /// Distance of a point from the outline, negative inside. The palm or disc has the radius 1 and its centre at the origin.
+    /// Signed distance of a point from the outline, negative inside. The palm or disc has the radius 1 and its centre at the origin.
     fn distance(self, [x, y]: [f64; 2]) -> f64 {
         let palm = x.hypot(y) - 1.0;
         match self {
@@ -42,7 +42,7 @@ impl Shape {
         }
     }
 
-    /// Area and centre of mass of the shape with radius 1, by a sum over squares of 1/200.
+    /// Area and centre of mass of the shape with radius 1, summed over a grid of squares of side 1/200.
     pub fn area_and_centre(self) -> (f64, [f64; 2]) {
         let mut sums = [0.0; 3];
         for row in -600..600 {
@@ -91,14 +91,14 @@ impl Drawn {
     }
 }
 
-/// Noise of a frame.
+/// Noise parameters of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Noise {
-    /// Part of the pixels outside of hands that have the hand's colour.
+    /// Fraction of the pixels outside of hands with the hand's colour.
     pub salt: f64,
-    /// Part of the hand's pixels that do not have its colour.
+    /// Fraction of the hand's pixels without the hand's colour.
     pub pepper: f64,
-    /// Standard deviation of the position of the outline at each pixel, in pixels.
+    /// Standard deviation of the outline's position at each pixel, in pixels.
     pub edge: f64,
 }
 
@@ -109,7 +109,7 @@ impl Noise {
         pepper: 0.0,
         edge: 0.0,
     };
-    /// The noise of the measurements: 5 % of salt, and outlines that scatter by 0.3 pixels.
+    /// The noise of the measurements: 5 % false pixels, and outlines with a deviation of 0.3 pixels.
     pub const SENSOR: Self = Self {
         salt: 0.05,
         pepper: 0.0,
@@ -117,7 +117,7 @@ impl Noise {
     };
 }
 
-/// The pixels of a frame that have the hand's colour.
+/// The mask of a frame's pixels with the hand's colour.
 #[derive(Clone, Debug)]
 pub struct Frame {
     mask: Vec<bool>,
@@ -150,7 +150,7 @@ impl Frame {
         Self { mask }
     }
 
-    /// Returns a frame in which only the pixels at the given columns and rows have the hand's colour.
+    /// Returns a frame with the hand's colour only in the given columns and rows.
     pub fn of(pixels: impl IntoIterator<Item = (usize, usize)>) -> Self {
         let mut mask = vec![false; COLUMNS * ROWS];
         for (x, y) in pixels {
@@ -159,14 +159,14 @@ impl Frame {
         Self { mask }
     }
 
-    /// Returns a frame whose pixels all have the hand's colour.
+    /// Returns a frame with the hand's colour in all pixels.
     pub fn full() -> Self {
         Self {
             mask: vec![true; COLUMNS * ROWS],
         }
     }
 
-    /// Centre of mass of all pixels, in f64.
+    /// Centre of mass of all pixels of the mask, in f64.
     pub fn centre(&self) -> [f64; 2] {
         let mut sums = [0.0; 3];
         for (place, _) in self.mask.iter().enumerate().filter(|(_, set)| **set) {
@@ -177,8 +177,7 @@ impl Frame {
         [sums[1] / sums[0], sums[2] / sums[0]]
     }
 
-    /// The gesture engine's statistics: runs shorter than the minimum length are dropped, the rest is counted. The region cuts
-    /// the runs.
+    /// The gesture engine's statistics, without runs shorter than the minimum length. Runs are cut at the region's border.
     pub fn statistics(&self, setting: Setting) -> Statistics {
         let Region { first, last } = setting.region;
         let least = usize::from(setting.least_run.max(1));
@@ -215,12 +214,12 @@ impl Frame {
     }
 }
 
-/// Successive frames of a hand at one place.
+/// Measures the centre in successive frames of a hand at rest.
 const FRAMES: u32 = 8;
 
-/// Differences in pixels between the centre that the statistics give and that of the same hands without noise in f64, over
-/// `places` random places of a hand of `area` pixels, with several frames each. `setting` makes the engine's setting from the bounds
-/// in the previous frame, as the control does; they are those of the hand without noise for the first frame.
+/// Errors in pixels of the centre from the statistics against the noise-free centre in f64, over `places` random positions of a
+/// hand of `area` pixels, with several frames each. `setting` makes the engine's settings from the previous frame's bounds, as
+/// the control does; the first frame uses the noise-free hand's bounds.
 pub fn centre_errors(
     shape: Shape,
     area: f64,

@@ -1,4 +1,4 @@
-//! Camera frames with a hand whose place is known, and the errors of the camera's control by it.
+//! Camera frames with a hand at a known position, and the errors of the camera's control by the hand.
 
 pub mod cases;
 pub mod filters;

@@ -1,4 +1,4 @@
-//! Paths of a hand, and the noisy targets that the control computes from the frames along them.
+//! Paths of a hand, and the noisy targets that the control computes from frames along a path.
 
 use glint_core::fixed::Q4_28;
 use glint_core::gesture::{Control, Presence, target};
@@ -13,15 +13,15 @@ pub const AREA: f64 = 2_000.0;
 /// A path of the hand's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Path {
-    /// Rest, off the pixels' grid.
+    /// Rest at a position off the pixel grid.
     Rest,
     /// A steady motion to the right over 200 pixels, at this speed in pixels per second, then back to the start.
     Sweep(f64),
-    /// Reaches from place to place within 0.5 s, each followed by a rest of 0.3 s: minimum-jerk motions, as of an arm.
+    /// Reaches: minimum-jerk motions, as of an arm, of 0.5 s each between positions, followed by rests of 0.3 s.
     Reaches,
 }
 
-/// The places of [`Path::Reaches`], in pixels.
+/// The positions of [`Path::Reaches`], in pixels.
 const PLACES: [[f64; 2]; 8] = [
     [160.0, 120.0],
     [90.0, 100.0],
@@ -34,7 +34,7 @@ const PLACES: [[f64; 2]; 8] = [
 ];
 
 impl Path {
-    /// Place of the centre in pixels at a time in seconds.
+    /// Position of the centre in pixels at a time in seconds.
     pub fn at(self, time: f64) -> [f64; 2] {
         match self {
             Self::Rest => [160.37, 120.21],
@@ -54,15 +54,15 @@ impl Path {
 /// A camera frame along a path.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Azimuth and polar angle in turns that belong to the true centre.
+    /// Azimuth and polar angle in turns for the true centre.
     pub truth: [f64; 2],
-    /// Azimuth and polar angle that the control computed from the frame, before its filters.
+    /// Azimuth and polar angle in turns from the control, before its filters.
     pub target: [Q4_28; 2],
     /// Azimuth and polar angle in turns of the camera itself.
     pub camera: [f64; 2],
 }
 
-/// Azimuth and polar angle in turns that belong to a position in pixels.
+/// Azimuth and polar angle in turns for a position in pixels.
 pub fn angles([x, y]: [f64; 2]) -> [f64; 2] {
     [
         (x + 0.5) / f64::from(SIZE[0]) - 0.5,
@@ -70,7 +70,7 @@ pub fn angles([x, y]: [f64; 2]) -> [f64; 2] {
     ]
 }
 
-/// Runs the control on the frames along a path, after the second in which it finds the hand.
+/// Runs the control on the frames along a path, after a second to detect the hand.
 ///
 /// # Panics
 /// When the control loses the hand.

@@ -1,4 +1,4 @@
-//! Attitude filters in f64: they integrate the gyroscope's rates and correct the tilt by the accelerometer.
+//! Attitude filters in f64, which integrate the gyroscope's rates and correct the tilt by the accelerometer.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -8,13 +8,13 @@ use super::method::{Integrator, Method};
 use super::quaternion::Quaternion;
 use crate::camera::{Vector, cross, dot};
 
-/// The method by which the accelerometer corrects the attitude. Times are in seconds.
+/// Method of correcting the attitude by the accelerometer. Times are in seconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
     /// The accelerometer is ignored.
     None,
-    /// Complementary filter with this time constant τ: after each step, pitch and roll of the attitude move towards those of
-    /// the accelerometer's reading, by the fraction 1 − exp(−dt/τ) of the difference.
+    /// Complementary filter with this time constant τ: after each step, pitch and roll move towards the accelerometer's pitch and
+    /// roll by the fraction 1 − exp(−dt/τ) of the difference.
     Complementary(f64),
     /// Mahony's filter: the deviation of the accelerometer's normalised reading from the attitude's up direction corrects the
     /// gyroscope's rate (proportional term) and bias (integral term).
@@ -24,17 +24,17 @@ pub enum Filter {
         /// Integral gain in 1/s².
         integral: f64,
     },
-    /// The filter VQF of Laidig and Seel without its estimate of the bias, with this time constant: the gyroscope's attitude
-    /// rotates the accelerometer's readings to world axes, where they pass a second-order low pass. Then the attitude is
-    /// turned so that the filtered reading points upwards.
+    /// The filter VQF of Laidig and Seel without its bias estimation, with this time constant: the gyroscope's attitude rotates
+    /// the accelerometer's readings to world axes, where a second-order low pass filters them. Then the attitude is rotated to
+    /// make the filtered reading point upwards.
     LowPass(f64),
     /// The firmware's filter (`glint_core::orientation::Tilt`), with this time constant.
     Tilt(f64),
-    /// The firmware's filter, changed to ignore readings of the accelerometer whose strength is outside a range.
+    /// The firmware's filter, changed to ignore accelerometer readings whose magnitude is outside a range.
     Gated {
         /// Time constant in seconds.
         tau: f64,
-        /// Lowest and highest strength (length of the vector) of a reading that is used, in g.
+        /// Lowest and highest magnitude of a used reading, in g.
         range: [f64; 2],
     },
     /// The firmware's filter with this time constant τ, but with the gain dt/τ per step instead of 1 − exp(−dt/τ).
@@ -62,33 +62,31 @@ impl Filter {
     }
 }
 
-/// Estimates an attitude from samples of a gyroscope and an accelerometer, by an integration method and a filter.
+/// Attitude estimator: an integration method and a filter for samples of a gyroscope and an accelerometer.
 #[derive(Clone, Debug)]
 pub struct Estimator {
     filter: Filter,
     gyro_lsb: f64,
     accel_lsb: f64,
-    /// Assumed bias, which is subtracted from the gyroscope's rates, in rad/s.
+    /// Assumed bias, subtracted from the gyroscope's rates, in rad/s.
     bias: Vector,
     integrator: Integrator,
     last: Option<u64>,
     /// Attitude at the first sample, for a filter that ignores the accelerometer.
     start: Quaternion,
-    /// Time constant in use, in seconds. It grows from a small value to
-    /// the time constant of `filter`, so that the tilt settles quickly.
+    /// Time constant in use, in seconds. It grows from a small value to the time constant of `filter`, for fast settling of the tilt.
     age: f64,
-    /// Correction by the last reading of the accelerometer, which the next step applies: half the angle of the rotation about
-    /// each of the body's axes, in radians.
+    /// Correction from the accelerometer's last reading, applied in the next step: half the rotation angle about each body axis,
+    /// in radians.
     correction: Vector,
-    /// The low passes of [`Filter::LowPass`], one for each world axis.
+    /// The low passes of [`Filter::LowPass`], one per world axis.
     low_pass: [Butterworth; 3],
-    /// For [`Filter::LowPass`], the rotation from the world axes of the gyroscope's attitude, which drift, to the corrected
-    /// world axes.
+    /// For [`Filter::LowPass`], the rotation from the drifting world axes of the gyroscope's attitude to the corrected world axes.
     upright: Quaternion,
 }
 
 impl Estimator {
-    /// Makes an estimator that has not seen a sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
+    /// Makes an estimator before its first sample. `gyro_lsb` is in LSB per °/s, `accel_lsb` in LSB per g.
     pub fn new(method: Method, filter: Filter, gyro_lsb: f64, accel_lsb: f64) -> Self {
         Self {
             filter,
@@ -120,7 +118,7 @@ impl Estimator {
         self.upright.times(self.integrator.attitude())
     }
 
-    /// Takes a sample into account, unless its time is not later than that of the last sample.
+    /// Processes a sample, if it is later than the last sample.
     pub fn on_sample(&mut self, sample: &Sample) {
         let rate = [0, 1, 2]
             .map(|i| (f64::from(sample.gyro[i]) / self.gyro_lsb).to_radians() - self.bias[i]);
@@ -153,7 +151,7 @@ impl Estimator {
     fn advance(&mut self, rate: Vector, force: Vector, step: f64) {
         let correction = std::mem::take(&mut self.correction);
         self.integrator.advance_corrected(rate, step, correction);
-        // The reading was taken at the end of this step, so it is compared with the attitude after the step.
+        // The reading is from the end of this step, so it is compared with the attitude after the step.
         let up = self.integrator.attitude().up();
         let strength = dot(force, force).sqrt();
         let turn = |gain: f64| cross(force, up).map(|x| x * gain / 2.0);
@@ -220,8 +218,8 @@ impl Estimator {
         }
     }
 
-    /// Returns the fraction of the tilt error that a step of `step` seconds corrects, for the time constant `tau`. During about
-    /// the first `tau` seconds, the time constant in use is shorter, so that the filter acts nearly as a running mean.
+    /// Returns the fraction of the tilt error corrected by a step of `step` seconds, for the time constant `tau`. For about the
+    /// first `tau` seconds, the time constant in use is shorter: the filter is nearly a running mean.
     fn aged_gain(&mut self, tau: f64, step: f64) -> f64 {
         if self.age < tau {
             self.age = (self.age + step).min(tau);
@@ -252,7 +250,7 @@ impl Butterworth {
             self.sum += x;
             self.count += 1.0;
             let mean = self.sum / self.count;
-            // The state that the low pass would have after a long constant input of `mean`.
+            // The low pass's steady state for a constant input of `mean`.
             self.state = [(1.0 - b0) * mean, (b0 - a[1]) * mean];
             return mean;
         }

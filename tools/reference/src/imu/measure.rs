@@ -1,4 +1,4 @@
-//! Measurements of the attitude's errors, which the tests and the report share.
+//! Measurements of attitude errors, shared by the tests and the report.
 
 use glint_core::calibration::{
     Calibration, Progress, Report, RestBias, SAMPLES, SampleError, Units,
@@ -39,15 +39,14 @@ fn bias(sensor: &Sensor) -> [f64; 3] {
 /// Largest errors of the firmware's attitude during a motion.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Largest {
-    /// Angle in degrees between the firmware's attitude and the attitude
-    /// that the same method in f64 computes from the same samples.
+    /// Angle in degrees between the firmware's attitude and the attitude by the same method in f64 from the same samples.
     pub angle: f64,
-    /// Magnitude of the difference between the length of the firmware's quaternion and 1.
+    /// Deviation of the length of the firmware's quaternion from 1.
     pub norm: f64,
 }
 
-/// Compares the firmware's attitude with the same method in f64, both run on the same samples of a motion of this many
-/// seconds. `tilt` says whether the accelerometer is used.
+/// Compares the firmware's attitude with the same method in f64, on the same samples of a motion of `seconds` seconds. `tilt`
+/// says whether the accelerometer is used.
 pub fn against_f64(sensor: Sensor, motion: Motion, seconds: f64, tilt: bool) -> Largest {
     let mut tracker = tracker(&sensor, tilt);
     let filter = if tilt {
@@ -83,13 +82,12 @@ pub fn method_error(method: Method, motion: Motion, seconds: f64, rate: f64) -> 
     integrator.attitude().angle_to(truth)
 }
 
-/// Assumed remaining error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and z.
+/// Assumed residual error of the gyroscope's bias after a calibration and a change of temperature, in °/s along x, y and z.
 pub const LEFT_BIAS: [f64; 3] = [0.02, -0.02, 0.02];
-/// Start of the time in which errors of the inclination are counted, in seconds.
+/// Start of the counted errors of the inclination, in seconds.
 const SETTLED: f64 = 10.0;
 
-/// Computes the errors of the firmware's inclination against the true one, in degrees, when the bias that the firmware assumes
-/// is wrong by [`LEFT_BIAS`].
+/// Computes the errors of the firmware's inclination in degrees, when the bias assumed by the firmware is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.
@@ -110,8 +108,7 @@ pub fn inclination(sensor: Sensor, motion: Motion, seconds: f64) -> Errors {
     errors
 }
 
-/// Computes the errors of a filter's inclination, in f64, against the true one, in degrees, when the bias that the filter
-/// assumes is wrong by [`LEFT_BIAS`].
+/// Computes the errors of an f64 filter's inclination in degrees, when the bias assumed by the filter is wrong by [`LEFT_BIAS`].
 ///
 /// # Panics
 /// When the motion has no attitude in closed form.

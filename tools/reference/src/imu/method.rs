@@ -7,27 +7,27 @@ use glint_core::orientation::{LONGEST_CURVE, MOST_STRETCH};
 /// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
-    /// Adds the rates about the body's axes directly to yaw, pitch and roll.
+    /// Integrates the rates about the body's axes directly as yaw, pitch and roll.
     Angles,
-    /// Replaces the attitude q by q + q·ω·dt/2, normalised. The rate ω is the newest sample.
+    /// Replaces the attitude q by q + q·ω·dt/2, normalised, where The rate ω is the newest sample.
     FirstOrder,
     /// Rotates by the newest sample's rate times dt, through the quaternion exponential.
     Newest,
     /// Rotates by the mean rate of the last two samples times dt, through the quaternion exponential.
     Trapezoid,
-    /// As `Trapezoid`, with a coning term: the effect of a rotation axis that turns during the step, for a rate linear in time.
+    /// As `Trapezoid`, with the coning term of a rate linear in time: the effect of a rotation axis that turns during the step.
     Coning,
     /// Integrates the parabola through the last three samples, with a coning term.
     Parabola,
-    /// Integrates the cubic through the last four samples, with the coning term of the firmware.
+    /// Integrates the cubic through the last four samples, with the firmware's coning term.
     Cubic,
-    /// As `Cubic`, but the coning term has the coefficient that follows from the cubic. The firmware has another coefficient,
-    /// with which the error is smaller.
+    /// As `Cubic`, but with the exact coefficient of the coning term for the cubic. The firmware's coefficient is another one,
+    /// with a smaller error.
     PlainCubic,
 }
 
 impl Method {
-    /// All methods in the order of their cost, the cheapest first.
+    /// All methods, cheapest first.
     pub const ALL: [Self; 8] = [
         Self::Angles,
         Self::FirstOrder,
@@ -98,7 +98,7 @@ impl Integrator {
         self.method
     }
 
-    /// Replaces the attitude, from which the integration continues.
+    /// Sets the attitude from which the integration continues.
     pub fn set_attitude(&mut self, attitude: Quaternion) {
         self.attitude = attitude;
         self.angles = attitude.angles();
@@ -109,13 +109,13 @@ impl Integrator {
         self.attitude
     }
 
-    /// Turns the attitude by the rotation during the last `step` seconds. `rate` was measured at their end, in rad/s.
+    /// Rotates the attitude by the rotation during the last `step` seconds. `rate` is the rate at the end of the step, in rad/s.
     pub fn advance(&mut self, rate: Vector, step: f64) {
         self.advance_corrected(rate, step, [0.0; 3]);
     }
 
-    /// As [`Self::advance`], with an additional small rotation. `correction` is half its angle about each of the body's axes,
-    /// in radians. `Method::Angles` and `Method::FirstOrder` ignore it.
+    /// As [`Self::advance`], with an additional small rotation. `correction` is half the small rotation's angle about each body
+    /// axis, in radians. `Method::Angles` and `Method::FirstOrder` ignore it.
     pub fn advance_corrected(&mut self, rate: Vector, step: f64, correction: Vector) {
         match self.method {
             Method::Angles => {
@@ -136,7 +136,7 @@ impl Integrator {
         self.last = rate;
     }
 
-    /// Computes the rotation vector of a step of `step` seconds, at the end of which the rate is `rate`.
+    /// Computes the rotation vector of a step of `step` seconds with the rate `rate` at its end.
     fn turn(&mut self, rate: Vector, step: f64) -> Vector {
         // The firmware compares whole microseconds. Here, steps that differ by less than a nanosecond count as equal.
         let within = |longest: f64| step <= longest + 1e-9;

@@ -1,4 +1,4 @@
-//! Motions whose true rate and attitude are known.
+//! Motions with known true rates and attitudes.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use crate::camera::Vector;
 /// The standard acceleration of gravity, in m/s².
 pub const GRAVITY: f64 = 9.806_65;
 
-/// Amplitude a, frequency f in Hz and phase p in radians of the function a·sin(2π·f·t + p) of the time t.
+/// The wave a·sin(2π·f·t + p) at time t: amplitude a, frequency f in Hz and phase p in radians.
 type Wave = [f64; 3];
 
 fn value(waves: &[Wave], t: f64) -> f64 {
@@ -33,28 +33,28 @@ pub enum Motion {
     Rest,
     /// A constant rate in °/s about each axis.
     Spin(Vector),
-    /// Rotation about all axes at once, at rates of up to this many °/s. The attitude has no closed form.
+    /// Rotation about all axes simultaneously, at rates up to this value in °/s. The attitude has no closed form.
     Tumble(f64),
     /// The body's z axis moves around a cone.
     Coning {
         /// Half the cone's angle, in degrees.
         angle: f64,
-        /// Turns around the cone per second.
+        /// Revolutions around the cone per second.
         frequency: f64,
     },
-    /// A rate about z that is a square wave.
+    /// A square-wave rate about z.
     Square {
         /// Amplitude of the square wave, in °/s.
         rate: f64,
         /// Frequency of the square wave, in Hz.
         frequency: f64,
     },
-    /// Hand motion about the wrist, which is 10 cm away from the sensor, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
+    /// Hand motion about the wrist at 10 cm from the sensor, mostly sideways: 0.5 to 2 Hz, up to 300 °/s.
     Hand,
-    /// Hand motion about the wrist, which is 10 cm away from the sensor, mostly up and down.
+    /// Hand motion about the wrist at 10 cm from the sensor, mostly up and down.
     Nod,
-    /// Motion of a walking person: accelerations of ±3 m/s² up and down and of ±1.5 m/s²
-    /// fore and aft, both at 2 Hz, and of 10 m/s² upwards for 50 ms at every footstep.
+    /// Motion of a walking person: accelerations of ±3 m/s² vertically and ±1.5 m/s² fore and aft, both at 2 Hz, and 10 m/s²
+    /// upwards for 50 ms at every footstep.
     Walk,
 }
 
@@ -110,7 +110,7 @@ impl Motion {
         }
     }
 
-    /// Returns yaw, pitch and roll as sums of waves, for the motions that are defined by these sums.
+    /// Returns yaw, pitch and roll as sums of waves, for motions defined by such sums.
     fn waves(self) -> [&'static [Wave]; 3] {
         match self {
             Self::Hand => HAND,
@@ -120,7 +120,7 @@ impl Motion {
         }
     }
 
-    /// Returns the attitude at time `t`, for the motions whose attitude has a closed form.
+    /// Returns the attitude at time `t`, if the motion's attitude has a closed form.
     pub fn attitude(self, t: f64) -> Option<Quaternion> {
         match self {
             Self::Rest => Some(Quaternion::IDENTITY),
@@ -142,8 +142,8 @@ impl Motion {
         }
     }
 
-    /// Returns the attitude after `seconds` seconds. It is [`Self::attitude`] if there is a
-    /// closed form, otherwise it is integrated from the identity with 16 · `rate` steps per second.
+    /// Returns the attitude after `seconds` seconds. Without a closed form ([`Self::attitude`]), integrates from the identity
+    /// with 16 · `rate` steps per second.
     pub fn attitude_after(self, seconds: f64, rate: f64) -> Quaternion {
         self.attitude(seconds).unwrap_or_else(|| {
             let step = 1.0 / (16.0 * rate);
@@ -158,7 +158,7 @@ impl Motion {
     }
 
     /// Returns the exact reading of an accelerometer along the body's axes at time `t`, in g. In a pure rotation the reading is
-    /// gravity alone, and without a closed form of the attitude, it is gravity along the body's z axis.
+    /// gravity alone; without a closed form of the attitude, gravity along the body's z axis.
     pub fn force(self, t: f64) -> Vector {
         let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);
         let [x, y, z] = self.acceleration(t);
@@ -172,7 +172,7 @@ impl Motion {
     fn acceleration(self, t: f64) -> Vector {
         match self {
             Self::Hand | Self::Nod => {
-                // The second derivative of the position as a difference quotient, whose error of about 1e-6 m/s² is negligible.
+                // Second derivative of the position by a difference quotient, with a negligible error of about 1e-6 m/s².
                 let step = 1e-3;
                 let [a, b, c] = [t - step, t, t + step].map(|t| {
                     let attitude = self.attitude(t).unwrap_or(Quaternion::IDENTITY);

@@ -4,7 +4,7 @@ use glint_core::orientation;
 
 use crate::camera::{Vector, cross, dot};
 
-/// A quaternion as its parts w, x, y and z.
+/// A quaternion as its components w, x, y and z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
 
@@ -15,13 +15,13 @@ impl From<orientation::Quaternion> for Quaternion {
 }
 
 impl Quaternion {
-    /// The rotation by an angle of zero.
+    /// The identity rotation.
     pub const IDENTITY: Self = Self([1.0, 0.0, 0.0, 0.0]);
 
     /// Returns the quaternion exponential of `half`: the rotation whose rotation vector is twice `half`, in radians.
     pub fn exp(half: Vector) -> Self {
         let angle = dot(half, half).sqrt();
-        // Below 1e-8 the sine and the angle are equal in f64.
+        // Below 1e-8 the sine equals the angle in f64.
         let scale = if angle > 1e-8 {
             angle.sin() / angle
         } else {
@@ -31,7 +31,7 @@ impl Quaternion {
         Self([angle.cos(), x, y, z])
     }
 
-    /// Returns the rotation by yaw about z, then by pitch about the turned y axis, then by roll about the turned x axis. The
+    /// Returns the rotation by yaw about z, then by pitch about the rotated y axis, then by roll about the rotated x axis. The
     /// angles are in radians.
     pub fn of_angles([yaw, pitch, roll]: Vector) -> Self {
         let about = |axis: usize, angle: f64| {
@@ -73,7 +73,7 @@ impl Quaternion {
         Self(self.0.map(|x| x / norm))
     }
 
-    /// Rotates a vector from the body's axes to the world's.
+    /// Rotates a vector from body axes to world axes.
     pub fn rotate(self, v: Vector) -> Vector {
         let [w, x, y, z] = self.0;
         let twice = cross([x, y, z], v).map(|c| 2.0 * c);
@@ -86,20 +86,20 @@ impl Quaternion {
         self.inverse().rotate([0.0, 0.0, 1.0])
     }
 
-    /// Returns the angle of the rotation between two attitudes, in degrees.
+    /// Returns the rotation angle between two attitudes, in degrees.
     pub fn angle_to(self, other: Self) -> f64 {
         let [w, x, y, z] = self.inverse().times(other).0;
         2.0 * (x * x + y * y + z * z).sqrt().atan2(w.abs()).to_degrees()
     }
 
-    /// Returns the angle between the up directions of two attitudes, in degrees. It does not depend on their yaw.
+    /// Returns the angle between the up directions of two attitudes, in degrees. The angle does not depend on yaw.
     pub fn inclination_to(self, other: Self) -> f64 {
         let (a, b) = (self.up(), other.up());
         let sine = cross(a, b);
         dot(sine, sine).sqrt().atan2(dot(a, b)).to_degrees()
     }
 
-    /// Returns yaw, pitch and roll in radians: the inverse function of [`Self::of_angles`].
+    /// Returns yaw, pitch and roll in radians: the inverse of [`Self::of_angles`].
     pub fn angles(self) -> Vector {
         let [w, x, y, z] = self.0;
         let level = [w * w + x * x - y * y - z * z, 2.0 * (x * y + w * z)];

@@ -1,4 +1,4 @@
-//! Simulated sensors, which turn a motion into samples.
+//! Simulated sensors, which sample a motion.
 
 use glint_core::orientation::Sample;
 use rand::{Rng, RngExt, SeedableRng};
@@ -24,15 +24,14 @@ pub struct Sensor {
     pub scale_error: f64,
     /// Samples per second.
     pub rate: f64,
-    /// Largest deviation of a sample's time from the evenly spaced times, as a fraction of the sampling period.
+    /// Largest deviation of a sample's time from even spacing, as a fraction of the sampling period.
     pub jitter: f64,
     /// Fraction of the samples that are lost.
     pub lost: f64,
 }
 
 impl Sensor {
-    /// Makes a sensor with ranges of ±2000 °/s and ±8 g, whose only error
-    /// is the rounding to counts. It takes `rate` samples per second.
+    /// Makes a sensor with ranges of ±2000 °/s and ±8 g and no error but the rounding to counts. It takes `rate` samples per second.
     pub fn ideal(rate: f64) -> Self {
         Self {
             gyro_lsb: 16.4,
@@ -47,7 +46,7 @@ impl Sensor {
         }
     }
 
-    /// Makes a sensor with the noise and the bias of a real sensor, as found in its logged samples.
+    /// Makes a sensor with the noise and bias measured in logged samples of a real sensor.
     pub fn real(rate: f64) -> Self {
         Self {
             bias: [4.5, 0.05, 1.1],
@@ -57,8 +56,8 @@ impl Sensor {
         }
     }
 
-    /// Returns the samples of a motion. There are `count` of them, minus the lost ones. The first sample and the last sample
-    /// are never lost and have no jitter. `seed` starts the random numbers.
+    /// Returns the samples of a motion. `count` includes lost samples. The first and the last sample are never lost and have no
+    /// jitter. `seed` is the seed of the random numbers.
     pub fn samples(self, motion: Motion, count: u64, seed: u64) -> impl Iterator<Item = Sample> {
         let mut random = Pcg64Mcg::seed_from_u64(seed);
         let period = 1e6 / self.rate;
@@ -90,7 +89,7 @@ impl Sensor {
     }
 }
 
-/// Rounds to the nearest count. A value beyond the range of i16 saturates, as in the sensor.
+/// Rounds to the nearest count. Values beyond the range of i16 saturate, as in the sensor.
 fn counts(x: f64) -> i16 {
     x.round() as i16
 }

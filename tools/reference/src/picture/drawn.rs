@@ -1,4 +1,4 @@
-//! What each pixel of the model's picture shows.
+//! The surface visible at each pixel of the model's picture.
 
 use anyhow::{Result, bail, ensure};
 use glint_core::colour::Shading;
@@ -12,7 +12,7 @@ use glint_model::{Frame, FrameBuffer, MeshSubject, Object, Projected, Subject};
 use super::seen::{Eyes, Seen};
 use crate::raymarch::Face;
 
-/// Returns what each pixel of the model's picture shows, row by row.
+/// Returns the surface visible at each pixel of the model's picture, row by row.
 ///
 /// # Errors
 /// The model cannot draw the frame, or it has meshes for two eyes or edges of a mesh.
@@ -57,7 +57,7 @@ pub fn seen(frame: &Frame) -> Result<Vec<Eyes>> {
         for (place, (x, y)) in places.enumerate() {
             for (eye, seen) in seen[place].iter_mut().enumerate().take(eyes) {
                 let (surface, code) = surface(setup, &mut rays, eye, x, y);
-                // At equal depths the field is visible.
+                // At equal depths the field hides the triangle.
                 if code >= buffer.depth[place] && surface != Seen::Background {
                     *seen = surface;
                 }
@@ -92,7 +92,7 @@ fn surface(setup: &FieldSetup, rays: &mut Rays, eye: usize, x: u32, y: u32) -> (
     (Seen::Surface { face, sphere }, code)
 }
 
-/// Colours and depth codes of a picture that is being drawn.
+/// Colour and depth buffers of a picture.
 struct Buffer {
     size: [u32; 2],
     colour: Vec<u16>,
@@ -120,7 +120,7 @@ impl Buffer {
     }
 }
 
-/// Draws the triangles of a frame with their numbers in the returned list, from 1, instead of their colours.
+/// Draws the triangles of a frame, with the index of each triangle in the returned list, from 1, as its colour.
 fn draw_triangles(frame: &Frame, buffer: &mut Buffer) -> Result<Vec<Seen>> {
     ensure!(frame.stereo.is_none(), "expected meshes for one eye");
     let flat = |subject| MeshSubject {
@@ -128,7 +128,7 @@ fn draw_triangles(frame: &Frame, buffer: &mut Buffer) -> Result<Vec<Seen>> {
         ..subject
     };
     let objects = frame.subject.objects();
-    // In full ambient light a flat triangle has the colour of its object: the object's number.
+    // In full ambient light a flat triangle has its object's colour, here the object's index.
     let numbered = objects.unwrap_or_default().iter().zip(0..);
     let numbered = numbered.map(|(object, number)| Object {
         subject: flat(object.subject),

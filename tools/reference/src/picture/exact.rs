@@ -1,4 +1,4 @@
-//! A frame in f64.
+//! A frame drawn in f64.
 
 use anyhow::{Context, Result, bail, ensure};
 use glint_core::appearance::Appearance;
@@ -21,9 +21,9 @@ use crate::raymarch::{Face, Field};
 use crate::triangle::exact::SnappedVertex;
 use crate::triangle::surface::{Class, ProjectedTriangle};
 
-/// A picture of 1280×720 in f64, row by row.
+/// A picture of 1280×720 in f64.
 pub struct Exact {
-    /// Content of each pixel.
+    /// Visible surface of each pixel, row by row.
     pub seen: Vec<Eyes>,
     /// Red, green and blue, from 0 to 255.
     pub colours: Vec<Vector>,
@@ -39,10 +39,10 @@ struct Pixel {
 }
 
 impl Exact {
-    /// Draws a frame in f64, in the size in which a monitor shows it, whatever the frame's size is.
+    /// Draws a frame of any size in f64, at the size on the monitor.
     ///
     /// # Errors
-    /// The model cannot draw the frame, or it is none of those that scenes show: it has meshes for two eyes, edges of a mesh, an
+    /// The model cannot draw the frame, or it has features that no scene uses: meshes for two eyes, edges of a mesh, an
     /// orthographic camera, occlusion, or a union.
     pub fn new(frame: &Frame) -> Result<Self> {
         let frame = &Frame {
@@ -133,10 +133,10 @@ fn one_eye(frame: &Frame, side: Option<Side>) -> Result<Vec<Pixel>> {
     Ok(pixels)
 }
 
-/// Light in f64: 1 is full.
+/// Light in f64; 1 is the maximum.
 struct Lit {
     ambient: Vector,
-    /// Directions to the lights, and their colours.
+    /// Directions and colours of the lights.
     lights: Vec<(Vector, Vector)>,
 }
 
@@ -163,7 +163,7 @@ fn lit(light: &Light, camera: &Camera) -> (Vector, Vector) {
     (normalised(towards), share(light.colour()))
 }
 
-/// A colour of a mesh, from 0 to 255.
+/// A colour of the mesh, channels from 0 to 255.
 fn full(colour: Rgb565) -> Vector {
     let [r, g, b] = colour.channels().map(f64::from);
     [r / 31.0, g / 63.0, b / 31.0].map(|part| 255.0 * part)
@@ -177,9 +177,9 @@ fn product(a: Vector, b: Vector) -> Vector {
 struct Placed<'a> {
     subject: &'a MeshSubject<'a>,
     matrix: &'a Matrix,
-    /// Number of the object.
+    /// Index of the object.
     object: usize,
-    /// Colour instead of those of the mesh.
+    /// Colour that replaces the mesh's colours.
     colour: Option<Rgb565>,
     camera: &'a Camera,
     light: &'a Lit,
@@ -258,7 +258,7 @@ impl Placed<'_> {
         units.map(|part| part as f64 / 38f64.exp2())
     }
 
-    /// A colour of the mesh in the light on its front or back face.
+    /// A colour of the mesh in the light on the front or back face.
     fn shade(&self, normal: [i16; 3], colour: Rgb565, is_front: bool) -> Vector {
         let normal = self.normal(normal);
         let normal = match is_front {
@@ -268,7 +268,7 @@ impl Placed<'_> {
         product(full(self.colour.unwrap_or(colour)), self.light.on(normal))
     }
 
-    /// A normal of the mesh in the world, by the inverse transpose of the matrix, with the length that it has in the mesh.
+    /// A normal of the mesh in world coordinates, by the inverse transpose of the matrix, scaled to its original length.
     fn normal(&self, normal: [i16; 3]) -> Vector {
         let normal = normal.map(|part| f64::from(part) / 16384.0);
         let rows = self.matrix.linear();
@@ -282,7 +282,7 @@ impl Placed<'_> {
     }
 }
 
-/// The weights of a triangle's corners at a point in its plane, whose sum is 1.
+/// Barycentric coordinates of a point in a triangle's plane.
 fn barycentric([a, b, c]: [Vector; 3], point: Vector) -> Vector {
     let normal = cross(subtract(b, a), subtract(c, a));
     let part = |from: Vector, to: Vector| {
@@ -318,7 +318,7 @@ fn draw_field(
     );
     let lighting = appearance.lighting();
     let day = Lighting::day();
-    // Spheres of the material `normal` are in daylight where no light is set.
+    // Spheres of the material `normal` are in daylight if no light is set.
     let of_spheres = match appearance.material {
         Material::Normal if lighting.lights.is_empty() => &day,
         _ => &lighting,

@@ -1,7 +1,7 @@
-//! Whole pictures: a frame in f64, and the errors of the model's picture of it as a monitor shows it.
+//! Whole pictures: a frame in f64, and the errors of the model's picture as displayed on a monitor.
 //!
 //! - [`exact`]: the frame in f64, from triangles, exact hits of rays and exact segments, with light, fog and sky in f64.
-//! - [`drawn`]: what each pixel of the model's picture shows.
+//! - [`drawn`]: the surface visible at each pixel of the model's picture.
 
 pub mod drawn;
 pub mod exact;
@@ -18,17 +18,17 @@ use glint_model::Frame;
 use self::exact::Exact;
 use crate::errors::Errors;
 
-/// Errors of a picture as a monitor shows it.
+/// Errors of a picture as displayed on a monitor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Share of the pixels at which an eye sees something else than in the reference: another triangle or face, another object or
-    /// sphere, or a surface instead of the background.
+    /// Share of the pixels at which an eye sees another surface than in the reference: another triangle, face, object or sphere,
+    /// or a surface instead of the background.
     pub wrong: f64,
     /// RMS of the errors of red, green and blue, in steps of 1/255.
     pub colour: f64,
 }
 
-/// Draws a frame by the model, and compares the picture as a monitor shows it with `exact`, the same frame in f64. A pixel of a smaller
+/// Draws a frame with the model, and compares the displayed picture with `exact`, the same frame in f64. A pixel of a smaller
 /// picture is a square of the monitor's pixels.
 ///
 /// # Errors

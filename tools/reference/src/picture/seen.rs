@@ -1,13 +1,13 @@
-//! What the pixels of a picture show.
+//! Surfaces visible at the pixels of a picture.
 
 use glint_core::picture::Size;
 
 use crate::raymarch::Face;
 
-/// The size in which a monitor shows every picture.
+/// The size of every picture on the monitor.
 pub const SHOWN: Size = Size::W1280;
 
-/// Surface that an eye sees at a pixel.
+/// Surface visible to an eye at a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Seen {
     /// No surface.
@@ -15,21 +15,21 @@ pub enum Seen {
     Background,
     /// A triangle.
     Triangle {
-        /// Number of the object, from 0.
+        /// Index of the object.
         object: usize,
-        /// Number of the triangle in its mesh.
+        /// Index of the triangle in its mesh.
         index: usize,
     },
     /// A surface of a field.
     Surface {
         /// The face, by the direction of its normal.
         face: Face,
-        /// Number of the sphere; 0 for other surfaces.
+        /// Index of the sphere; 0 for other surfaces.
         sphere: usize,
     },
     /// A line of a wireframe.
     Line,
 }
 
-/// Surfaces that both eyes see at a pixel; with one eye both are the same.
+/// Surfaces visible to the left and the right eye at a pixel; equal in a mono picture.
 pub type Eyes = [Seen; 2];
