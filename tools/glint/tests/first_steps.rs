@@ -1,18 +1,19 @@
-//! The commands of docs/first-steps.md, in their order, make its pictures. Needs the build of `cargo xtask firmware`.
+//! Runs the commands of docs/first-steps.md in order, and compares their pictures with those of the page. Requires the build of
+//! `cargo xtask firmware`.
 
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Commands of the page that are not run: the tests of packaging, and those of the firmware, do what they do.
+/// Commands of the page that are not run here: other tests cover them.
 const BUILDS: [&str; 2] = ["cargo install --path tools/glint", "cargo xtask firmware"];
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// The lines of each block of code in a language.
+/// The lines of each code block in the given language.
 fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     let fence = format!("```{language}\n");
     let blocks = page.split(&fence).skip(1);
@@ -21,7 +22,7 @@ fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// The words of a command. Quotes join words.
+/// The arguments of a command line. Quotes join words.
 fn words(command: &str) -> Vec<&str> {
     let parts = command.split('"').enumerate();
     let words = parts.flat_map(|(i, part)| match i % 2 {
@@ -50,7 +51,7 @@ fn pixels(path: &Path) -> Vec<u8> {
     pixels
 }
 
-/// With `GLINT_UPDATE` in the environment, replaces the pictures.
+/// With the environment variable `GLINT_UPDATE`, replaces the pictures.
 #[test]
 fn the_commands_make_the_pictures() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("first-steps");

@@ -1,9 +1,9 @@
-//! A short run of every fuzz target; `cargo run -p glint --example fuzz` runs long ones.
+//! A short run of every fuzz target; `cargo run -p glint --example fuzz` makes long runs.
 
 use glint::fuzz::{Inputs, Target, Verdict};
 
 fn run(target: Target) {
-    // The firmware starts again for each input, which takes 20 ms.
+    // The firmware restarts for each input, which takes 20 ms.
     let count = match target {
         Target::Firmware => 400,
         _ => 20_000,
@@ -12,8 +12,8 @@ fn run(target: Target) {
     let accepted = (0..count)
         .filter(|&number| inputs.run(number) == Verdict::Accepted)
         .count();
-    // Both rejected and accepted inputs are needed: if all were rejected, only the parser's first check would be tested, and if
-    // all were accepted, only its path without errors.
+    // Requires both rejected and accepted inputs: without accepted inputs, only the parser's first check would be tested; without
+    // rejected inputs, only its path without errors.
     let share = accepted as f64 / count as f64;
     assert!(
         (0.005..0.995).contains(&share),
@@ -21,7 +21,7 @@ fn run(target: Target) {
     );
 }
 
-/// A test for each target, so that they run in parallel.
+/// A separate test for each target, so that they run in parallel.
 macro_rules! tests {
     ($($name:ident: $target:ident),*) => {
         $(

@@ -5,14 +5,14 @@ use std::process::Command;
 
 use glint_core::field::KINDS;
 
-/// Limit for the size of all pictures together, in bytes.
+/// Maximum total size of all pictures in bytes.
 const MOST: u64 = 400_000;
 
 fn docs() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
 }
 
-/// Arguments of each `glint …` command in docs/gallery.md; a `\` continues a line.
+/// Arguments of each `glint …` command in docs/gallery.md, where a `\` continues a line.
 fn commands() -> Vec<Vec<String>> {
     let page = std::fs::read_to_string(docs().join("gallery.md")).expect("the page");
     let page = page.replace("\\\n", " ");
@@ -22,7 +22,7 @@ fn commands() -> Vec<Vec<String>> {
         .collect()
 }
 
-/// The value that follows `option` in a command.
+/// The value of `option` in a command.
 fn value<'a>(command: &'a [String], option: &str) -> &'a str {
     let at = command.iter().position(|word| word == option);
     let value = at.and_then(|at| command.get(at + 1));
@@ -39,7 +39,8 @@ fn pixels(path: &Path) -> Vec<u8> {
     pixels
 }
 
-/// Renders every picture and compares it with the committed one; with `GLINT_UPDATE` in the environment, replaces that one.
+/// Renders every picture and compares it with the committed picture; with the environment variable `GLINT_UPDATE`, replaces the
+/// committed picture.
 #[test]
 fn the_commands_produce_their_pictures() {
     let update = std::env::var_os("GLINT_UPDATE").is_some();
@@ -73,7 +74,7 @@ fn the_commands_produce_their_pictures() {
         assert!(output.status.success(), "{command:?}: {error}");
         let stats = std::fs::read(&stats).expect("the counts");
         let stats: serde_json::Value = serde_json::from_slice(&stats).expect("JSON");
-        // Only a picture of a field has rays.
+        // Only the picture of a field has rays.
         assert!(
             matches!(stats["undecided"].as_u64(), None | Some(0)),
             "{command:?}: undecided rays are visible"

@@ -1,4 +1,4 @@
-//! The commands of README.md that need no board make pictures that show something.
+//! Runs the commands of README.md that require no board, and checks that their pictures are not empty.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -22,8 +22,8 @@ fn commands() -> Vec<Vec<String>> {
     commands.collect()
 }
 
-/// Checks that no colour takes more than 49 of 50 pixels of a picture, and that it has at least six colours. A wireframe is white
-/// lines of at least 1,000 pixels.
+/// Checks that no colour takes more than 49/50 of a picture's pixels, and that the picture has at least six colours. A wireframe
+/// must have white lines of at least 1,000 pixels.
 fn check_picture(path: &Path) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
     let mut reader = png::Decoder::new(file).read_info().unwrap();

@@ -8,21 +8,21 @@ use crate::motion::Motion;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 
-/// Maximum number of commands that wait for the board.
+/// Maximum number of commands that are queued for the board.
 pub const MAX_REQUESTS: usize = 64;
 
-/// A wish of a page.
+/// A request of a page to the session.
 #[derive(Debug)]
 pub enum Request {
-    /// Types a line on the console.
+    /// Enters a line on the console.
     Command(String),
-    /// Ends the running command.
+    /// Cancels the running command.
     Interrupt,
-    /// Asks for the description of a command.
+    /// Requests the description of a command.
     Help(String),
-    /// Fetches the picture over the console.
+    /// Downloads the picture over the console.
     Picture,
-    /// Uploads a mesh, and shows it.
+    /// Uploads a mesh, and draws it.
     Upload(Vec<u8>),
 }
 
@@ -30,16 +30,16 @@ pub enum Request {
 pub struct Channels {
     /// The viewers.
     pub hub: Hub,
-    /// The levels that the viewer with control sets.
+    /// The inputs that the viewer with control sets.
     pub inputs: Inputs,
     /// The motion sensor and the hand, if the page moves them.
     pub motion: Option<Arc<Motion>>,
-    /// The commands for the board.
+    /// The sender of requests to the session.
     requests: SyncSender<Request>,
 }
 
 impl Channels {
-    /// The channel to the board with this name, for one page or several, and the channel's end from which the session takes commands.
+    /// The channel to the board `name`, for one page or several pages, and the receiver of requests for the session.
     pub fn new(board: &dyn Live, name: &str, is_shared: bool) -> (Self, Receiver<Request>) {
         let (channels, requests) = Self::to_board(board.motion());
         channels.hub.send(&ToPage::Board {
@@ -50,7 +50,7 @@ impl Channels {
         (channels, requests)
     }
 
-    /// The channel to a board with the motion sensor and the hand of `motion`.
+    /// The channel to a board whose motion sensor and hand are those of `motion`.
     #[must_use]
     pub fn to_board(motion: Option<Arc<Motion>>) -> (Self, Receiver<Request>) {
         let (requests, queue) = sync_channel(MAX_REQUESTS);
@@ -63,9 +63,9 @@ impl Channels {
         (channels, queue)
     }
 
-    /// Passes a request of a viewer to the session; it is dropped, with a notice, if too many wait.
+    /// Passes a request of a viewer to the session; drops it with a notice if the queue is full.
     pub fn request(&self, id: Id, request: Request) {
-        // The session ends with the program.
+        // The session ends only when the program ends.
         if let Err(TrySendError::Full(_)) = self.requests.try_send(request) {
             self.hub
                 .notify_one(id, "the board is busy: a command was dropped");

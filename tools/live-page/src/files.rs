@@ -1,6 +1,6 @@
 //! The files of the page.
 //!
-//! The file `link.js` is missing here: it is the channel for the messages, which the program that serves the page adds.
+//! The list does not contain `link.js`, the channel for the messages: the program that serves the page adds it.
 
 /// Media type of scripts.
 pub const SCRIPT: &str = "text/javascript; charset=utf-8";
@@ -18,7 +18,7 @@ pub struct File {
     pub content: &'static str,
 }
 
-/// The files, that of the page itself first.
+/// The files, starting with the HTML page.
 pub const FILES: [File; 9] = [
     file("index.html", HTML, include_str!("../web/index.html")),
     file("page.css", CSS, include_str!("../web/page.css")),

@@ -1,4 +1,4 @@
-//! Passes pictures, texts and levels of the board to all viewers. One viewer has control.
+//! Passes pictures, texts and pin levels of the board to all viewers. One viewer has control.
 
 use crate::message::{Holder, Message, Pins, ToPage, picture};
 use glint_board_api::Frame;
@@ -8,16 +8,16 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// Maximum number of viewers.
 pub const MAX_VIEWERS: usize = 16;
 
-/// Maximum number of bytes that wait for a viewer, in addition to one picture. A viewer that falls behind more is closed.
+/// Maximum number of queued bytes for a viewer, in addition to one picture. A viewer with a longer queue is disconnected.
 const MAX_WAITING: usize = 4 << 20;
 
-/// Number of bytes of the console's output that a new viewer gets at least, if there are as many.
+/// Minimum number of bytes of earlier console output that a new viewer receives, if available.
 const TRANSCRIPT: usize = 32 << 10;
 
-/// Number of a viewer.
+/// Identifier of a viewer.
 pub type Id = u64;
 
-/// The messages that wait for a viewer.
+/// The queued messages for a viewer.
 #[derive(Default)]
 struct Queue {
     messages: VecDeque<Message>,
@@ -31,7 +31,7 @@ struct State {
     viewers: BTreeMap<Id, Queue>,
     last: Id,
     holder: Option<Id>,
-    /// The newest message of each kind that describes a state; a new viewer gets all of them.
+    /// The newest message of each kind that describes a state; a new viewer receives all of them.
     board: Option<Message>,
     lists: Option<Message>,
     pins: Option<Message>,
@@ -47,7 +47,7 @@ impl State {
         }
     }
 
-    /// Tells all viewers who has control.
+    /// Sends the viewer with control to all viewers.
     fn send_holder(&mut self) {
         for (id, queue) in &mut self.viewers {
             let holder = match self.holder {
@@ -61,7 +61,7 @@ impl State {
 }
 
 impl Queue {
-    /// Adds a message. A queue above the limit is emptied, and its viewer is closed by the next [`Hub::take`].
+    /// Adds a message. A queue above the limit is emptied, and the next [`Hub::take`] disconnects its viewer.
     fn push(&mut self, message: Message) {
         self.bytes += message.length();
         if self.is_behind() {
@@ -85,7 +85,8 @@ impl Hub {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds a viewer, and queues the state of the board for it. The first viewer gets control. Returns `None` if there are too many.
+    /// Adds a viewer, and queues the board's state for it. The first viewer receives control. Returns `None` if there are too
+    /// many viewers.
     pub fn join(&self) -> Option<Id> {
         let mut state = self.lock();
         if state.viewers.len() >= MAX_VIEWERS {
@@ -109,7 +110,7 @@ impl Hub {
         Some(id)
     }
 
-    /// Removes a viewer, which gives control up.
+    /// Removes a viewer, and releases its control.
     pub fn leave(&self, id: Id) {
         let mut state = self.lock();
         state.viewers.remove(&id);
@@ -126,7 +127,7 @@ impl Hub {
         state.send_holder();
     }
 
-    /// Takes control from a viewer that has it.
+    /// Releases the control of a viewer, if it has control.
     pub fn release_control(&self, id: Id) {
         let mut state = self.lock();
         if state.holder == Some(id) {
@@ -135,17 +136,17 @@ impl Hub {
         }
     }
 
-    /// Whether a viewer has control.
+    /// Whether the viewer has control.
     pub fn has_control(&self, id: Id) -> bool {
         self.lock().holder == Some(id)
     }
 
-    /// Whether there are viewers.
+    /// Whether there are any viewers.
     pub fn has_viewers(&self) -> bool {
         !self.lock().viewers.is_empty()
     }
 
-    /// Takes the messages that wait for a viewer, the picture last. Returns `None` if too many bytes wait.
+    /// Takes the queued messages for a viewer, with the picture last. Returns `None` if the queue has exceeded its limit.
     pub fn take(&self, id: Id) -> Option<Vec<Message>> {
         let mut state = self.lock();
         let queue = state.viewers.get_mut(&id)?;
@@ -158,7 +159,7 @@ impl Hub {
         Some(messages)
     }
 
-    /// Sends a message to all viewers. A description of the board is kept for later viewers.
+    /// Sends a message to all viewers. A message that describes the board's state is kept for later viewers.
     pub fn send(&self, message: &ToPage) {
         let encoded = message.encoded();
         let mut state = self.lock();
@@ -189,13 +190,13 @@ impl Hub {
         }
     }
 
-    /// Tells one viewer that something has failed.
+    /// Sends an error notice to one viewer.
     pub fn notify_one(&self, id: Id, text: impl Into<String>) {
         let (text, is_error) = (text.into(), true);
         self.send_one(id, &ToPage::Notice { text, is_error });
     }
 
-    /// Sends output of the console to all viewers.
+    /// Sends console output to all viewers.
     pub fn send_console(&self, bytes: &[u8]) {
         let text = String::from_utf8_lossy(bytes).into_owned();
         let mut state = self.lock();
@@ -208,7 +209,7 @@ impl Hub {
         state.send(&ToPage::Console { text }.encoded());
     }
 
-    /// Shows a picture to all viewers.
+    /// Sends a picture to all viewers.
     pub fn show(&self, frame: &Frame) {
         let mut state = self.lock();
         state.pictures = state.pictures.wrapping_add(1);

@@ -1,8 +1,8 @@
-//! The levels that the page sets, between the threads of the viewers and of the board.
+//! The levels that the page sets, shared by the threads of the viewers and of the board.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Time in ms of the board during which a button stays pressed at least, so that a slow board does not miss it.
+/// Minimum time in ms of the board's time that a button stays pressed, so that a slow board does not miss it.
 const PRESSED_MS: u64 = 30;
 
 /// The levels that the page sets.
@@ -12,7 +12,7 @@ pub struct Inputs(Mutex<Levels>);
 /// Levels of the buttons and switches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Levels {
-    /// The pressed ones of the buttons 0 to 3, one bit each.
+    /// The pressed buttons of the buttons 0 to 3, one bit each.
     pub buttons: u8,
     /// Buttons that were pressed since the last call of [`Inputs::take`].
     pressed: u8,
@@ -37,7 +37,7 @@ impl Inputs {
         self.lock().switches = on;
     }
 
-    /// The levels now. Buttons that were pressed and released since the last call are pressed.
+    /// The levels now. Buttons that were pressed and released since the last call count as pressed.
     pub fn take(&self) -> Levels {
         let mut levels = self.lock();
         let pressed = std::mem::take(&mut levels.pressed);
@@ -48,14 +48,14 @@ impl Inputs {
     }
 }
 
-/// Keeps each pressed button pressed for a time that the board notices.
+/// Holds each pressed button for the minimum time.
 #[derive(Debug, Default)]
 pub struct Hold {
     until: [u64; 4],
 }
 
 impl Hold {
-    /// The buttons that the board sees at the time `now` in ms, of the pressed ones.
+    /// The held buttons at the time `now` in ms; `pressed` are the pressed buttons.
     pub fn held(&mut self, pressed: u8, now: u64) -> u8 {
         let mut held = 0;
         for (button, until) in self.until.iter_mut().enumerate() {

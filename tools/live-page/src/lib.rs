@@ -12,7 +12,7 @@
 //! | [`live`] | boards in real time, with their monitor and pins |
 //! | [`session`] | runs the board, its console and its transfers |
 //!
-//! A program passes the messages by sockets (`glint board --web`), or the board runs in the browser itself (`cargo xtask web`).
+//! A program passes the messages over sockets (`glint board --web`), or the board runs in the browser itself (`cargo xtask web`).
 //! docs/live-page.md describes the page and the messages.
 #![forbid(unsafe_code)]
 

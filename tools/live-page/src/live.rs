@@ -1,4 +1,4 @@
-//! Boards in real time, with their monitor and pins.
+//! Boards that run in real time, with their monitor and pins.
 
 use crate::inputs::{Hold, Levels};
 use crate::message::Pins;
@@ -10,10 +10,10 @@ use glint_board_api::{
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Slice of board time in ms that runs without a pause.
+/// Uninterrupted run time of the board, in ms of the board's time.
 const SLICE_MS: u64 = 1;
 
-/// A board for the live page. A read from its line passes time in which the board runs, at most as fast as in reality.
+/// A board for the live page. The board runs during a read from its line, at most at real-time speed.
 pub trait Live: Board {
     /// The motion sensor and the hand that the page moves; `None` for a board without access to its pins.
     fn motion(&self) -> Option<Arc<Motion>>;
@@ -27,32 +27,32 @@ pub trait Live: Board {
     /// The monitor shows no frame.
     fn picture(&mut self) -> Result<Option<Frame>, BoardError>;
 
-    /// Time between two measurements on the console.
+    /// Interval of the measurements on the console.
     fn sample_period(&self) -> Duration;
 
-    /// The time on the clock that the board follows.
+    /// The time of the clock that limits the board to real time.
     fn clock(&self) -> Duration;
 
-    /// How far the board is ahead of its clock, because that cannot wait.
+    /// Time by which the board is ahead of its clock, for a clock that cannot wait.
     fn early(&mut self) -> Duration {
         Duration::ZERO
     }
 }
 
-/// A simulated board in real time.
+/// A simulated board that runs in real time.
 pub struct LiveSimulation<S, C> {
     board: SimulatedBoard<S>,
     sample_period: Duration,
     motion: Arc<Motion>,
     hold: Hold,
     pace: Pace<C>,
-    /// The number of the last vertical blanking that was looked at, and the picture shown then.
+    /// The number of the last polled vertical blanking, and the picture shown at that time.
     shown: (u64, Option<Frame>),
 }
 
 impl<S: Simulation, C: Clock> LiveSimulation<S, C> {
-    /// Takes a board that runs its firmware, and connects a motion sensor and a camera. The board follows `clock`. `sample_period` is the
-    /// time between two measurements on its console.
+    /// Takes a board whose firmware is running, and connects a motion sensor and a camera. `clock` limits the board to real time.
+    /// `sample_period` is the interval of the measurements on its console.
     pub fn new(mut board: SimulatedBoard<S>, sample_period: Duration, clock: C) -> Self {
         let motion = Arc::new(Motion::default());
         board.inner().plug(motion.sensor());
@@ -69,7 +69,7 @@ impl<S: Simulation, C: Clock> LiveSimulation<S, C> {
         }
     }
 
-    /// Runs the board for a slice, when it is due.
+    /// Runs the board for a slice as soon as real time has reached its cycle.
     fn step(&mut self) {
         let simulation = self.board.inner();
         self.pace.wait(simulation.cycles());

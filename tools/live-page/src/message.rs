@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::sync::Arc;
 
-/// Size of a picture's message before its pixels in bytes.
+/// Size in bytes of the header of a picture message.
 pub const PICTURE_HEAD: usize = 8;
 
-/// Maximum size of a message from the page in bytes; an upload comes in several messages.
+/// Maximum size in bytes of a message from the page; an upload consists of several messages.
 pub const MAX_MESSAGE: usize = 128 << 10;
 
-/// A message to the page as sent. Copies share their bytes.
+/// A message to the page in its transmitted form. Clones share their bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
     /// A JSON text.
@@ -31,16 +31,16 @@ impl Message {
     }
 }
 
-/// A command of the console with its purpose.
+/// A console command with its purpose.
 #[derive(Clone, Debug, Serialize)]
 pub struct Entry {
     /// The command.
     pub name: String,
-    /// The text that the command `help` prints for it.
+    /// Text that the command `help` prints for the command.
     pub text: String,
 }
 
-/// The viewer that has control of the board, as another viewer sees it.
+/// The viewer with control of the board, as sent to another viewer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Holder {
@@ -60,42 +60,42 @@ pub enum ToPage {
     Board {
         /// Name: `emulated`, `virtual` or a serial port.
         name: String,
-        /// Whether the host reaches the monitor and the pins; otherwise there are no pictures.
+        /// Whether the host can access the monitor and the pins; otherwise there are no pictures.
         has_pins: bool,
         /// Whether other pages may show the board too.
         is_shared: bool,
     },
-    /// The lists of the firmware.
+    /// Lists of the firmware: commands, scenes, and forms of fields.
     Lists {
-        /// Commands of the console.
+        /// Console commands.
         commands: Vec<Entry>,
         /// Meshes and scenes.
         scenes: Vec<String>,
         /// Forms of the argument of the command `field`, with parameters in capital letters.
         fields: Vec<String>,
     },
-    /// Output of the console.
+    /// Console output.
     Console {
-        /// The text, with the control sequences of a terminal.
+        /// Text with terminal control sequences.
         text: String,
     },
     /// Levels of the board's pins.
     Pins(Pins),
-    /// The viewer that has control.
+    /// The viewer with control.
     Control {
         /// The viewer.
         holder: Holder,
     },
     /// Measurements of the board.
     Sample {
-        /// Time of the board in ms.
+        /// The board's time in ms.
         ms: u64,
         /// Reply to `stats json`; null before the first frame.
         stats: Value,
         /// Attitude of the motion sensor as a quaternion w, x, y, z.
         attitude: Option<[f64; 4]>,
     },
-    /// The attitude of the motion sensor and the position of the hand that pages have set last.
+    /// The last attitude of the motion sensor and position of the hand that a page has set.
     Motion {
         /// As in [`FromPage::Turn`].
         attitude: [f64; 4],
@@ -113,14 +113,14 @@ pub enum ToPage {
     Progress {
         /// Bytes transferred so far.
         done: u64,
-        /// Number of bytes in all.
+        /// Total number of bytes.
         all: u64,
     },
     /// A notice for the user.
     Notice {
         /// The text.
         text: String,
-        /// Whether something has failed.
+        /// Whether the notice is an error.
         is_error: bool,
     },
 }
@@ -132,14 +132,14 @@ pub struct Pins {
     pub leds: u16,
     /// Lit segments of the eight digits from left to right: bits 0 to 6 for the segments a to g, bit 7 for the point.
     pub digits: [u8; 8],
-    /// The pressed ones of the buttons 0 to 3, one bit each.
+    /// The pressed buttons of the buttons 0 to 3, one bit each.
     pub buttons: u8,
     /// The 16 switches, one bit each.
     pub switches: u16,
 }
 
 impl ToPage {
-    /// The message as sent.
+    /// The message in its transmitted form.
     #[must_use]
     pub fn encoded(&self) -> Message {
         let text = serde_json::to_string(self).expect("the messages have string keys only");
@@ -160,29 +160,29 @@ pub fn picture(frame: &Frame, number: u32) -> Message {
     Message::Binary(bytes.into())
 }
 
-/// A message from the page. All but `take`, `release` and `help` need control.
+/// A message from the page. All messages except `take`, `release` and `help` require control.
 #[derive(Clone, Debug, Deserialize, PartialEq)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum FromPage {
-    /// Takes control, if no viewer has it.
+    /// Requests control, which succeeds if no viewer has it.
     Take,
     /// Gives control up.
     Release,
-    /// Types a line on the console.
+    /// Enters a line on the console.
     Command {
         /// The line.
         line: String,
     },
-    /// Ends the running command.
+    /// Cancels the running command.
     Interrupt,
-    /// Asks for the description of a command.
+    /// Requests the description of a command.
     Help {
         /// The command.
         command: String,
     },
     /// Sets the buttons.
     Buttons {
-        /// The pressed ones of the buttons 0 to 3, one bit each.
+        /// The pressed buttons of the buttons 0 to 3, one bit each.
         pressed: u8,
     },
     /// Sets the switches.
@@ -197,12 +197,12 @@ pub enum FromPage {
     },
     /// Moves the hand in front of the camera.
     Hand {
-        /// Its centre as parts of the width and the height of the frame; null for no hand.
+        /// Its centre as fractions of the frame's width and height; null for no hand.
         place: Option<[f64; 2]>,
     },
-    /// Fetches the picture over the console, from a board whose monitor the host does not reach.
+    /// Downloads the picture over the console from a board without access to its monitor.
     Picture,
-    /// Announces a mesh file, whose bytes follow in binary messages.
+    /// Announces a mesh file, which follows in binary messages.
     Upload {
         /// Name of the file, which determines its format.
         name: String,

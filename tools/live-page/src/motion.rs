@@ -1,22 +1,22 @@
-//! The motion sensor that the page turns, and the hand that it moves in front of the camera.
+//! The motion sensor that the page turns, and the hand that the page moves in front of the camera.
 
 use crate::message::ToPage;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use virtual_image_sensor::{Hand, ImageSensor, Model, Scene, Timing};
 use virtual_mpu6050::{Chip, Imperfections, Source, State, Wires};
 
-/// Time constant in s with which the sensor follows the page.
+/// Time constant in s with which the sensor follows the page's attitude.
 const FOLLOW: f64 = 0.03;
-/// Largest rate of the sensor in °/s, within its range of 2000.
+/// Maximum rotation rate of the sensor in °/s, within its range of 2000.
 const MAX_RATE: f64 = 1500.0;
 /// Width and height of a frame of the camera in pixels.
 const CAMERA: [usize; 2] = [320, 240];
-/// Timing of the camera: 59.9 frames of this size a second, as many as the monitor shows.
+/// Timing of the camera: 59.9 frames of this size per second, the rate of the monitor.
 const CAMERA_TIMING: Timing = Timing {
     clock: 15_000_000,
     ..Timing::OV7670
 };
-/// The sensor's noise, without which the firmware refuses to calibrate it.
+/// Noise of the sensor; without noise, the firmware refuses a calibration.
 const NOISE: Imperfections = Imperfections {
     noise: 0.005,
     accel_noise: 0.0004,
@@ -26,7 +26,7 @@ const NOISE: Imperfections = Imperfections {
 /// A quaternion w, x, y, z.
 type Quaternion = [f64; 4];
 
-/// The attitude and the place that the page wants.
+/// The attitude and the hand position that the page requests.
 #[derive(Debug)]
 pub struct Motion(Mutex<Wanted>);
 
@@ -34,7 +34,7 @@ pub struct Motion(Mutex<Wanted>);
 struct Wanted {
     /// Attitude from body to world.
     attitude: Quaternion,
-    /// Centre of the hand, as parts of the width and the height of the camera's frame.
+    /// Centre of the hand, as fractions of the width and the height of the camera's frame.
     hand: Option<[f64; 2]>,
 }
 
@@ -52,7 +52,7 @@ impl Motion {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Turns the sensor to an attitude, a quaternion of any length but 0. Returns whether it is one.
+    /// Turns the sensor to an attitude, a quaternion of any length but 0. Returns whether the quaternion is valid.
     pub fn turn(&self, attitude: Quaternion) -> bool {
         let length = attitude.iter().map(|c| c * c).sum::<f64>().sqrt();
         let is_attitude = (1e-3..1e3).contains(&length);
@@ -62,7 +62,7 @@ impl Motion {
         is_attitude
     }
 
-    /// Moves the hand, or takes it away. Returns whether the place is in the frame.
+    /// Moves the hand, or removes it. Returns whether the position is in the frame.
     pub fn move_hand(&self, place: Option<[f64; 2]>) -> bool {
         let is_inside = place.is_none_or(|place| place.iter().all(|c| (0.0..=1.0).contains(c)));
         if is_inside {
@@ -71,7 +71,7 @@ impl Motion {
         is_inside
     }
 
-    /// The attitude and the place that pages have set last.
+    /// The last attitude and hand position that a page has set.
     pub fn message(&self) -> ToPage {
         let Wanted { attitude, hand } = *self.lock();
         ToPage::Motion { attitude, hand }
@@ -109,20 +109,20 @@ impl Motion {
     }
 }
 
-/// A body that turns.
+/// A rotating body.
 struct Turning {
     time: f64,
     attitude: Quaternion,
 }
 
 impl Turning {
-    /// Turns the body towards `wanted` until `time` in s, and returns its motion.
+    /// Turns the body towards `wanted` until the time `time` in s, and returns its motion.
     fn follow(&mut self, time: f64, wanted: Quaternion) -> State {
         let step = (time - self.time).max(1e-6);
         self.time = time;
         let [w, x, y, z] = product(conjugate(self.attitude), wanted);
         let sine = (x * x + y * y + z * z).sqrt();
-        // The shorter way round.
+        // Selects the shorter rotation.
         let angle = 2.0 * sine.atan2(w.abs());
         let part = 1.0 - (-step / FOLLOW).exp();
         let turned = (angle * part).min(MAX_RATE.to_radians() * step);
@@ -168,7 +168,7 @@ mod tests {
         let motion = Motion::default();
         assert!(!motion.turn([0.0; 4]) && !motion.turn([f64::NAN, 0.0, 0.0, 0.0]));
         assert!(!motion.move_hand(Some([0.5, 1.1])) && motion.move_hand(None));
-        // 90° about x: the body's y axis points up.
+        // A rotation of 90° about x: the body's y axis points up.
         assert!(motion.turn([2.0, 2.0, 0.0, 0.0]));
         let wanted = motion.lock().attitude;
         let mut turning = Turning {

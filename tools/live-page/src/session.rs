@@ -18,16 +18,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-/// Longest time of the board in ms between two looks at the page's wishes.
+/// Interval in ms of the board's time at which the session polls the page's requests.
 const LOOK_MS: u64 = 2;
 
-/// The key Ctrl-C, which ends the running command.
+/// The key Ctrl-C, which cancels the running command.
 const INTERRUPT: &[u8] = b"\x03";
 
-/// Number of reports of a transfer's progress.
+/// Number of progress reports of a transfer.
 const REPORTS: u64 = 100;
 
-/// A board that shows its picture and its pins while its line is read.
+/// A board that sends its picture and its pins to the page while its line is read.
 struct Watched<'a> {
     board: &'a mut dyn Live,
     hub: &'a Hub,
@@ -37,7 +37,7 @@ struct Watched<'a> {
 }
 
 impl Watched<'_> {
-    /// Passes levels and pictures.
+    /// Exchanges pin levels, and sends a new picture.
     fn exchange(&mut self) -> Result<(), BoardError> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(io::Error::from(io::ErrorKind::Interrupted).into());
@@ -78,7 +78,7 @@ impl Board for Watched<'_> {
 /// Runs a board whose firmware waits for a command, until `stop` is set.
 ///
 /// # Errors
-/// The line to the board is broken.
+/// The line to the board has failed.
 pub fn run(
     board: &mut dyn Live,
     channels: &Channels,
@@ -97,27 +97,27 @@ pub fn run(
     }
 }
 
-/// The session with a board, which runs while the session takes steps.
+/// The session with a board; the board runs during the session's steps.
 pub struct Session<'a> {
     board: Watched<'a>,
     hub: &'a Hub,
     requests: Receiver<Request>,
-    /// Requests that wait for the end of a command, in their order.
+    /// Requests that are queued until the end of a command.
     waiting: VecDeque<Request>,
     /// Time of the last measurement.
     sampled: Duration,
-    /// Number of uploads, which tells one transfer from the next.
+    /// Number of uploads, which distinguishes successive transfers.
     uploads: u8,
-    /// The end of the console's output; empty after commands of the session, which end with the prompt.
+    /// The last bytes of the console's output; empty after the session's own commands, whose replies end with the prompt.
     end: Vec<u8>,
 }
 
 impl<'a> Session<'a> {
-    /// Begins the session with a board whose firmware waits for a command, and sends the lists of the firmware. All calls fail once `stop`
-    /// is set.
+    /// Begins the session with a board whose firmware waits for a command, and sends the firmware's lists. All calls fail once
+    /// `stop` is set.
     ///
     /// # Errors
-    /// The line to the board is broken.
+    /// The line to the board has failed.
     pub fn start(
         board: &'a mut dyn Live,
         channels: &'a Channels,
@@ -143,22 +143,22 @@ impl<'a> Session<'a> {
         Ok(session)
     }
 
-    /// How far the board is ahead of its clock, because that cannot wait.
+    /// Time by which the board is ahead of its clock, for a clock that cannot wait.
     pub fn early(&mut self) -> Duration {
         self.board.board.early()
     }
 
-    /// Runs the board for a short time, and acts on one request.
+    /// Runs the board for a short time, and executes one request.
     ///
     /// # Errors
-    /// The line to the board is broken.
+    /// The line to the board has failed.
     pub fn step(&mut self) -> Result<(), BoardError> {
         let mut output = Vec::new();
         self.board.read(&mut output, LOOK_MS)?;
         self.pass(&mut output)?;
         if !self.is_idle() {
             return match self.requests.try_recv() {
-                // The user's keys go to the program that runs, as on a terminal.
+                // The user's keys go to the running program, as on a terminal.
                 Ok(Request::Command(line)) => self.type_line(&line),
                 Ok(Request::Interrupt) => self.board.write(INTERRUPT),
                 Ok(request) => {
@@ -189,8 +189,8 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Keeps a request until the console waits for a command. A newer model or picture replaces the previous one. Descriptions above the
-    /// limit are dropped: the firmware has fewer commands.
+    /// Queues a request until the console waits for a command. A newer model or picture request replaces the queued one.
+    /// Requests for descriptions above the limit are dropped: the firmware has fewer commands.
     fn keep(&mut self, request: Request) {
         self.waiting.retain(|earlier| match (earlier, &request) {
             (Request::Help(earlier), Request::Help(command)) => earlier != command,
@@ -201,7 +201,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Whether it is time for a measurement.
+    /// Whether the next measurement is due.
     fn is_sample_due(&self) -> bool {
         let live = &self.board.board;
         live.clock() >= self.sampled + live.sample_period() && self.hub.has_viewers()
@@ -214,7 +214,7 @@ impl<'a> Session<'a> {
         }
         self.hub.send_console(output);
         self.end.append(output);
-        // A transfer that was typed by hand has no other side.
+        // Nothing can answer a transfer that a user typed on the console, so it is cancelled.
         let is_transfer = self.end.ends_with(b"\nready\r\n");
         let kept = self.end.len().saturating_sub(2 * PROMPT.len());
         self.end.drain(..kept);
@@ -234,7 +234,7 @@ impl<'a> Session<'a> {
         self.board.write(format!("\0{line}\r").as_bytes())
     }
 
-    /// Lets the session use the console, whose output the viewers do not see, up to the next prompt.
+    /// Runs a task on the console, up to the next prompt; viewers do not receive the output.
     fn ask(
         &mut self,
         task: impl FnOnce(&mut Console<Watched>, &Hub) -> Result<(), TransferError>,
@@ -253,7 +253,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Sends the lists of the firmware.
+    /// Sends the firmware's lists of commands, scenes and fields.
     fn send_lists(console: &mut Console<Watched>, hub: &Hub) -> Result<(), TransferError> {
         console.synchronise()?;
         let entry = |line: &String| {
@@ -280,7 +280,7 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The lines of a reply, none if the firmware refuses the command.
+/// The lines of a reply; empty if the firmware refuses the command.
 fn optional(reply: Result<Vec<String>, ConsoleError>) -> Result<Vec<String>, ConsoleError> {
     match reply {
         Err(ConsoleError::Refused { .. }) => Ok(Vec::new()),
@@ -346,7 +346,7 @@ fn send_picture(console: &mut Console<Watched>, hub: &Hub) -> Result<(), Transfe
     Ok(())
 }
 
-/// Passes the progress of a transfer to the pages.
+/// Sends the progress of a transfer to the pages.
 fn reporter(hub: &Hub) -> impl FnMut(u64, u64) {
     let mut reported = 0;
     move |done, all| {

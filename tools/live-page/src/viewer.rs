@@ -1,4 +1,4 @@
-//! One open page: acts on its messages.
+//! One open page, and the processing of its messages.
 
 use crate::channels::{Channels, Request};
 use crate::hub::{Hub, Id};
@@ -16,7 +16,7 @@ const MAX_NAME: usize = 100;
 /// The reason to close a page's connection.
 pub type Reason = &'static str;
 
-/// A mesh file on its way from the page.
+/// A mesh file that the page is sending.
 struct Upload {
     name: String,
     bytes: usize,
@@ -30,7 +30,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// Adds a page. Returns `None` if there are too many.
+    /// Adds a page. Returns `None` if there are too many pages.
     pub fn join(channels: &Channels) -> Option<Self> {
         let id = channels.hub.join()?;
         let viewer = Self { id, upload: None };
@@ -38,7 +38,7 @@ impl Viewer {
         Some(viewer)
     }
 
-    /// The number of the page at the hub.
+    /// The page's identifier in the hub.
     pub const fn id(&self) -> Id {
         self.id
     }
@@ -49,7 +49,7 @@ impl Viewer {
         channels.hub.leave(self.id);
     }
 
-    /// Gives control up, with the buttons.
+    /// Releases control and the pressed buttons.
     fn release(&self, channels: &Channels) {
         if channels.hub.has_control(self.id) {
             channels.inputs.press(0);
@@ -57,14 +57,14 @@ impl Viewer {
         }
     }
 
-    /// Tells the page where the motion sensor and the hand are.
+    /// Sends the attitude of the motion sensor and the position of the hand to the page.
     fn tell_motion(&self, channels: &Channels) {
         if let Some(motion) = &channels.motion {
             channels.hub.send_one(self.id, &motion.message());
         }
     }
 
-    /// Returns whether the console takes a line. If not, the page gets a notice with the reason.
+    /// Returns whether the console accepts a line. If not, sends a notice with the reason to the page.
     fn is_line(&self, line: &str, channels: &Channels) -> bool {
         let is_line = line.len() <= LINE_MAX && !line.chars().any(char::is_control);
         if !is_line {
@@ -74,10 +74,10 @@ impl Viewer {
         is_line
     }
 
-    /// Acts on a text from the page.
+    /// Processes a text message from the page.
     ///
     /// # Errors
-    /// It is not a message of the page, or a value in it is out of range.
+    /// The text is not a message of the page, or a value in it is out of range.
     pub fn receive_text(&mut self, text: &str, channels: &Channels) -> Result<(), Reason> {
         let message =
             serde_json::from_str(text).map_err(|_| "expected a message of docs/live-page.md")?;
@@ -93,7 +93,7 @@ impl Viewer {
                     channels.request(self.id, Request::Help(command));
                 }
             }
-            // Messages of a page that has lost control are on their way for some time.
+            // Messages of a page that has just lost control may still arrive.
             _ if !hub.has_control(self.id) => {}
             FromPage::Command { line } => {
                 if self.is_line(&line, channels) {
@@ -112,7 +112,9 @@ impl Viewer {
             FromPage::Hand { place } => {
                 let motion = channels.motion.as_ref();
                 let is_set = motion.is_none_or(|motion| motion.move_hand(place));
-                return is_set.then_some(()).ok_or("expected a place in the frame");
+                return is_set
+                    .then_some(())
+                    .ok_or("expected a position in the frame");
             }
             FromPage::Upload { name, bytes } => {
                 if bytes == 0 || bytes > MAX_UPLOAD || name.chars().count() > MAX_NAME {
@@ -127,7 +129,7 @@ impl Viewer {
         Ok(())
     }
 
-    /// Receives bytes of an announced file from the page, and passes the complete file to the board.
+    /// Receives bytes of an announced file from the page, and passes the complete file to the session.
     ///
     /// # Errors
     /// No file has been announced, or it has fewer bytes.
@@ -163,7 +165,7 @@ mod tests {
         format!(r#"{{"type":"upload","name":"a.stl","bytes":{bytes}}}"#)
     }
 
-    /// Whether a text waits for the page that contains `wanted`.
+    /// Whether a text that contains `wanted` is queued for the page.
     fn is_told(viewer: &Viewer, channels: &Channels, wanted: &str) -> bool {
         let messages = channels.hub.take(viewer.id()).unwrap();
         messages
@@ -213,7 +215,7 @@ mod tests {
         assert!(queue.try_recv().is_err());
     }
 
-    /// The next page with control does not inherit pressed buttons, and receives the positions of sensor and hand.
+    /// The next page with control does not inherit pressed buttons, and receives the state of sensor and hand.
     #[test]
     fn control_passes_on_with_released_buttons_and_the_motion() {
         let motion = Arc::<Motion>::default();

@@ -1,4 +1,4 @@
-//! The scenes of the folder `scenes`, which this program and the firmware have built in.
+//! The scenes of the folder `scenes`, which are built into this program and into the firmware.
 
 /// Defines the built-in scenes by their names.
 macro_rules! built_in {
@@ -6,7 +6,7 @@ macro_rules! built_in {
         /// Names of the built-in scenes: the files of the folder `scenes`, without their extension.
         pub const NAMES: [&str; [$($name),+].len()] = [$($name),+];
 
-        /// The texts of the built-in scenes, in the order of their names.
+        /// The texts of the built-in scenes, sorted by name.
         pub const TEXTS: [&str; NAMES.len()] = [$(include_str!(concat!("../../../scenes/", $name, ".toml"))),+];
     };
 }

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// A scene file that violates its format. `Display` is one line: the file, the line, the key, its value, and what is allowed.
+/// A scene file that violates the format. `Display` prints one line: the file, the line, the key, its value, and the allowed
+/// values.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: {}{message}", place(.line))]
 pub struct SceneError {
@@ -10,7 +11,7 @@ pub struct SceneError {
     pub file: String,
     /// Number of the line, from 1; `None` for an error that concerns the whole file.
     pub line: Option<usize>,
-    /// The key with its value, and what is allowed.
+    /// The key with its value, and the allowed values.
     pub message: String,
 }
 
@@ -18,7 +19,7 @@ fn place(line: &Option<usize>) -> String {
     line.map_or(String::new(), |line| format!("line {line}: "))
 }
 
-/// A file that is parsed, for the places of errors.
+/// A parsed file, for the locations of errors.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     /// Name of the file, for messages.
@@ -28,7 +29,7 @@ pub struct Source<'a> {
 }
 
 impl Source<'_> {
-    /// Number of the line, from 1, at an offset in bytes.
+    /// Number of the line, from 1, at a byte offset.
     pub fn line(self, offset: usize) -> usize {
         let before = self.text.as_bytes().iter().take(offset);
         1 + before.filter(|&&byte| byte == b'\n').count()
@@ -42,7 +43,7 @@ impl Source<'_> {
         }
     }
 
-    /// An error that concerns the whole file.
+    /// An error that applies to the whole file.
     pub fn whole(self, message: impl Into<String>) -> SceneError {
         // The message may quote the file.
         let message: String = message.into();
@@ -57,7 +58,7 @@ impl Source<'_> {
     }
 }
 
-/// Quotes a value of the file in a message, shortened.
+/// Quotes a value of the file in shortened form, for a message.
 pub fn quote(text: &str) -> String {
     const SHOWN: usize = 40;
     let mut rest = text.chars();

@@ -1,4 +1,4 @@
-//! The TOML of a scene file: keys, and values as the words of console commands.
+//! Parses the TOML of a scene file into keys, and values as arguments of console commands.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::{SceneError, Source, quote};
 use crate::keys::names;
 
-/// A value of the file, and its place.
+/// A value of the file, and its location.
 type Value<'a> = Spanned<DeValue<'a>>;
 
 /// The keys and values of a file.
@@ -21,7 +21,7 @@ impl<'a> File<'a> {
     /// Reads a file, and checks the names of its keys.
     ///
     /// # Errors
-    /// The text is not TOML, or has a key that no scene has.
+    /// The text is not TOML, or contains an unknown key.
     pub fn read(source: Source<'a>) -> Result<Self, SceneError> {
         let table = DeTable::parse(source.text).map_err(|error| match error.span() {
             Some(span) => source.error(&span, error.message()),
@@ -46,25 +46,25 @@ impl<'a> File<'a> {
         self.table.get(key)
     }
 
-    /// Whether the file has a key.
+    /// Whether the file contains a key.
     pub fn has(&self, key: &str) -> bool {
         self.get(key).is_some()
     }
 
-    /// The value of a key that is a text.
+    /// The value of a key whose type is text.
     ///
     /// # Errors
-    /// The value is of another type.
+    /// The value has another type.
     pub fn text(&self, key: &str) -> Result<Option<&str>, SceneError> {
         self.get(key)
             .map(|value| self.string(key, value))
             .transpose()
     }
 
-    /// The value of a key that is a list of texts.
+    /// The value of a key whose type is a list of texts.
     ///
     /// # Errors
-    /// The value is of another type.
+    /// The value has another type.
     pub fn texts(&self, key: &str) -> Result<Vec<(&str, Range<usize>)>, SceneError> {
         let Some(value) = self.get(key) else {
             return Ok(Vec::new());
@@ -85,10 +85,10 @@ impl<'a> File<'a> {
         }
     }
 
-    /// The value of a key that is true or false.
+    /// The value of a Boolean key.
     ///
     /// # Errors
-    /// The value is of another type.
+    /// The value has another type.
     pub fn switch(&self, key: &str) -> Result<Option<bool>, SceneError> {
         let switch = |value: &Value| match value.get_ref() {
             DeValue::Boolean(on) => Ok(*on),
@@ -97,20 +97,20 @@ impl<'a> File<'a> {
         self.get(key).map(switch).transpose()
     }
 
-    /// The value of a key that is a positive number.
+    /// The value of a key whose type is a positive number.
     ///
     /// # Errors
-    /// The value is of another type.
+    /// The value has another type.
     pub fn number(&self, key: &str) -> Result<Option<f64>, SceneError> {
         let number =
             |value| positive(value).ok_or_else(|| self.refuse(key, value, "a number above 0"));
         self.get(key).map(number).transpose()
     }
 
-    /// The members of a key that is a table of positive numbers.
+    /// The members of a key whose type is a table of positive numbers.
     ///
     /// # Errors
-    /// The value is of another type, or has a member of another name than `known`.
+    /// The value has another type, or a member has a name that is not in `known`.
     pub fn numbers(
         &self,
         key: &str,
@@ -142,10 +142,10 @@ impl<'a> File<'a> {
         members.collect()
     }
 
-    /// The words of a value, and of the members of a list: the arguments of console commands.
+    /// The arguments of a console command in a value, or in each member of a list.
     ///
     /// # Errors
-    /// The value has a type that is not an argument, or a member of a list that is not a list.
+    /// The value, or a member of a list, is not a valid argument or list of arguments.
     pub fn words(
         &self,
         key: &str,
@@ -174,7 +174,7 @@ impl<'a> File<'a> {
         Ok(vec![(words, value.span())])
     }
 
-    /// The error of a value that is not as `expected`.
+    /// The error of a value that is not the `expected` one.
     pub fn refuse(&self, key: &str, value: &Value, expected: &str) -> SceneError {
         let found = self.source.text.get(value.span()).unwrap_or_default();
         let message = format!("{key}: {}: expected {expected}", quote(found));

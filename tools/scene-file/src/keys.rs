@@ -1,8 +1,8 @@
-//! The keys of scene files: the console's table has those that are commands.
+//! The keys of scene files; those that are commands come from the console's table.
 
 use glint_core::console::{FORMS, Row};
 
-/// The keys that are console commands, in the order in which a scene executes them.
+/// The keys that are console commands, in the order of their execution.
 pub fn commands() -> Vec<&'static Row> {
     let mut rows: Vec<_> = FORMS.iter().collect();
     rows.sort_by_key(|row| row.forms.turn);

@@ -1,8 +1,8 @@
-//! Scene files: what a picture shows, and what it needs of gateware and firmware.
+//! Scene files: descriptions of pictures, and the gateware and firmware that they require.
 //!
-//! A scene file is TOML. Most of its keys are console commands, and their values the commands' arguments: `size = "640 360"` is
-//! `size 640 360`. So a scene is a list of console commands ([`SceneFile::lines`]), which the firmware holds and the host sends, and the
-//! console's own parser checks every value. docs/scenes.md describes the keys.
+//! A scene file is TOML. Most of its keys are console commands, and the values are the commands' arguments: `size = "640 360"` is
+//! `size 640 360`. So a scene is a list of console commands ([`SceneFile::lines`]), which the firmware stores and the host sends,
+//! and the console's parser checks every value. docs/scenes.md describes the keys.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! What scenes need of the gateware and of the firmware.
+//! Gateware and firmware that scenes require.
 
 use std::collections::BTreeSet;
 
@@ -14,17 +14,17 @@ use litex_pac::raymarch::Kind;
 
 use crate::scene::SceneFile;
 
-/// Lanes of a raymarcher for which no scene states them.
+/// Number of lanes of a raymarcher if no scene sets it.
 const LANES: u8 = 2;
 
-/// What a raymarcher must have: the options `--fields` and `--lanes` of `cargo xtask gateware`.
+/// Features that a raymarcher must have: the options `--fields` and `--lanes` of `cargo xtask gateware`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fields {
-    /// Evaluations of the field a clock.
+    /// Evaluations of the field per clock.
     pub lanes: u8,
-    /// The largest depth of a sponge; 0 without sponges.
+    /// The maximum depth of a sponge; 0 without sponges.
     pub levels: u8,
-    /// Names of the flat fields other than the sponge.
+    /// Names of the flat fields except the sponge.
     pub flat: BTreeSet<&'static str>,
     /// Spheres.
     pub spheres: bool,
@@ -36,23 +36,23 @@ pub struct Fields {
     pub prepass: bool,
 }
 
-/// What scenes need of the gateware and of the firmware.
+/// Gateware and firmware that scenes require.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Needs {
     /// The optional blocks.
     pub blocks: BTreeSet<Block>,
-    /// The parts of the firmware: names of its Cargo features.
+    /// The required parts of the firmware: names of its Cargo features.
     pub features: BTreeSet<Feature>,
     /// Smooth shading in the triangle engine.
     pub smooth: bool,
-    /// The memory of depths: for triangles, and where depth codes are wanted.
+    /// The depth buffer in memory, which triangles and depth codes require.
     pub depths: bool,
     /// The raymarcher's features.
     pub fields: Option<Fields>,
 }
 
 impl SceneFile {
-    /// What the scene needs; a list of scenes needs what each of them needs.
+    /// The requirements of the scene; for a list of scenes, the requirements of all its scenes.
     pub fn needs(&self) -> Needs {
         if !self.scenes().is_empty() {
             let mut needs = Needs::of(self.scenes());
@@ -72,7 +72,7 @@ impl SceneFile {
         let (has_triangles, has_fields) = (has(Block::Triangle), has(Block::Raymarch));
         let fields = scene.field.filter(|_| has_fields).map(|field| Fields {
             lanes: self.lanes.unwrap_or(LANES),
-            // A mesh and its field are drawn for one eye after the other.
+            // A mesh in a field is drawn for one eye after the other.
             stereo: scene.stereo.is_some() && !has_triangles,
             prepass: scene.prepass,
             ..Fields::of(&field)
@@ -86,7 +86,7 @@ impl SceneFile {
         }
     }
 
-    /// The parts of the firmware that execute the scene's lines and draw its picture.
+    /// The parts of the firmware that execute the scene's commands and draw its picture.
     fn needed_features(&self) -> BTreeSet<Feature> {
         let (scene, meshes) = (self.scene(), self.meshes());
         let mut features = self.features().clone();
@@ -108,7 +108,7 @@ impl SceneFile {
             winding,
             shading: _,
         } = scene.options;
-        // The soft core makes the descriptors of such meshes, or the whole picture.
+        // The soft core makes the descriptors of such meshes, or draws the whole picture.
         if scene.backend == Backend::Cpu
             || !cull
             || clip != Clip::Guard
@@ -122,7 +122,7 @@ impl SceneFile {
 }
 
 impl Needs {
-    /// What all of these scenes need together. Scenes with different lanes have two.
+    /// The combined requirements of these scenes. Scenes with different numbers of lanes require two lanes.
     pub fn of(scenes: &[SceneFile]) -> Self {
         scenes
             .iter()
@@ -144,7 +144,7 @@ impl Needs {
         }
     }
 
-    /// The options of `cargo xtask gateware` for a gateware that has exactly these features.
+    /// The options of `cargo xtask gateware` for gateware with exactly these features.
     pub fn options(&self) -> Vec<String> {
         let mut options = vec!["--blocks".to_owned()];
         options.extend(self.blocks.iter().map(|block| block.name().to_owned()));
@@ -167,7 +167,7 @@ impl Needs {
 }
 
 impl Fields {
-    /// The features that a field needs, for one eye and without the prepass.
+    /// The features that a field requires, for one eye and without the prepass.
     fn of(field: &Field) -> Self {
         let none = Self {
             lanes: LANES,
@@ -224,7 +224,7 @@ impl Fields {
         }
     }
 
-    /// The value of `--fields`.
+    /// The value of the option `--fields`.
     pub fn names(&self) -> String {
         let mut names = Vec::new();
         if self.levels > 0 {

@@ -1,4 +1,4 @@
-//! Scenes by their names.
+//! Reads scenes by name or path.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -10,20 +10,20 @@ use crate::scene::SceneFile;
 
 /// The name of standard input.
 const STDIN: &str = "-";
-/// Largest length of a scene file in bytes.
+/// Maximum length of a scene file in bytes.
 const MAX_BYTES: u64 = 1 << 20;
 
-/// The built-in scene with this name; `None` for another name.
+/// The built-in scene `name`; `None` for another name.
 pub fn built_in(name: &str) -> Option<SceneFile> {
     let (name, text) = NAMES.iter().zip(TEXTS).find(|(known, _)| **known == name)?;
-    // A test parses all of them.
+    // A test parses all built-in scenes.
     SceneFile::parse(name, &format!("scenes/{name}.toml"), text).ok()
 }
 
-/// Reads a scene: a built-in one by its name, or a scene file by its path, which ends in `.toml`; `-` is one from standard input.
+/// Reads a scene: a built-in scene by its name, or a scene file by its path, which ends in `.toml`; `-` is standard input.
 ///
 /// # Errors
-/// No built-in scene has the name, the file cannot be read, or it is not a scene file.
+/// No built-in scene has the name, the file cannot be read, or the text is not a scene file.
 pub fn read(name: &str) -> Result<SceneFile, SceneError> {
     if let Some(scene) = built_in(name) {
         return Ok(scene);

@@ -16,7 +16,7 @@ use crate::error::{SceneError, Source, quote};
 use crate::file::File;
 use crate::keys::{BUDGET, commands};
 
-/// What moves the camera, or the segments of a wireframe program.
+/// The control that moves the camera, or the segments of a wireframe program.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Steer {
     /// Nothing moves the camera.
@@ -24,28 +24,28 @@ pub enum Steer {
     Fixed,
     /// The buttons, which are the keys of a wireframe program.
     Buttons,
-    /// The console command that starts it: `orbit`, `imu look`, `imu orbit`, `gesture on` or `gesture vga`.
+    /// The console command that starts the control: `orbit`, `imu look`, `imu orbit`, `gesture on` or `gesture vga`.
     Command(String),
 }
 
-/// Limits of a build for the scene alone, and of its frames: names of [`BUDGET`] with their numbers.
+/// Limits of the build for this scene alone, and of its frames: names from [`BUDGET`] with numbers.
 pub type Budget = Vec<(&'static str, f64)>;
 
-/// A scene, as a file states it.
+/// A scene as described by its file.
 #[derive(Clone, Debug)]
 pub struct SceneFile {
     name: String,
     title: String,
     /// Console commands that set the picture.
     settings: Vec<String>,
-    /// What the settings make of the scene at start.
+    /// The state of the scene after the settings.
     scene: Scene,
-    /// Names of the meshes, each once, in the order of the settings.
+    /// Names of the meshes, without repetition, in the order of the settings.
     meshes: Vec<String>,
-    /// The parts of the firmware that have the commands.
+    /// The parts of the firmware that implement the commands.
     features: BTreeSet<Feature>,
     steer: Steer,
-    /// The scenes of a list of scenes, instead of settings.
+    /// The scenes of a list of scenes, which has no settings.
     scenes: Vec<SceneFile>,
     /// Whether depth codes are requested in addition to the colours.
     pub(crate) depth: bool,
@@ -134,7 +134,7 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// Adds a console command that sets the picture, checked as the board does.
+    /// Adds a console command that sets the picture, after the board's checks.
     fn add(
         &mut self,
         file: &File,
@@ -171,27 +171,27 @@ impl SceneFile {
         &self.name
     }
 
-    /// One line about the scene.
+    /// A one-line description of the scene.
     pub fn title(&self) -> &str {
         &self.title
     }
 
-    /// The scenes of a list of scenes; empty for a scene with a picture of its own.
+    /// The scenes of a list of scenes; empty for a single scene.
     pub fn scenes(&self) -> &[Self] {
         &self.scenes
     }
 
-    /// The console commands that set the picture; of a list of scenes, those of the first one.
+    /// The console commands that set the picture; for a list of scenes, those of the first scene.
     pub fn settings(&self) -> &[String] {
         self.scenes.first().map_or(&self.settings, Self::settings)
     }
 
-    /// What moves the camera; of a list of scenes, that of the first one.
+    /// The control of the camera; for a list of scenes, that of the first scene.
     pub fn steer(&self) -> &Steer {
         self.scenes.first().map_or(&self.steer, Self::steer)
     }
 
-    /// All console commands: those of the picture, and the one that starts what moves the camera.
+    /// All console commands: those that set the picture, and the command that starts the control of the camera.
     pub fn lines(&self) -> impl Iterator<Item = &str> {
         let steer = match self.steer() {
             Steer::Command(command) => Some(command.as_str()),
@@ -200,17 +200,17 @@ impl SceneFile {
         self.settings().iter().map(String::as_str).chain(steer)
     }
 
-    /// The scene that the console commands make of the scene at start; of a list of scenes, that of the first one.
+    /// The scene after the console commands; for a list of scenes, the first scene.
     pub fn scene(&self) -> &Scene {
         self.scenes.first().map_or(&self.scene, Self::scene)
     }
 
-    /// Names of the meshes, each once; of a list of scenes, those of the first one.
+    /// Names of the meshes, without repetition; for a list of scenes, those of the first scene.
     pub fn meshes(&self) -> &[String] {
         self.scenes.first().map_or(&self.meshes, Self::meshes)
     }
 
-    /// The parts of the firmware that have the console commands.
+    /// The parts of the firmware that implement the console commands.
     pub(crate) const fn features(&self) -> &BTreeSet<Feature> {
         &self.features
     }
@@ -220,7 +220,7 @@ impl SceneFile {
         self.scene().size
     }
 
-    /// Frequency of the system clock in MHz; `None` for that of the board.
+    /// Frequency of the system clock in MHz; `None` for the board's default.
     pub const fn clock(&self) -> Option<f64> {
         self.clock
     }
@@ -231,7 +231,7 @@ impl SceneFile {
     }
 }
 
-/// A scene of a list of scenes: a built-in one with a picture of its own.
+/// A scene of a list of scenes: a built-in single scene.
 fn member(file: &File, name: &str, span: &Range<usize>) -> Result<SceneFile, SceneError> {
     let picture = |(name, text): (&str, &str)| {
         let file = &format!("scenes/{name}.toml");
@@ -250,7 +250,7 @@ fn member(file: &File, name: &str, span: &Range<usize>) -> Result<SceneFile, Sce
     })
 }
 
-/// Checks that a list of scenes has scenes, and no picture of its own.
+/// Checks that a list of scenes contains scenes, and no keys of a single scene.
 fn check_list(file: &File, scenes: &[SceneFile]) -> Result<(), SceneError> {
     if let (true, Some(value)) = (scenes.is_empty(), file.get("scenes")) {
         return Err(file.refuse("scenes", value, "at least one scene"));
@@ -265,7 +265,7 @@ fn check_list(file: &File, scenes: &[SceneFile]) -> Result<(), SceneError> {
     }
 }
 
-/// Checks that the file states what the picture shows, and the camera.
+/// Checks that the file sets the subject of the picture and the camera.
 fn check_subject(file: &File) -> Result<(), SceneError> {
     if !["model", "object", "field", "program"]
         .iter()
@@ -284,7 +284,7 @@ fn check_subject(file: &File) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Checks that the keys which a key needs are in the file, and those which it excludes are not.
+/// Checks that the file contains the keys that another key requires, and none that it excludes.
 fn check_others(file: &File, row: &Row) -> Result<(), SceneError> {
     let (key, forms) = (row.key(), &row.forms);
     let at = |name| file.get(name).map(|value| value.span()).unwrap_or_default();
@@ -315,7 +315,7 @@ fn lanes(file: &File) -> Result<Option<u8>, SceneError> {
     Ok(Some(lanes))
 }
 
-/// What moves the camera, and the part of the firmware that has the command for it.
+/// The control of the camera, and the part of the firmware that implements its command.
 fn steer(file: &File) -> Result<(Steer, Feature), SceneError> {
     let (Some(value), Some(text)) = (file.get("steer"), file.text("steer")?) else {
         return Ok((Steer::Fixed, BASE));
@@ -327,7 +327,7 @@ fn steer(file: &File) -> Result<(Steer, Feature), SceneError> {
         "buttons" => return Err(file.refuse("steer", value, "buttons only beside program")),
         _ => {}
     }
-    // Whether the camera goes around the origin.
+    // Whether the camera moves around the origin.
     let (around, feature) = match Command::parse(text) {
         Ok(Some(command @ Command::Orbit { .. })) => (true, command.feature()),
         Ok(Some(

@@ -1,4 +1,5 @@
-//! The built-in scenes are valid, refused files have errors that name the place, and needs follow from the keys.
+//! Tests that the built-in scenes are valid, that errors of rejected files name the location, and that the requirements follow
+//! from the keys.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,7 +16,7 @@ fn parse(text: &str) -> Result<SceneFile, String> {
     SceneFile::parse("a", "a.toml", text).map_err(|error| error.to_string())
 }
 
-/// The scene of a text with a title and a camera before it.
+/// The scene of a text that is preceded by a title and a camera.
 fn with_camera(text: &str) -> SceneFile {
     parse(&format!("title = \"a\"\ncamera = \"3 30 60\"\n{text}")).unwrap()
 }
@@ -34,7 +35,7 @@ fn the_files_of_the_folder_are_built_in() {
         let text = fs::read_to_string(&path).unwrap();
         let scene = SceneFile::parse(&name, &path.display().to_string(), &text).unwrap();
         assert!(scene.lines().count() > 0, "{name}");
-        // As a board reads the lines.
+        // Reads the lines like a board.
         let text: String = scene.lines().map(|line| format!("{line}\n")).collect();
         let read: Result<Vec<_>, _> = lines(&text).collect();
         let read = read.unwrap_or_else(|error| panic!("{name}: {error}"));
@@ -112,7 +113,7 @@ fn keys_are_console_commands() {
     assert_eq!(*scene.steer(), Steer::Command("orbit 60".to_owned()));
 }
 
-/// A scene with neither quality nor size is balanced; a size replaces that of the quality.
+/// A scene with neither quality nor size is balanced; a size overrides the size of the quality.
 #[test]
 fn a_scene_has_a_quality() {
     for (text, lines, size) in [
@@ -429,6 +430,6 @@ fn several_scenes_need_what_each_needs() {
     );
     assert_eq!(built_in("menger").unwrap().needs().fields.unwrap().lanes, 4);
     let demo = built_in("demo").unwrap().needs();
-    // No scene needs the flash block.
+    // No scene requires the flash block.
     assert_eq!(demo.blocks.len(), Block::ALL.len() - 1);
 }

@@ -130,7 +130,7 @@ fn an_extension_says_what_is_written() {
 #[test]
 fn an_output_is_checked_before_the_work() {
     let folder = folder("checked");
-    // The port does not exist, and would be an error later.
+    // The port does not exist: opening it would be a later error.
     for command in [
         "render cube --out gone/a.png",
         "render cube --out /dev/null --stats gone/a.json",
@@ -162,7 +162,8 @@ fn a_link_stays_and_permissions_too() {
     assert_eq!(names(&folder), ["file.glm", "link.glm"]);
 }
 
-/// A file that is not empty is replaced only with `--force`, for every command, before any work; an empty file is replaced.
+/// Every command replaces a file that is not empty only with `--force`, and checks this before any work; an empty file is
+/// replaced.
 #[test]
 fn a_file_with_contents_is_kept() {
     let folder = folder("kept");

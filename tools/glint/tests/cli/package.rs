@@ -1,4 +1,4 @@
-//! The package as `cargo install` sees it.
+//! Tests of the package that `cargo install` uses.
 
 use std::process::Command;
 

@@ -1,11 +1,11 @@
-//! Scenes with options, and scenes that cannot be shown.
+//! Scenes with options, and scenes that cannot be drawn.
 
 use crate::common::{drawn, files_refused, folder, glint, refused, succeed};
 
 const LAMP: &str =
     "title = \"Lamp\"\nfield = \"union:box:2,2,0.1+sphere:0.6\"\ncamera = \"4 30 70\"\n";
 
-/// A scene that no board shows is bad input of every command, with its name and the reason.
+/// A scene that no board can draw is bad input for every command; the error names the scene and the reason.
 #[test]
 fn scenes_that_cannot_be_shown() {
     let folder = folder("scenes-refused");
@@ -33,7 +33,7 @@ fn scenes_that_cannot_be_shown() {
     assert!(!folder.join("a.png").exists());
 }
 
-/// The options of the lens apply to the camera of a scene.
+/// The lens options apply to the camera of a scene.
 #[test]
 fn the_lens_of_a_scene() {
     let folder = folder("scene-lens");
@@ -47,7 +47,7 @@ fn the_lens_of_a_scene() {
     assert!(narrow == render("narrow.toml --camera 4,30,70 --fov 30"));
 }
 
-/// An option that a scene states already is refused, not ignored.
+/// An option that a scene also sets is rejected, not ignored.
 #[test]
 fn options_that_a_scene_states() {
     let folder = folder("scene-options");
@@ -79,7 +79,8 @@ fn options_that_a_scene_states() {
     assert!(!folder.join("a.png").exists());
 }
 
-/// Two eyes as a key of a scene are those of the option, with meshes, objects, and a mesh in a field; the depths are the left eye's.
+/// The key `stereo` of a scene has the effect of the option, for meshes, objects, and a mesh in a field; the depths are those of
+/// the left eye.
 #[test]
 fn two_eyes() {
     let folder = folder("scene-two-eyes");
@@ -114,7 +115,7 @@ fn two_eyes() {
     }
 }
 
-/// The quality of a scene is its key or the option; a size replaces that of either.
+/// The quality of a scene comes from its key or the option; a size overrides the size of the quality.
 #[test]
 fn quality_of_a_scene() {
     let folder = folder("scene-quality");

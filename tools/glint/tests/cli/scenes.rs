@@ -1,9 +1,10 @@
-//! The scene that docs/scenes.md writes from nothing: each command of the page works on its file as it stands there.
+//! Follows the tutorial in docs/scenes.md, which writes a scene from scratch: each command of the page works on the scene file of
+//! the page.
 
 use crate::common::{folder, json, picture, said, succeed};
 use std::path::Path;
 
-/// The first code block of the page in a language.
+/// The first code block of the page in the given language.
 fn block<'p>(page: &'p str, language: &str) -> &'p str {
     let (_, rest) = page.split_once(&format!("```{language}\n")).unwrap();
     rest.split_once("```").unwrap().0
@@ -15,7 +16,7 @@ fn a_scene_from_nothing() {
     let page = std::fs::read_to_string(root.join("docs/scenes.md")).unwrap();
     let folder = folder("scene-from-nothing");
     std::fs::write(folder.join("lamp.toml"), block(&page, "toml")).unwrap();
-    // The commands of the table, in the first column, whose other column says what they do.
+    // The commands in the first column of the table; its other column describes them.
     let commands: Vec<&str> = page
         .lines()
         .filter_map(|line| line.strip_prefix("| `glint "))
@@ -38,7 +39,7 @@ fn a_scene_from_nothing() {
     }
     assert!(run("scene list").contains("menger"));
     succeed(&folder, &format!("{} --stats lamp.json", command("render")));
-    // The sphere above the floor in the middle, the sky in the upper corners.
+    // The sphere above the floor is in the middle of the picture, the sky in the upper corners.
     let pixels = picture(&folder.join("lamp.png"));
     let pixel = |x: usize, y: usize| &pixels[3 * (640 * y + x)..][..3];
     assert_eq!(pixels.len(), 3 * 640 * 360);

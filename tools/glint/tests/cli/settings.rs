@@ -1,9 +1,9 @@
-//! Defaults from the environment and from the configuration file, ports, and how much the program prints.
+//! Defaults from the environment and from the configuration file, ports, and the amount of output.
 
 use crate::common::{all_refused, folder, glint, glint_in, report, said, succeed, words};
 use std::path::Path;
 
-/// The error of an upload to a serial port that does not exist, which names the port.
+/// The error of an upload to a serial port that does not exist; it names the port.
 fn error(folder: &Path, arguments: &str, variables: &[(&str, &str)]) -> String {
     let output = glint_in(folder, arguments, variables);
     let error = String::from_utf8(output.stderr).unwrap();
@@ -32,7 +32,7 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
         ("info", &variable, "environment"),
         ("imu calibrate", &[], "file"),
         ("gesture mask --out x.png", &[], "file"),
-        // An empty variable is none.
+        // An empty variable counts as unset.
         (upload, &[("GLINT_BOARD", "")], "file"),
     ] {
         let error = error(&folder, command, variables);
@@ -52,12 +52,12 @@ fn an_option_goes_before_the_environment_and_that_before_the_file() {
     let damaged = error(&folder, upload, &[]);
     let start = format!("error: {}: expected board = \"NAME\"", file.display());
     assert!(damaged.starts_with(&start), "{damaged}");
-    // Commands that need no board do not read the file.
+    // Commands that use no board do not read the file.
     succeed(&folder, "model cube cube.obj");
 }
 
-/// Labels of errors and warnings have the colours of clap's where a terminal shows them, and nowhere else. A standard error that takes
-/// nothing does not hide the exit code.
+/// Labels of errors and warnings have the colours of clap's labels on a terminal only. A standard error that accepts no output
+/// does not change the exit code.
 #[test]
 fn colours() {
     let folder = folder("colours");
@@ -86,7 +86,7 @@ fn colours() {
     assert_eq!(command.status().unwrap().code(), Some(2));
 }
 
-/// Options that do nothing with the chosen board are refused.
+/// Options that do not apply to the chosen board are rejected.
 #[test]
 fn options_of_another_board() {
     let folder = folder("useless-options");
@@ -132,14 +132,14 @@ fn ports_are_listed() {
     let folder = folder("ports");
     let ports = report(&folder, "ports");
     let lines = succeed(&folder, "ports");
-    // Without a port there is one line too.
+    // Without a port the command also prints one line.
     assert_eq!(
         lines.lines().count(),
         ports.as_array().unwrap().len().max(1)
     );
 }
 
-/// Warnings are usual, `--quiet` leaves them out, and `--verbose` adds the steps with their times.
+/// Warnings are printed by default, `--quiet` omits them, and `--verbose` adds the steps with their times.
 #[test]
 fn quiet_and_verbose() {
     let folder = folder("loudness");
@@ -162,7 +162,7 @@ fn quiet_and_verbose() {
     assert!(verbose.contains(&usual));
 }
 
-/// There is a manual page for the program and for each command, which names the command's options.
+/// The program and each command have a manual page, which names the command's options.
 #[test]
 fn manual_pages() {
     let folder = folder("man");
@@ -170,13 +170,13 @@ fn manual_pages() {
     let page = |name: &str| {
         let text = std::fs::read_to_string(folder.join("pages/man1").join(name)).unwrap();
         assert!(text.contains(".TH"), "{name}");
-        // roff has a backslash before each hyphen.
+        // roff writes a backslash before each hyphen.
         text.replace('\\', "")
     };
     assert!(page("glint.1").contains("glint-render(1)"));
     assert!(page("glint-render.1").contains("--supersample"));
     assert!(page("glint-imu-replay.1").contains("--follow-bias"));
-    // Pages are outputs like others.
+    // Manual pages follow the rules for output files.
     let again = glint(&folder, "man pages/man1");
     let error = String::from_utf8(again.stderr).unwrap();
     assert!(error.contains("or --force to replace it"), "{error}");

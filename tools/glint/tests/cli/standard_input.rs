@@ -1,4 +1,4 @@
-//! `-` instead of an input file: standard input.
+//! Reads input files from standard input, by the name `-`.
 
 use crate::common::{VIEW, folder, succeed};
 use std::fs;
@@ -17,7 +17,7 @@ fn glint(folder: &Path, arguments: &str, input: &str) -> Output {
 
 const SCENE: &str = "title = \"A box\"\nfield = \"box:1,1,1\"\ncamera = \"4 30 60\"\n";
 
-/// Scenes, cameras, wireframe programs and recordings of the motion sensor from standard input do what they do from a file.
+/// Scenes, cameras, wireframe programs and logs of the motion sensor have the same effect from standard input as from a file.
 #[test]
 fn scenes_cameras_programs_and_recordings() {
     let folder = folder("standard-input");
@@ -50,7 +50,7 @@ fn scenes_cameras_programs_and_recordings() {
     assert_eq!(checked.stdout, b"-: valid\n");
 }
 
-/// An error in standard input names it as `-`, with the line; input without an end is refused.
+/// An error in standard input names the input `-` and the line; endless input is rejected.
 #[test]
 fn errors_of_scenes() {
     let folder = folder("standard-input-errors");

@@ -1,4 +1,4 @@
-//! Files with additional content that their format does not define: loaded, each with a warning.
+//! Files with content that their format does not define are loaded, with a warning for each such content.
 
 use crate::common::{SQUARE, folder, picture, said, succeed};
 use std::fs;
@@ -7,7 +7,7 @@ use std::path::Path;
 const STL: &str = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
 const PLY: &str = "ply\nformat ascii 1.0\nauthor a b\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty list uchar int rings\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n0 0 0 1 7\n1 0 0 0\n0 1 0 0\n3 0 1 2 2 0.5 0.5\n";
 
-/// Renders a model, and returns the lines of warning.
+/// Renders a model, and returns the warning lines.
 fn warnings(folder: &Path, model: &str) -> Vec<String> {
     let [_, error] = said(
         folder,

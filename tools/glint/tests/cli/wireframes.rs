@@ -47,7 +47,7 @@ fn programs_of_meshes() {
         let dropped = "dropped    0 edges without a length at 2^-11";
         assert_eq!(text, format!("written    {segments} segments\n{dropped}\n"));
     }
-    // An STL shares no points: each of the 12 triangles of a cube has its own, so the 6 diagonals are edges too.
+    // An STL shares no points: each of a cube's 12 triangles has its own points, so the 6 diagonals are edges too.
     succeed(&folder, "model cube cube.stl");
     let json = report(&folder, "wireframe make cube.stl --out a.wft");
     assert_eq!(json["segments"], 18);
@@ -110,7 +110,7 @@ fn pictures_after_keys() {
         (text, picture(&folder.join("a.png")))
     };
     let (text, still) = render("");
-    // At z = 1 the scale is 2/3 of that in the view plane, 160 pixels a unit.
+    // At z = 1 the scale is 2/3 of the scale in the view plane, which is 160 pixels per unit.
     assert_eq!(text, "segments   2 in, 2 drawn as lines, 428 pixels\n");
     assert_eq!(still.len(), 3 * 640 * 360);
     let count = |colour: [u8; 3]| still.chunks(3).filter(|pixel| *pixel == colour).count();

@@ -1,4 +1,4 @@
-//! The page with the board in it, from a web server for files. Needs the build of `cargo xtask web`.
+//! The page with its own board in WebAssembly, from a file server. Requires the build of `cargo xtask web`.
 
 use crate::browser::Browser;
 use crate::page::exercise;
@@ -6,10 +6,10 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-/// The folder of `cargo xtask web`.
+/// The output folder of `cargo xtask web`.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target/web");
 
-/// Python's web server for files, with the page.
+/// Python's web server for files, which serves the page.
 pub struct Files {
     child: Child,
     /// Address of the page.
@@ -44,7 +44,7 @@ impl Files {
 
 impl Drop for Files {
     fn drop(&mut self) {
-        // The server has ended already, if the test has failed because of that.
+        // The server has already ended if that made the test fail.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -61,7 +61,7 @@ fn the_board_runs_in_the_browser() {
         "getComputedStyle(document.getElementById('control')).display === 'none'",
     );
 
-    // Without its firmware the page says why it does not run.
+    // Without its firmware, the page states why the board does not run.
     let folder = tempfile::tempdir().unwrap();
     for file in std::fs::read_dir(FOLDER).unwrap() {
         let file = file.unwrap();

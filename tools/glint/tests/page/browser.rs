@@ -1,4 +1,4 @@
-//! Chromium without a window, by the DevTools protocol.
+//! A headless Chromium, controlled by the DevTools protocol.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -12,7 +12,7 @@ use tungstenite::{Message, WebSocket};
 /// Time-out of a condition.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A browser that runs without a window.
+/// A headless browser.
 pub struct Browser {
     child: Child,
     socket: WebSocket<TcpStream>,
@@ -75,7 +75,7 @@ impl Browser {
         }
     }
 
-    /// Calls a method of the protocol, for a page or for the browser, and returns its result.
+    /// Calls a method of the protocol on a page or on the browser, and returns its result.
     pub fn call(&mut self, page: Option<&Page>, method: &str, parameters: Value) -> Value {
         self.calls += 1;
         let mut call = json!({ "id": self.calls, "method": method, "params": parameters });
@@ -92,7 +92,7 @@ impl Browser {
         }
     }
 
-    /// Reads a message of the browser, and counts the pages that have been loaded.
+    /// Reads a message of the browser, and counts the loaded pages.
     fn read(&mut self, wanted: &str) -> Value {
         loop {
             let message = self.socket.read();
@@ -120,7 +120,7 @@ impl Browser {
         page
     }
 
-    /// The value of an expression in a page.
+    /// Evaluates an expression in a page.
     pub fn evaluate(&mut self, page: &Page, expression: &str) -> Value {
         let parameters =
             json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
@@ -133,7 +133,7 @@ impl Browser {
         found["result"]["value"].take()
     }
 
-    /// Waits until a condition holds in a page, and fails after 20 s.
+    /// Waits until a condition is true in a page; fails after 20 s.
     pub fn wait(&mut self, page: &Page, condition: &str) {
         let look = format!(
             "new Promise((done) => {{ const look = () => ({condition}) ? done(true) : setTimeout(look, 5); look(); }})"
@@ -141,7 +141,7 @@ impl Browser {
         self.evaluate(page, &look);
     }
 
-    /// Types a text into the element that has the focus, and presses Enter.
+    /// Types a text into the focused element, and presses Enter.
     pub fn type_line(&mut self, page: &Page, text: &str) {
         self.call(Some(page), "Input.insertText", json!({ "text": text }));
         self.press(page, "Enter", "\r");
@@ -156,14 +156,14 @@ impl Browser {
         }
     }
 
-    /// Moves the mouse, or its button, at a position of the page.
+    /// Moves the mouse, or presses or releases its button, at a position of the page.
     pub fn mouse(&mut self, page: &Page, kind: &str, [x, y]: [f64; 2]) {
         let buttons = u8::from(kind != "mouseReleased");
         let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "buttons": buttons, "clickCount": 1 });
         self.call(Some(page), "Input.dispatchMouseEvent", event);
     }
 
-    /// A picture of the page as a PNG file.
+    /// Returns a screenshot of the page as PNG.
     pub fn picture(&mut self, page: &Page) -> Vec<u8> {
         let picture = self.call(
             Some(page),
@@ -173,7 +173,7 @@ impl Browser {
         STANDARD.decode(picture["data"].as_str().unwrap()).unwrap()
     }
 
-    /// The middle of an element on the page.
+    /// Returns the position of an element's middle on the page.
     pub fn middle(&mut self, page: &Page, selector: &str) -> [f64; 2] {
         let place = self.evaluate(
             page,
@@ -188,7 +188,7 @@ impl Browser {
 
 impl Drop for Browser {
     fn drop(&mut self) {
-        // The browser has ended already, if the test has failed because of that.
+        // The browser has already ended if that made the test fail.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }

@@ -1,4 +1,4 @@
-//! The page in a browser.
+//! Tests of the page's controls in a browser.
 
 use crate::browser::{Browser, Page};
 use crate::served::Served;
@@ -9,16 +9,16 @@ use glint::console::Console;
 use glint::convert::Options;
 use std::path::{Path, PathBuf};
 
-/// The colours on the canvas of a page, as text.
+/// The pixels of a page's canvas, as text.
 const CANVAS: &str = "(() => { const canvas = document.getElementById('monitor'); \
     const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height); \
     let text = ''; for (let i = 0; i < data.length; i += 30000) text += String.fromCharCode(...data.subarray(i, i + 30000)); \
     return btoa(text); })()";
 
-/// The command for the camera of most pictures.
+/// Sets the camera of most pictures.
 const CAMERA: &str = "camera 2.5 -30 75";
 
-/// Waits until the picture in the page equals that on the monitor of a board, bit for bit.
+/// Waits until the picture in the page is bit-identical to the picture on a board's monitor.
 fn wait_for_picture(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<EmulatedBoard>) {
     let frame = board.inner().capture().pixels;
     let widened = frame.iter().flat_map(|&colour| {
@@ -30,7 +30,7 @@ fn wait_for_picture(browser: &mut Browser, page: &Page, board: &mut SimulatedBoa
     browser.wait(page, &format!("{CANVAS} === expected"));
 }
 
-/// Types commands on a page, and gives them to a board.
+/// Types commands on a page, and sends them to another board.
 fn command_both(
     browser: &mut Browser,
     page: &Page,
@@ -52,7 +52,7 @@ fn command(browser: &mut Browser, page: &Page, commands: &[&str]) {
     }
 }
 
-/// Uses all controls of a page that has been opened. Returns a board that shows the same picture, bit for bit.
+/// Uses all controls of an opened page. Returns a board with a bit-identical picture.
 pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBoard> {
     let mut board = board::emulated(&built_firmware(None).unwrap()).unwrap();
     Console::new(&mut board).greet().unwrap();
@@ -80,7 +80,7 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
         browser.wait(page, &format!("/{name} [0-9]/.test({caption})"));
     }
 
-    // A field that is chosen is shown.
+    // Choosing a field draws it.
     command(browser, page, &["imu off", "gesture off"]);
     let scene = ["scene cube", "quality fast", CAMERA];
     command_both(browser, page, &mut board, &scene);
@@ -94,7 +94,7 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
     command_both(browser, page, &mut board, &["render"]);
     wait_for_picture(browser, page, &mut board);
 
-    // A dropped mesh is shown.
+    // Dropping a mesh draws it.
     command_both(browser, page, &mut board, &["field off"]);
     drop_a_mesh(browser, page, &mut board);
     command_both(browser, page, &mut board, &["render"]);
@@ -111,7 +111,7 @@ pub fn exercise(browser: &mut Browser, page: &Page) -> SimulatedBoard<EmulatedBo
     board
 }
 
-/// Completes a command, and repeats an earlier one.
+/// Completes a command, and recalls an earlier command.
 fn complete_and_repeat(browser: &mut Browser, page: &Page) {
     browser.call(
         Some(page),
@@ -126,7 +126,7 @@ fn complete_and_repeat(browser: &mut Browser, page: &Page) {
     );
     browser.press(page, "ArrowUp", "");
     browser.wait(page, "document.getElementById('line').value === 'render'");
-    // A pasted line may have tabs.
+    // A pasted line may contain tabs.
     browser.evaluate(
         page,
         "document.getElementById('line').value = 'leds\\t2'; document.getElementById('command').requestSubmit()",
@@ -164,7 +164,7 @@ fn use_pins(browser: &mut Browser, page: &Page) {
     );
 }
 
-/// Turns the sensor, and with it the camera, with the mouse and by the orientation of a device.
+/// Turns the sensor, and with it the camera, by the mouse and by the orientation of a device.
 fn turn_the_sensor(browser: &mut Browser, page: &Page) {
     command(browser, page, &["imu look"]);
     let angle = "Number(document.querySelector('#curve-attitude span')?.textContent.split(' ')[1])";
@@ -187,7 +187,7 @@ fn turn_the_sensor(browser: &mut Browser, page: &Page) {
     browser.evaluate(page, "document.getElementById('device').click()");
 }
 
-/// Moves the hand, and with it the camera, with the mouse. Each move gives several pictures.
+/// Moves the hand, and with it the camera, by the mouse. Each move gives several pictures.
 fn move_the_hand(browser: &mut Browser, page: &Page) {
     command(browser, page, &["scene holoforge"]);
     let hand = browser.middle(page, "#hand");
@@ -207,7 +207,7 @@ fn move_the_hand(browser: &mut Browser, page: &Page) {
 fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<EmulatedBoard>) {
     let mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     let name = "corner.obj";
-    // The page takes the mesh from among other files.
+    // The page selects the mesh among several dropped files.
     let file = format!(
         "const data = new DataTransfer(); data.items.add(new File(['newmtl a'], 'corner.mtl')); \
          data.items.add(new File([{mesh:?}], '{name}'))"
@@ -226,12 +226,12 @@ fn drop_a_mesh(browser: &mut Browser, page: &Page, board: &mut SimulatedBoard<Em
     glint::transfer::upload(&mut console, &model.mesh, None, 1, &mut |_, _| {}).unwrap();
 }
 
-/// The picture of the page in the documents.
+/// The screenshot of the page in the documentation.
 fn documented() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/pictures/page.png")
 }
 
-/// With `GLINT_UPDATE` in the environment, replaces the picture of the page in the documents.
+/// With the environment variable `GLINT_UPDATE`, replaces the screenshot in the documentation.
 #[test]
 fn a_board_in_a_browser() {
     let served = Served::start("page-browser");
@@ -243,7 +243,7 @@ fn a_board_in_a_browser() {
         std::fs::write(documented(), browser.picture(&page)).unwrap();
     }
 
-    // A second page, on a narrow display, sees the same picture, and cannot steer.
+    // A second page, on a narrow display, shows an identical picture, and cannot control the board.
     let second = browser.open(&served.url);
     browser.call(
         Some(&second),

@@ -1,14 +1,14 @@
-//! Requests and messages that are refused, and the board that continues.
+//! Tests that invalid requests and messages are rejected, and that the board continues.
 
 use crate::served::{Served, wait_for};
 use std::io::{Read, Write};
 use tungstenite::http::StatusCode;
 use tungstenite::{Error, Message};
 
-/// Number of bytes of rubbish.
+/// Number of bytes of invalid data.
 const RUBBISH: usize = 10_000_000;
 
-/// The first line of the answer to a request.
+/// The first line of the reply to a request.
 fn answer(served: &Served, request: &str) -> String {
     let mut stream = served.connect();
     stream.write_all(request.as_bytes()).unwrap();
@@ -63,13 +63,13 @@ fn rubbish_does_no_harm() {
     let mut viewer = served.viewer();
     wait_for(&mut viewer, r#""holder":"you""#);
 
-    // Data that is not a frame of the protocol, after the handshake and before it.
+    // Sends bytes that are not a frame of the protocol, after the handshake and before it.
     let rubbish: Vec<u8> = (0..RUBBISH).map(|i| ((i * i) >> 7) as u8).collect();
     let mut other = served.viewer();
-    // The server closes the connection before all of it is written.
+    // The server closes the connection before all bytes are written.
     let _ = other.get_mut().write_all(&rubbish);
     let _ = served.connect().write_all(&rubbish);
-    // Messages that are too long, and no messages of the page.
+    // Sends messages that are too long, and messages of an unknown type.
     let texts = [
         "x",
         "{}",
@@ -91,7 +91,7 @@ fn rubbish_does_no_harm() {
         assert!(ended);
     }
 
-    // A viewer without control is not obeyed, and the first viewer still is.
+    // Messages from a viewer without control have no effect; the first viewer keeps control.
     let mut second = served.viewer();
     wait_for(&mut second, r#""holder":"other""#);
     let line = |line: &str| Message::text(format!(r#"{{"type":"command","line":"{line}"}}"#));

@@ -9,7 +9,7 @@ use tungstenite::Message;
 
 const SCENE: &str = "scene cube";
 
-/// The colours that a board without a page sends for the scene.
+/// The pixels that a board without a page sends for the scene.
 fn expected() -> Vec<u8> {
     let mut board = board::emulated(&built_firmware(None).unwrap()).unwrap();
     let mut console = Console::new(&mut board);

@@ -1,4 +1,4 @@
-//! `glint board` in a separate process, with an emulated board.
+//! `glint board` in a separate process, with an emulated board and its page.
 
 use std::io::{BufRead, BufReader};
 use std::net::TcpStream;
@@ -9,10 +9,10 @@ use tungstenite::client::IntoClientRequest;
 use tungstenite::http::HeaderValue;
 use tungstenite::{Message, WebSocket};
 
-/// Time-out of an answer.
+/// Time-out of a reply.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// A board with its page.
+/// A board that serves its page.
 pub struct Served {
     child: Child,
     /// Address of the page, or of the serial port.
@@ -20,7 +20,7 @@ pub struct Served {
 }
 
 impl Served {
-    /// Starts an emulated board, whose ready file has this name.
+    /// Starts an emulated board whose ready file has this name.
     pub fn start(name: &str) -> Self {
         Self::start_with(name, &["--web"])
     }
@@ -53,7 +53,7 @@ impl Served {
         stream
     }
 
-    /// Opens the page's socket as a program that sends `origin`.
+    /// Opens the page's socket with the header field `Origin` set to `origin`.
     pub fn socket(&self, origin: &str) -> tungstenite::Result<WebSocket<TcpStream>> {
         let url = format!("{}socket", self.url.replace("http:", "ws:"));
         let mut request = url.into_client_request().unwrap();
@@ -66,7 +66,7 @@ impl Served {
         }
     }
 
-    /// The page's socket, opened as the page does.
+    /// Opens the page's socket with the header fields of the page.
     pub fn viewer(&self) -> WebSocket<TcpStream> {
         self.socket(&format!("http://{}", self.host())).unwrap()
     }
@@ -74,13 +74,13 @@ impl Served {
 
 impl Drop for Served {
     fn drop(&mut self) {
-        // The program has ended already, if the test has ended it.
+        // The program has already ended if the test has ended it.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
 }
 
-/// Reads texts until one contains `wanted`, and returns it.
+/// Reads text messages until one contains `wanted`, and returns it.
 pub fn wait_for(socket: &mut WebSocket<TcpStream>, wanted: &str) -> String {
     let end = Instant::now() + 3 * PATIENCE;
     loop {

@@ -20,7 +20,7 @@ use glint_core::wire::Manifest;
 use crate::{Replies, compare_triangles, read, send};
 use glint_vectors::Camera;
 
-/// Longest pause in the firmware's output that the console accepts, in board time.
+/// Longest accepted pause in the firmware's output, in the board's time.
 const PATIENCE_MS: u64 = 4000;
 
 /// Representative fields.
@@ -40,7 +40,7 @@ const FIELDS: [&str; 13] = [
     "smooth:0.3,menger:1+sphere:1.2",
 ];
 
-/// Returns all tested fields: those of `FIELDS`, and an example of each kind of field that `FIELDS` lacks.
+/// Returns all tested fields: the fields in `FIELDS`, and an example of each kind of field that is not in `FIELDS`.
 fn fields() -> Vec<&'static str> {
     let kind = |text: &&str| text.split(':').next().map(str::to_owned);
     let is_new = |text: &&str| !FIELDS.iter().any(|other| kind(other) == kind(text));
@@ -52,8 +52,8 @@ fn looking(eye: [f64; 3], target: [f64; 3], half_width: f64, near: f64) -> View 
     Camera::looking(eye, target, half_width, near).rounded()
 }
 
-/// Returns cameras outside of the sponge, close to it, and in its hole. They look down, because rays near the horizon would
-/// take ten times as many evaluations, and the simulation of each evaluation takes time.
+/// Returns cameras outside the sponge, close to it, and in its hole. The cameras look down, because rays near the horizon would
+/// take ten times as many evaluations, which are slow to simulate.
 fn views() -> [View; 3] {
     [
         looking([2.2, 1.7, 1.3], [0.0; 3], 0.9, 0.1),
@@ -62,7 +62,7 @@ fn views() -> [View; 3] {
     ]
 }
 
-/// Returns the settings for one eye, and for two eyes with each of the tints (pairs of colours for the eyes).
+/// Returns the settings for one eye, and for two eyes with each tint (a pair of colours for the eyes).
 fn eyes() -> [Option<Stereo>; 3] {
     let stereo = |tint| Stereo {
         half_separation: Q32_32::lit("0.03"),
@@ -100,8 +100,8 @@ fn compare(console: &mut Console<SimulatedBoard>, frame: &Frame, with_depth: boo
     compare_picture(console, &replies, &name, &image, with_depth);
 }
 
-/// Returns the console commands that draw `frame`; if the frame has a mesh, it must be loaded already. The commands are to
-/// be sent in one write, so that the firmware does not draw a frame between two of them.
+/// Returns the console commands that draw `frame`; a mesh of the frame must already be loaded. The commands must be sent in one
+/// write, so that the firmware draws no frame between two commands.
 fn lines(frame: &Frame, with_depth: bool) -> Vec<String> {
     let mut lines = render::commands(frame, "model", |_| String::new()).unwrap();
     lines.push(format!("render{}", if with_depth { " depth" } else { "" }));
@@ -146,15 +146,15 @@ pub fn compare_picture(
     }
 }
 
-/// Whether the environment variable `GLINT_RTL_FIELDS` asks for more combinations of fields, cameras and sizes, which take
-/// long.
+/// Whether the environment variable `GLINT_RTL_FIELDS` requests more combinations of fields, cameras and sizes, which take a long
+/// time.
 fn all() -> bool {
     std::env::var("GLINT_RTL_FIELDS").is_ok_and(|which| which == "all")
 }
 
-/// Draws every fourth field, each from one camera with one eye or two, and every second of these pictures with a prepass;
-/// also one field of each kind that `FIELDS` lacks. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye
-/// and with two eyes, and from one camera also with a prepass.
+/// Draws every fourth field from one camera with one or two eyes, every second of these pictures with a prepass; also one field
+/// of each kind that is not in `FIELDS`. With `GLINT_RTL_FIELDS=all`, draws all fields from all cameras, with one eye and with
+/// two eyes, and from one camera also with a prepass.
 #[test]
 fn the_soc_draws_every_field() {
     let mut board = board();
@@ -162,10 +162,10 @@ fn the_soc_draws_every_field() {
     console.greet().unwrap();
     for (number, text) in fields().into_iter().enumerate() {
         let field = Field::parse(text).unwrap();
-        // Fields of the kinds that `FIELDS` lacks are always drawn.
+        // Fields of kinds that are not in `FIELDS` are always drawn.
         let is_further = number >= FIELDS.len();
         for (side, view) in views().iter().enumerate() {
-            // With two eyes, the tints alternate.
+            // The tints alternate between the pictures for two eyes.
             for stereo in [None, eyes()[1 + (number + side) % 2]] {
                 let once = side == number % 3;
                 let in_turn = once && stereo.is_some() == ((number / 4 + side) % 2 == 0);
@@ -230,7 +230,7 @@ fn the_soc_draws_large_fields_and_goes_back_to_meshes() {
     }
 }
 
-/// Copies a mesh into the board's staging memory; returns the `load` command that takes the mesh from there.
+/// Copies a mesh to the board's staging memory; returns the `load` command for the mesh.
 pub fn load(console: &mut Console<SimulatedBoard>, mesh: &[u8]) -> String {
     let Manifest { length, crc32 } = Manifest::of(mesh);
     let staging = send(console, &["info".to_owned()]).address("staging");
@@ -308,7 +308,7 @@ fn the_soc_draws_a_mesh_in_a_field() {
     if !all() {
         return;
     }
-    // The command `bench` draws eight frames one after the other, without waiting for the monitor to show them.
+    // The command `bench` draws eight frames without waiting for the monitor between them.
     let replies = send(
         &mut console,
         &["bench field".to_owned(), "info scene".to_owned()],

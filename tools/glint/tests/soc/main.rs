@@ -1,10 +1,10 @@
 //! Compares the whole SoC, including its triangle engine, with glint-model: the pictures on the monitor, the depths in
 //! memory, and the counts of triangles.
 //!
-//! The tests need what `cargo xtask gateware` and `cargo xtask firmware` build; `cargo xtask test` builds it too.
+//! The tests require the builds of `cargo xtask gateware` and `cargo xtask firmware`; `cargo xtask test` makes them too.
 //!
-//! The board draws a frame while the monitor takes in the previous frame, so that each scene costs the time of one video
-//! frame. Video frames are the largest part of the test's time. In the chart, `d` stands for draw:
+//! The board draws a frame while the monitor captures the previous frame, so each scene takes the time of one video frame. Video
+//! frames take most of the test's time. In the chart, `d` stands for draw:
 //!
 //! ```text
 //! video   |      nothing      |   scene 0   |   scene 1   |   scene 2 ...
@@ -25,14 +25,14 @@ use glint_vectors::meshes;
 use glint_vectors::scenes::Scene;
 use rand_pcg::Pcg64Mcg;
 
-/// Returns the mesh of the generated model `name`, as bytes.
+/// Returns the bytes of the generated mesh `name`.
 fn generated(name: &str) -> Vec<u8> {
     let model = generate::named(name).expect("a model");
     let converted = convert::convert(&model, convert::Options::default());
     converted.expect("a mesh").0
 }
 
-/// Longest pause in the firmware's output that the console accepts, in board time.
+/// Longest accepted pause in the firmware's output, in the board's time.
 const PATIENCE_MS: u64 = 2000;
 
 /// Longest wait for a picture: the time of three video frames.
@@ -41,13 +41,13 @@ const MOST_WAIT_MS: u64 = 50;
 /// A board whose pictures are compared with an expected sequence.
 struct Watched {
     board: SimulatedBoard,
-    /// Factor by which scan-out enlarges the frame to the picture.
+    /// Factor by which scan-out enlarges a frame to the picture.
     scale: usize,
     /// Names and pixels of the expected frames, in order; the first frame is black.
     expected: Vec<(String, Vec<u16>)>,
     /// Number of expected frames that the monitor has shown.
     seen: usize,
-    /// Number of pictures that were compared.
+    /// Number of compared pictures.
     pictures: u64,
 }
 
@@ -55,14 +55,13 @@ impl Watched {
     /// Appends a frame to the expected frames.
     fn expect(&mut self, name: &str, frame: Vec<u16>) {
         match self.expected.last_mut() {
-            // Equal frames one after the other look like one frame on the monitor.
+            // Equal consecutive frames look like one frame on the monitor.
             Some((last, old)) if *old == frame => name.clone_into(last),
             _ => self.expected.push((name.to_owned(), frame)),
         }
     }
 
-    /// Takes a new picture, if any, and checks that it equals the expected frame that was shown last or the next one,
-    /// never a mix of both.
+    /// Takes a new picture, if any, and checks that it equals the current or the next expected frame, and never a mix of both.
     fn look(&mut self) {
         let Some(picture) = self.board.inner().monitor().take_picture() else {
             return;
@@ -114,7 +113,7 @@ impl Board for Watched {
     }
 
     fn read(&mut self, bytes: &mut Vec<u8>, wait_ms: u64) -> Result<(), BoardError> {
-        // Polls often enough to see every picture.
+        // Polls often enough to capture every picture.
         let (before, end) = (bytes.len(), self.now_ms() + wait_ms);
         while bytes.len() == before && self.now_ms() < end {
             self.board.read(bytes, 1)?;
@@ -223,7 +222,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let mut console = Console::new(&mut board).patience(PATIENCE_MS);
     console.greet().unwrap();
     send(&mut console, &["backend gateware".to_owned()]);
-    // The monitor takes its first picture in the middle of a video frame, while nothing is shown.
+    // The monitor captures its first picture in the middle of a video frame, before any frame is shown.
     console.board().board.inner().monitor().turn_on();
     let start = [&render::size_command(size), "render", "info"];
     let mut replies = send(&mut console, &start.map(str::to_owned));
@@ -235,7 +234,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
     let pixels = bytes.chunks_exact(2);
     let pixels = pixels.map(|pixel| u16::from_le_bytes([pixel[0], pixel[1]]));
     console.board().expect("the start", pixels.collect());
-    // The firmware's count of video frames when the last scene was drawn.
+    // The firmware's count of video frames at the last drawn scene.
     let mut drawn = replies.number("video_frames");
 
     for (name, mesh, view, cull) in scenes {
@@ -256,8 +255,8 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             let Rendered { image, stats } = render::on_model(&frame).unwrap();
             let mut lines = Vec::new();
             if number == 0 {
-                // First, because the picture follows the other lines while `load` looks at the bytes.
-                // The bytes are already in the staging memory, so `load` finds their CRC-32 correct and skips the transfer.
+                // `load` comes first, because it takes time to check the bytes; the picture follows the other lines quickly. The
+                // bytes are already in the staging memory, so `load` finds their CRC-32 correct and skips the transfer.
                 let Manifest { length, crc32 } = Manifest::of(&mesh);
                 let memory = console.board().memory().unwrap();
                 memory
@@ -273,7 +272,7 @@ fn draw(size: Size, scenes: Vec<Scene>) {
             ]);
             console.board().expect(&name, image.colour);
             replies = send(&mut console, &lines);
-            // Waits until the monitor shows the last frame, because `render` would otherwise replace it before.
+            // Waits until the monitor shows the last frame; otherwise `render` would replace it first.
             while replies.number("video_frames") == drawn {
                 console.board().wait_for_picture();
                 replies = send(&mut console, &["info".to_owned()]);
@@ -330,8 +329,8 @@ fn the_soc_draws_at_320x180() {
     draw(Size::W320, third(0));
 }
 
-/// Returns the sphere, of which several views are drawn, and every third of the other scenes, from number `first` on. The test of the
-/// triangle engine alone draws all scenes at all sizes.
+/// Returns the sphere, which is drawn in several views, and every third of the other scenes, starting with number `first`. The
+/// test of the triangle engine alone draws all scenes in all sizes.
 fn third(first: usize) -> Vec<Scene> {
     let scenes = scenes(true).into_iter().enumerate();
     let chosen = scenes.filter(|(number, (name, ..))| *name == "a sphere" || number % 3 == first);

@@ -1,6 +1,6 @@
 //! Compares frames of several objects on the whole SoC with glint-model: colours, depths and counts of triangles. The triangle
-//! engine takes a geometry pass for each object, and the firmware clips the exceptions of each. Shading is flat, as the gateware of
-//! the standard build draws it.
+//! engine makes a geometry pass for each object, and the firmware clips the exceptions of each object. Shading is flat, the
+//! shading of the standard gateware build.
 
 use glint::console::Console;
 use glint::render::{self, Frame, MeshSubject, Rendered, Subject, on_model};
@@ -16,11 +16,11 @@ use glint_vectors::Camera;
 use crate::fields::{board, compare_picture, load};
 use crate::{compare_triangles, generated, send};
 
-/// Longest pause in the firmware's output that the console accepts, in board time.
+/// Longest accepted pause in the firmware's output, in the board's time.
 const PATIENCE_MS: u64 = 4000;
 
-/// The places of objects that the gateware draws. The first object is around the eye of the last camera, and others cross its near
-/// plane, so that triangles of several objects are clipped.
+/// Placements of the objects that the gateware draws. The first object is around the eye of the last camera, and others cross its
+/// near plane, so that triangles of several objects are clipped.
 const OBJECTS: [&str; 5] = [
     "scale 1.7 rotate x 20",
     "scale 0.3 rotate z 30 move 0.4,0.3,0.1",
@@ -29,7 +29,7 @@ const OBJECTS: [&str; 5] = [
     "matrix 0.2,0,0,0,0.2,0,0,0,-0.2,0.3,-0.5,-0.2",
 ];
 
-/// An object whose normals a matrix turns, so that the engine draws a copy of its mesh.
+/// An object with a matrix that requires transformed normals, so that the engine draws a copy of its mesh.
 const STRETCHED: &str = "scale 0.2,0.4,0.1";
 
 #[test]
@@ -53,7 +53,7 @@ fn the_soc_draws_objects() {
             colour: place.colour,
         });
         send(&mut console, &[format!("object add model {text}")]);
-        // One object, all objects that the gateware draws, and one more.
+        // One object, all objects that the gateware draws, and one more object.
         if (1..OBJECTS.len() - 1).contains(&number) {
             continue;
         }
@@ -62,7 +62,7 @@ fn the_soc_draws_objects() {
             .map(|view| (view, Clip::Guard, Winding::Mesh))
             .collect();
         if number == OBJECTS.len() {
-            // Geometry passes lack the options of these frames, so that the CPU makes all descriptors.
+            // The geometry pass does not support the options of these frames, so the CPU makes all descriptors.
             let far = U8_28::lit("2.5");
             frames.extend([
                 (&views[0], Clip::View { far }, Winding::Mesh),
@@ -70,7 +70,7 @@ fn the_soc_draws_objects() {
             ]);
         }
         for (place, (view, clip, winding)) in frames.into_iter().enumerate() {
-            // The larger size only with all objects, and not where the CPU makes all descriptors, which takes long.
+            // The larger size is used only with all objects, and not if the CPU makes all descriptors, which takes a long time.
             let is_larger = number == OBJECTS.len() && place < views.len();
             let sizes = [Size::W320, Size::W640];
             for size in sizes.into_iter().take(1 + usize::from(is_larger)) {
@@ -113,8 +113,8 @@ fn the_soc_draws_objects() {
     }
 }
 
-/// Measures frames of one and of five objects with 4,900 triangles in all, back to back, and the cycles of the soft core that an object
-/// costs. The gateware needs smooth shading: `cargo xtask gateware --board virtual --smooth`.
+/// Measures back-to-back frames of one and of five objects with 4,900 triangles in total, and the soft core's cycles per object.
+/// Requires gateware with smooth shading: `cargo xtask gateware --board virtual --smooth`.
 #[test]
 #[ignore = "needs gateware with smooth shading"]
 fn five_objects_take_a_sixtieth_of_a_second() {
