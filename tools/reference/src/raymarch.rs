@@ -1,15 +1,15 @@
-//! Solids given by signed distance fields, in f64, and two independent methods to find where a ray hits a solid.
+//! Solids given by signed distance fields, in f64, and two independent methods for a ray's hit on a solid.
 //!
 //! - [`Field::distance`]: the distance of a point from a solid.
 //! - [`Field::traced`]: hits by sphere tracing, which uses only the distance.
-//! - [`Field::hit`]: hits computed from the geometry of each solid, exact apart from the rounding of f64.
+//! - [`Field::hit`]: hits computed from each solid's geometry, exact up to the rounding of f64.
 //! - [`views`]: cameras that look at the Menger sponge.
-//! - [`metrics`]: errors of a picture against the reference.
-//! - [`raymarched`]: pictures of Glint's raymarcher, in the form that `metrics` compares.
-//! - [`variant`]: other marching methods, for comparisons of their cost.
-//! - [`verilated`]: number of clocks and of distance evaluations that the verilated raymarcher takes for a picture.
+//! - [`metrics`]: errors of a picture compared with the reference.
+//! - [`raymarched`]: pictures of Glint's raymarcher as input of `metrics`.
+//! - [`variant`]: other marching methods, for comparisons of cost.
+//! - [`verilated`]: clocks and distance evaluations of the verilated raymarcher for a picture.
 //!
-//! For a ray that only touches a solid, or that lies in the plane of one of the solid's faces, a hit is right and so is a miss.
+//! For a ray that only touches a solid, or lies in the plane of one of its faces, both a hit and a miss are correct.
 
 mod distance;
 mod grid;
@@ -28,20 +28,20 @@ pub use trace::Unconverged;
 
 use crate::camera::{Ray, Vector};
 
-/// A solid of the world. Lengths are in world units.
+/// A solid. Lengths are in world units.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {
-    /// The Menger sponge that fills the cube from −1 to 1 in every axis.
+    /// The Menger sponge in the cube from −1 to 1 along every axis.
     Menger {
         /// Number of levels of holes, 1 to 6.
         depth: u32,
     },
     /// A box about the origin.
     Box {
-        /// Half of the side along each axis.
+        /// Half of the side length along each axis.
         half: Vector,
     },
-    /// A convex solid: the points that are behind all of the planes.
+    /// A convex solid: the points behind all planes.
     Convex(Vec<Plane>),
     /// The union of balls.
     Spheres(Vec<Sphere>),
@@ -56,7 +56,7 @@ pub enum Field {
     Cubes {
         /// Distance between the centres of neighbouring cubes.
         period: f64,
-        /// Half of each cube's side, at most half the period.
+        /// Half of each cube's side length, at most half the period.
         half: f64,
     },
     /// The solid outside a room of infinite width, which has its floor at z = −half and its ceiling at z = half.
@@ -66,10 +66,9 @@ pub enum Field {
     },
     /// The union of two fields.
     Union(Box<Self>, Box<Self>),
-    /// The points that are in at least one of two fields, with a fillet where
-    /// their surfaces are close (the quadratic smooth minimum of Quilez).
+    /// The smooth union of two fields, with a fillet between surfaces close to each other (quadratic smooth minimum of Quilez).
     SmoothUnion {
-        /// Range of the fillet, which is present where the distances to the two members differ by less than `k`.
+        /// Range of the fillet: the fillet is present where the distances to the two members differ by less than `k`.
         k: f64,
         /// The first of the two members.
         a: Box<Self>,
@@ -79,11 +78,11 @@ pub enum Field {
 }
 
 impl Field {
-    /// Finds the first point of a ray that is in the solid and has a parameter from `t_min` to `t_max`. If the point at
-    /// `t_min` is in the solid already, the hit is at `t_min` and its face is [`Face::Inside`].
+    /// Finds the first point of a ray inside the solid, with a parameter from `t_min` to `t_max`. If the point at `t_min` is
+    /// inside the solid, the hit is at `t_min` and its face is [`Face::Inside`].
     ///
-    /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a
-    /// ray may pass between the balls or cubes forever.
+    /// `direction` may have any length but 0. For [`Field::Lattice`] and [`Field::Cubes`] `t_max` must be finite, because a ray
+    /// may never hit a ball or cube.
     ///
     /// # Panics
     /// When a ray runs close to a [`Field::SmoothUnion`] for too many steps (see [`Unconverged`]).

@@ -1,9 +1,9 @@
-//! Signed distances of points from solids. A signed distance is negative inside the solid, and outside it is not larger than
-//! the true distance to the surface.
+//! Signed distances from points to solids. A signed distance is negative inside the solid; outside, it is at most the true
+//! distance to the surface.
 //!
-//! Distances from flat solids (with plane faces) are in the maximum norm, distances from balls in the Euclidean norm. Between
-//! two points, the signed distance differs by at most the Euclidean distance of the points. So the ball about a point, with the
-//! point's signed distance as radius, contains no part of the solid.
+//! Distances to flat solids (with plane faces) are in the maximum norm, distances to balls in the Euclidean norm. The signed
+//! distances of two points differ by at most the points' Euclidean distance. So the ball about a point with the signed distance
+//! as radius does not intersect the solid.
 
 use super::{Field, Plane};
 use crate::camera::{Vector, dot, length, subtract};
@@ -39,22 +39,21 @@ impl Field {
 
 impl Plane {
     /// Returns the signed distance of a point from the plane, in the maximum norm: the scalar product minus the offset, divided
-    /// by the sum of the magnitudes of the normal's components. For, within a cube of half side r about the point, the scalar
-    /// product changes by up to r times this sum.
+    /// by the sum of the magnitudes of the normal's components. Within a cube of half side r about the point, the scalar product
+    /// changes by up to r times this sum.
     fn distance(&self, p: Vector) -> f64 {
         let sum: f64 = self.normal.iter().map(|part| part.abs()).sum();
         (dot(self.normal, p) - self.offset) / sum
     }
 }
 
-/// Returns the signed distance of a point from a box about the origin, in the maximum norm. `half` is half of the box's sides.
+/// Returns the signed distance of a point from a box about the origin, in the maximum norm. `half` has half of the box's side lengths.
 fn box_distance(half: Vector, p: Vector) -> f64 {
     let beyond = |axis: usize| p[axis].abs() - half[axis];
     beyond(0).max(beyond(1)).max(beyond(2))
 }
 
-/// Returns the position of a point relative to the nearest of the
-/// points whose coordinates are all integer multiples of the period.
+/// Returns the position of a point relative to the nearest lattice point, whose coordinates are integer multiples of the period.
 fn about_nearest(period: f64, p: Vector) -> Vector {
     p.map(|c| c - (c / period).round() * period)
 }
@@ -66,16 +65,15 @@ fn smooth_minimum(k: f64, a: f64, b: f64) -> f64 {
     a.min(b) - h * h * k / 4.0
 }
 
-/// Maps a point, by reflections and shifts, so that the nearest cube of the sponge's last level has its centre at the
-/// origin. Returns the mapped point, in units of that cube's side, and the cube's side in world units.
+/// Maps a point by reflections and shifts that move the centre of the nearest cube of the sponge's last level to the origin.
+/// Returns the mapped point, in units of that cube's side, and the cube's side in world units.
 ///
-/// Each level divides a cube into 27 cubes of side s, whose centres have the coordinates 0 and ±s. The point is mirrored so
-/// that all its coordinates are positive. Then it is expressed relative to the centre of the corner cube at (s, s, s), with
-/// each axis reversed, so that the middle of the divided cube is at (s, s, s). Of the three cubes that are in the middle along
-/// one axis, only the cube along the largest coordinate can be the nearest. So this coordinate is mirrored or shifted such that
-/// the nearer one of this cube and the corner cube has its centre at the origin. The cubes that are in the middle along two or
-/// three axes are holes of the sponge. Each step (a fold) keeps lengths on either side of a plane and is continuous across the
-/// plane. So the mapped point's distance changes by at most the length by which the original point moves.
+/// Each level divides a cube into 27 cubes of side s, with centres at coordinates 0 and ±s. The point is mirrored to positive coordinates.
+/// Then the centre of the corner cube at (s, s, s) becomes the origin and each axis is reversed, which moves the middle of the divided cube
+/// to (s, s, s). Of the three edge cubes, in the middle along one axis, only the cube in the middle along the axis of the largest
+/// coordinate can be nearest. So this coordinate is mirrored or shifted to move the centre of the nearer of this cube and the corner cube
+/// to the origin. The cubes in the middle along two or three axes are holes. Each step (a fold) keeps lengths on either side of a plane and
+/// is continuous across the plane. So the mapped point's distance changes by at most the movement of the original point.
 fn fold(depth: u32, p: Vector) -> (Vector, f64) {
     let side = 3f64.powi(depth as i32);
     let mut p = p.map(|c| c * side / 2.0);
@@ -101,7 +99,7 @@ mod tests {
 
     #[test]
     fn the_fold_gives_the_known_euclidean_distances() {
-        // Points with their distances from the sponge, both in units of 1/162 of the sponge's half side.
+        // Points and their distances from the sponge, in units of 1/162 of the sponge's half side.
         let cases = [
             ([0.0; 3], 76.37),
             ([0.0, 0.0, 80.0], 54.0),
@@ -120,7 +118,7 @@ mod tests {
         assert!(close([0.0; 3], 1.0 / 3.0));
         assert!(close([2.0, 0.0, 0.0], 1.0));
         assert!(close([-1.5, 3.0, 0.2], 2.0));
-        // First the middle of a small tunnel, then the middle of a small cube of the sponge beside that tunnel.
+        // The middle of a small tunnel, and the middle of a small cube of the sponge beside this tunnel.
         assert!(close([2.0 / 3.0, 1.0, 2.0 / 3.0], 1.0 / 9.0));
         assert!(close([8.0 / 9.0, 8.0 / 9.0, 8.0 / 9.0], -1.0 / 9.0));
     }
@@ -156,7 +154,7 @@ mod tests {
         let (a, b) = (ball(-2.0), ball(2.0));
         let union = Field::SmoothUnion { k: 0.5, a, b };
         assert_eq!(union.distance([0.0; 3]), 1.0 - 0.125);
-        // Where the distances to the balls differ by half of `k`, the fillet has a quarter of its largest thickness.
+        // Where the distances to the balls differ by `k`/2, the fillet has a quarter of its largest thickness.
         assert_eq!(union.distance([0.125, 0.0, 0.0]), 0.875 - 0.03125);
         assert_eq!(union.distance([-4.0, 0.0, 0.0]), 1.0);
     }

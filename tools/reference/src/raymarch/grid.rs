@@ -1,14 +1,13 @@
-//! Hits of rays on solids that repeat along all three axes.
+//! Hits of rays on solids repeated along all three axes.
 
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// Finds the first hit of a ray with copies of a solid. There is a copy about each point whose coordinates are integer
-/// multiples of the period, and this point is the copy's centre.
+/// Finds the first hit of a ray with copies of a solid. The copies' centres are the points whose coordinates are integer
+/// multiples of the period.
 ///
-/// `hit` returns the hit of a given ray with the copy about the origin. The cells around the centres are visited in the order
-/// in which the ray passes them, up to the parameter `t_max` (Amanatides and Woo 1987). Every point of a copy must be nearer
-/// to the copy's centre than to the centre of any other copy.
+/// `hit` returns the hit of a given ray with the copy about the origin. The cells around the centres are visited in the order along the
+/// ray, up to the parameter `t_max` (Amanatides and Woo 1987). Every point of a copy must be nearest to the copy's own centre.
 pub(super) fn nearest(
     period: f64,
     ray: &Ray,
@@ -26,7 +25,7 @@ pub(super) fn nearest(
             direction: ray.direction,
         };
         best = Hit::nearer(best, hit(&local));
-        // Each border is computed from the cell's number, because rounding errors would add up in a running sum.
+        // Each border is computed from the cell's index, because rounding errors would accumulate in a running sum.
         let border = |axis: usize| {
             let d = ray.direction[axis];
             if d == 0.0 {

@@ -1,14 +1,13 @@
 //! Hits of rays on the Menger sponge, by traversal of its cells.
 //!
-//! A cell of the last level has a number along each axis, from 0 to 3^depth − 1. It lies in one cell of each earlier level. In
-//! base 3, each digit of the number is the position (0, 1 or 2) of one of these cells in the cell of the level before. A cell
-//! with the digit 1 along two or three axes is a hole.
+//! A cell of the last level has an index along each axis, from 0 to 3^depth − 1. In base 3, each digit of the index is the position (0, 1
+//! or 2) of the enclosing cell of one level within that of the previous level. A cell with the digit 1 along two or three axes is a hole.
 
 use super::solids::Slabs;
 use super::surface::Hit;
 use crate::camera::Ray;
 
-/// Finds the first point of a ray in the sponge with a parameter of at least `t_min`.
+/// Finds the first point of a ray inside the sponge with a parameter of at least `t_min`.
 pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
     let slabs = Slabs::new([1.0; 3], ray)?;
     if slabs.exit <= t_min {
@@ -20,11 +19,11 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
             .map(|c| ((c + 1.0) / 2.0 * count as f64).floor() as i64)
     };
     let mut t = slabs.enter.max(t_min);
-    // Axis perpendicular to the face through which the ray has entered the current cell; `None` if the ray starts in this cell.
+    // Axis of the ray's entry face into the current cell; `None` if the ray starts in this cell.
     let mut entered = (slabs.enter >= t_min).then_some(slabs.axis);
     let mut cell = number(t).map(|i| i.clamp(0, count - 1));
     while let Some(side) = hole(cell, count) {
-        // Along each axis, the number of a hole's first cell is a multiple of the hole's side.
+        // Along each axis, the index of a hole's first cell is a multiple of the hole's side.
         let first = cell.map(|i| i / side * side);
         let border = |axis: usize| {
             let d = ray.direction[axis];
@@ -46,7 +45,7 @@ pub(super) fn hit(depth: u32, ray: &Ray, t_min: f64) -> Option<Hit> {
         let reached = number(t);
         for axis in 0..3 {
             let forward = ray.direction[axis] > 0.0;
-            // Rounding must not move the cell against the ray's direction, because then the traversal might not end.
+            // Rounding must not move the cell against the ray's direction, or the traversal might not end.
             cell[axis] = match (axis == across, forward) {
                 (true, true) => first[axis] + side,
                 (true, false) => first[axis] - 1,
@@ -109,9 +108,9 @@ mod tests {
             let (at, hit) = found.expect("a wall");
             (at - t).abs() < 1e-12 && hit == face(axis)
         };
-        // A ray that rises steeply, to the ceiling of the tunnel through which it enters.
+        // A steep ray, which hits the ceiling of its entry tunnel.
         assert!(near(along([0.0, 2.0, 0.5]), 2.0 / 3.0, 2));
-        // A ray that rises less: it crosses the middle of the sponge and hits the far wall of the tunnel along z.
+        // A less steep ray, which crosses the middle of the sponge and hits the far wall of the tunnel along z.
         assert!(near(along([0.0, 2.0, 0.3]), 7.0 / 6.0, 1));
     }
 

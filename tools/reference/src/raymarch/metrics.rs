@@ -1,4 +1,4 @@
-//! Errors of a raymarched picture against the reference picture.
+//! Errors of a raymarched picture compared with the reference picture.
 
 use super::{Face, Field, Hit};
 use crate::camera::{Ray, Size, Vector, cross, dot, length};
@@ -14,9 +14,9 @@ const STEADY: f64 = 1e-3;
 pub struct Expected {
     /// The hit of the ray through the pixel's centre.
     pub hit: Option<Hit>,
-    /// Whether the rays 0.05 pixels to the left, to the right, above and below have the same result as the ray through the
-    /// centre. The result is the same if all hit the same face of the same part of the field (`Hit::member`), at a depth that
-    /// differs by at most a thousandth, or if all miss. At an unstable pixel a correct picture may differ from the reference.
+    /// Whether the pixel is stable: the rays 0.05 pixels to the left, to the right, above and below have the same result as the ray through
+    /// the centre. Same result: all rays hit the same face of the same part of the field (`Hit::member`) at depths within a thousandth, or
+    /// all miss. At an unstable pixel a correct picture may differ from the reference.
     pub stable: bool,
 }
 
@@ -48,8 +48,8 @@ pub fn expected(
         .collect()
 }
 
-/// Whether a neighbouring ray has the same result as the ray through the pixel's
-/// centre: the same surface at nearly the same depth, or also a miss.
+/// Whether a neighbouring ray has the same result as the ray through the pixel's centre: the same surface at nearly equal depth,
+/// or also a miss.
 fn alike(centre: Option<Hit>, beside: Option<Hit>) -> bool {
     match (centre, beside) {
         (None, None) => true,
@@ -78,8 +78,7 @@ pub enum RayOutcome {
     Undecided,
 }
 
-/// Quantiles of a list of values by nearest rank: the quantile of p % is the smallest of the values that at least p % of all
-/// values do not exceed.
+/// Quantiles of a list of values by nearest rank: at least p % of all values are at most the quantile of p %.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantiles {
     /// Quantile of 50 %.
@@ -104,25 +103,25 @@ impl Quantiles {
     }
 }
 
-/// Errors of a picture against the reference, over all pixels, including the unstable ones.
+/// Errors of a picture compared with the reference, over all pixels, including unstable pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Accuracy {
     /// Number of compared pixels. Each pixel has one ray.
     pub rays: usize,
     /// Share of unstable pixels.
     pub unstable: f64,
-    /// Intersection over union of the hits: the number of pixels with a hit in both picture and reference, divided by the
-    /// number of pixels with a hit in at least one of them. It is 1 if there are no hits. Undecided pixels are not hits.
+    /// Intersection over union of the hits: the number of pixels with a hit in both picture and reference, divided by the number
+    /// of pixels with a hit in at least one of them. It is 1 if there are no hits. Undecided pixels count as misses.
     pub iou: f64,
     /// Pixels where the reference hits and the picture misses.
     pub false_miss: usize,
     /// Pixels where the picture hits and the reference misses.
     pub false_hit: usize,
-    /// Number of pixels of the picture that are undecided.
+    /// Number of undecided pixels of the picture.
     pub undecided: usize,
-    /// Absolute difference of the rays' parameters at the hit, over the pixels with a hit in both picture and reference.
+    /// Absolute difference of the rays' parameters at the hit, over the pixels that hit in both picture and reference.
     pub depth: Option<Quantiles>,
-    /// Share of pixels where the faces differ, among the pixels with a hit in both picture and reference; 0 if there are none.
+    /// Share of pixels with different faces among the pixels that hit in both picture and reference; 0 without such pixels.
     pub wrong_faces: f64,
     /// Angle between the normals in degrees, over the pixels where picture and reference both hit a round face.
     pub normal: Option<Quantiles>,
@@ -173,7 +172,7 @@ pub fn accuracy(expected: &[Expected], found: &[RayOutcome]) -> Accuracy {
 
 /// Returns the angle between two directions, in degrees.
 fn degrees(a: Vector, b: Vector) -> f64 {
-    // The arc tangent is exact for small angles too, unlike the arc cosine.
+    // The arc tangent is also exact for small angles, unlike the arc cosine.
     length(cross(a, b)).atan2(dot(a, b)).to_degrees()
 }
 

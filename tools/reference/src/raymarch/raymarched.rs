@@ -1,5 +1,4 @@
-//! Pictures of the model's raymarcher in the form that [`metrics`] compares, and the number of times that each ray evaluates
-//! the distance to the field.
+//! Pictures of the model's raymarcher as input of [`metrics`], and each ray's number of evaluations of the field's distance.
 
 use glint_core::camera::View;
 use glint_core::field::{
@@ -19,17 +18,16 @@ pub struct RenderedRay {
     /// Result of the ray. The depth of a hit (its distance along the camera's n, in world units) is computed from the ray's
     /// parameter t.
     pub outcome: RayOutcome,
-    /// Depth of a hit in world units, computed from its depth code. `None` if there is no hit, or if the code gives no depth.
+    /// Depth of a hit in world units, computed from the depth code. `None` if there is no hit, or if the code gives no depth.
     pub coded: Option<f64>,
     /// Number of evaluations of the field by the ray.
     pub steps: u32,
-    /// Number of evaluations by the cones that were marched just before the ray. The prepass marches one cone for each block of
-    /// pixels.
+    /// Number of evaluations by the cones marched just before the ray. The prepass marches one cone for each block of pixels.
     pub cones: u64,
 }
 
 impl RenderedRay {
-    /// Returns [`Self::outcome`] with the depth that was computed from the depth code, if there is such a depth.
+    /// Returns [`Self::outcome`] with the depth from the depth code, if available.
     pub fn by_code(&self) -> RayOutcome {
         match (self.outcome, self.coded) {
             (RayOutcome::Hit { face, normal, .. }, Some(t)) => RayOutcome::Hit { t, face, normal },
@@ -38,10 +36,9 @@ impl RenderedRay {
     }
 }
 
-/// Draws the picture of one eye with the model, row by row. Eye 0 is the left eye of a stereo picture or the only eye.
+/// Draws the picture of one eye with the model, row by row. Eye 0 is the left or only eye.
 ///
-/// With a prepass, which marches a cone for each block of pixels, the evaluations by the cones of a row of blocks are counted
-/// with the first ray of that row.
+/// With a prepass, which marches a cone for each block of pixels, the evaluations of a row of blocks count with the first ray of the row.
 pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
     let mut rays = raymarch::Rays::new(setup);
     let mut cones = 0;
@@ -56,7 +53,7 @@ pub fn picture(setup: &FieldSetup, eye: usize) -> Vec<RenderedRay> {
         .collect()
 }
 
-/// Converts `end`, the model's result of one ray, to the form that the comparison uses. `cones` of the result is 0.
+/// Converts `end`, the model's result of a ray, to the form of the comparison. `cones` of the result is 0.
 pub fn rendered_ray(
     setup: &FieldSetup,
     ray: &raymarch::Ray,
@@ -154,7 +151,7 @@ fn pixels(setup: &FieldSetup) -> impl Iterator<Item = (u32, u32)> {
 }
 
 impl Field {
-    /// Converts `scene`, a field as `glint_core` describes it, to the reference's solid with the same numbers.
+    /// Converts `scene`, a field of `glint_core`, to the reference's solid with the same numbers.
     pub fn of(scene: &Scene) -> Self {
         match scene {
             Scene::Primitive(primitive) => Self::of_primitive(primitive),
@@ -224,7 +221,7 @@ impl Field {
     }
 }
 
-/// A field seen by a camera, with its reference picture.
+/// A field, a camera and the reference picture.
 pub struct Subject {
     /// Name of the camera's position.
     pub name: String,
@@ -232,13 +229,13 @@ pub struct Subject {
     pub scene: String,
     /// Size of the picture: width and height in pixels.
     pub size: (u32, u32),
-    /// The camera, with numbers that a view holds exactly.
+    /// The camera, with numbers exactly representable in a view.
     pub camera: Camera,
-    /// The field, as this crate (the reference) describes it.
+    /// The field as the reference's solid.
     pub field: Field,
     /// The reference picture, with hits up to the default far limit of the model's rays.
     pub expected: Vec<Expected>,
-    /// The field, as `glint_core` describes it.
+    /// The field in the form of `glint_core`.
     pub parsed: Scene,
     view: View,
 }
@@ -267,7 +264,7 @@ impl Subject {
         subject
     }
 
-    /// Returns the model's constants of a frame that shows this subject with these options.
+    /// Returns the model's constants of a frame of this subject with these options.
     pub fn setup(&self, options: &FieldOptions) -> FieldSetup {
         FieldSetup::new(&self.parsed, &self.view, self.size, options).expect("a supported size")
     }
@@ -278,7 +275,7 @@ impl Subject {
     }
 }
 
-/// Returns subjects that show the Menger sponge of depth 4, one from each of the [`views`].
+/// Returns the Menger sponge of depth 4 in each of the [`views`] as subjects.
 pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
     views::views()
         .into_iter()
@@ -288,8 +285,8 @@ pub fn sponges(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Returns subjects that show the flat fields (with plane faces) other than the sponge, seen from the side. Except for the box,
-/// these fields extend to the horizon.
+/// Returns the flat fields (with plane faces) other than the sponge, seen from the side, as subjects. All of these fields except
+/// the box extend to the horizon.
 pub fn others(size: (u32, u32)) -> Vec<Subject> {
     let camera = views::camera([1.25, -1.875, 0.40625], [0.0; 3]);
     [
@@ -303,7 +300,7 @@ pub fn others(size: (u32, u32)) -> Vec<Subject> {
     .into()
 }
 
-/// Returns subjects that show round fields (with spheres) and unions, each field from the side and from within.
+/// Returns round fields (with spheres) and unions, each seen from the side and from within, as subjects.
 pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
     let scenes = [
         "sphere:1",
@@ -333,12 +330,12 @@ pub fn rounds(size: (u32, u32)) -> Vec<Subject> {
         .collect()
 }
 
-/// Errors of a picture, and the number of evaluations of the field's distance that it took.
+/// Errors of a picture, and its number of evaluations of the field's distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
     /// Errors of the picture, with depths computed from the rays' parameters t.
     pub accuracy: Accuracy,
-    /// Errors of the depths that are computed from depth codes, over the pixels with a hit in both picture and reference.
+    /// Errors of the depths from depth codes, over the pixels that hit in both picture and reference.
     pub coded: Option<Quantiles>,
     /// Number of evaluations of the field by all rays and cones.
     pub evaluations: u64,

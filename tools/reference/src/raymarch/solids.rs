@@ -1,4 +1,4 @@
-//! Hits of rays that come from outside a box, a convex solid or a ball, or from the room between two parallel planes.
+//! Hits of rays on a box, a convex solid or a ball from outside, and on two parallel planes from the room between them.
 
 use super::surface::{Face, Hit, Plane, Sphere};
 use crate::camera::{Ray, Vector, add_scaled, dot, length, normalised, subtract};
@@ -9,7 +9,7 @@ pub(super) struct Slabs {
     pub enter: f64,
     /// Parameter of the line where it leaves the box.
     pub exit: f64,
-    /// Axis perpendicular to the face through which the line enters.
+    /// Axis of the line's entry face.
     pub axis: usize,
 }
 
@@ -85,8 +85,8 @@ pub(super) fn convex_hit(planes: &[Plane], ray: &Ray, t_min: f64) -> Option<Hit>
 
 /// Finds the hit of a ray on a ball about the origin.
 ///
-/// The quadratic equation is solved without differences of nearly equal numbers, after E. Haines, J. Günther and T.
-/// Akenine-Möller, "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
+/// Solves the quadratic equation without differences of nearly equal numbers, after E. Haines, J. Günther and T. Akenine-Möller,
+/// "Precision improvements for ray/sphere intersection" (Ray Tracing Gems, 2019).
 pub(super) fn sphere_hit(radius: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin, ray.direction);
     let a = dot(d, d);
@@ -127,7 +127,7 @@ pub(super) fn spheres_hit(spheres: &[Sphere], ray: &Ray, t_min: f64) -> Option<H
     hits.fold(None, Hit::nearer)
 }
 
-/// Finds the hit of a ray, from inside a room, on the room's floor at z = −half or its ceiling at z = half.
+/// Finds the hit of a ray from inside a room on the floor at z = −half or the ceiling at z = half.
 pub(super) fn planes_hit(half: f64, ray: &Ray, t_min: f64) -> Option<Hit> {
     let (o, d) = (ray.origin[2], ray.direction[2]);
     if (o + t_min * d).abs() > half {

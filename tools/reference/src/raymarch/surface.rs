@@ -1,4 +1,4 @@
-//! Balls and planes that form solids, and the hits of rays on solids.
+//! Balls and planes as parts of solids, and hits of rays on solids.
 
 use crate::camera::Vector;
 
@@ -25,14 +25,14 @@ pub struct Plane {
 pub enum Face {
     /// A plane perpendicular to an axis.
     Axis {
-        /// Number of the axis: 0, 1 or 2 for x, y or z.
+        /// Index of the axis: 0, 1 or 2 for x, y or z.
         axis: usize,
         /// Whether the outward normal points along the axis.
         positive: bool,
     },
     /// A plane perpendicular to a diagonal.
     Diagonal {
-        /// For each axis, whether the component of the outward normal along the axis is positive.
+        /// Whether the outward normal's component along each axis is positive.
         positive: [bool; 3],
     },
     /// A curved surface.
@@ -59,7 +59,7 @@ impl Face {
         }
     }
 
-    /// Returns the face perpendicular to `axis` through which a ray of this direction enters a solid.
+    /// Returns the entry face, perpendicular to `axis`, of a ray of this direction.
     pub(super) fn entered(axis: usize, direction: Vector) -> Self {
         Self::Axis {
             axis,
@@ -68,7 +68,7 @@ impl Face {
     }
 }
 
-/// The first point of a ray that is in a solid.
+/// The first point of a ray inside a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// The ray's parameter at the hit: the distance in multiples of the direction's length.
@@ -77,8 +77,8 @@ pub struct Hit {
     pub normal: Vector,
     /// Kind of surface at the hit.
     pub face: Face,
-    /// Part of the field that was hit: the index of the ball in `Field::Spheres`, or the number (0 or 1) of the
-    /// outermost union's member. It is 0 for other fields, and if the ray starts inside the solid.
+    /// Hit part of the field: the index of the ball in `Field::Spheres`, or the index (0 or 1) of the outermost union's member.
+    /// It is 0 for other fields, and if the ray starts inside the solid.
     pub member: usize,
 }
 
@@ -93,7 +93,7 @@ impl Hit {
         }
     }
 
-    /// Makes the hit at parameter `t` of a ray of this direction that enters a solid through a face perpendicular to `axis`.
+    /// Makes the hit at parameter `t` of a ray of this direction on a solid's face perpendicular to `axis`.
     pub(super) fn entered(t: f64, axis: usize, direction: Vector) -> Self {
         let mut normal = [0.0; 3];
         normal[axis] = -direction[axis].signum();
@@ -105,8 +105,8 @@ impl Hit {
         }
     }
 
-    /// Returns the hit with its `member` set. If the ray starts inside the solid, the
-    /// number stays 0, because several members may contain the start.
+    /// Returns the hit with its `member` set. If the ray starts inside the solid, `member` stays 0, because several members may
+    /// contain the start.
     pub(super) fn of(mut self, member: usize) -> Self {
         if self.face != Face::Inside {
             self.member = member;

@@ -11,10 +11,10 @@ const NEAR: f64 = 1e-9;
 /// Step to either side of a point in the central difference for the gradient, in world units.
 const STEP: f64 = 1e-6;
 
-/// Limit of the number of steps, which is sufficient unless the ray runs almost parallel to a face and close to it.
+/// Step limit, which is sufficient unless the ray runs close and nearly parallel to a face.
 const MOST_STEPS: u32 = 1 << 20;
 
-/// The error of a trace that has not ended after 2^20 steps, because the ray runs close to a surface and nearly parallel to it.
+/// The error of a trace without end after 2^20 steps, because the ray runs close and nearly parallel to a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unconverged {
     /// Parameter of the ray at the last step.
@@ -30,14 +30,14 @@ impl fmt::Display for Unconverged {
 impl std::error::Error for Unconverged {}
 
 impl Field {
-    /// Finds the same point as [`Self::hit`], but from the field's distance alone, in the same way for every field.
+    /// Finds the point of [`Self::hit`] from the field's distance alone, by one method for all fields.
     ///
-    /// A trace ends 1e-9 world units from the surface. So it also hits a surface that the ray only passes at a smaller distance,
-    /// and a ray that starts on a surface hits immediately. The hit is before the surface by 1e-9 world units divided by the
-    /// cosine of the angle of incidence.
+    /// A trace ends 1e-9 world units from the surface. So a ray that passes a surface at a smaller distance also hits, and a ray
+    /// that starts on a surface hits immediately. The hit is before the surface by 1e-9 world units divided by the cosine of the
+    /// angle of incidence.
     ///
     /// # Errors
-    /// When the ray has not ended after 2^20 steps, because it runs close to a surface.
+    /// When the trace has not ended after 2^20 steps, because the ray runs close to a surface.
     pub fn traced(
         &self,
         origin: Vector,
@@ -71,7 +71,7 @@ impl Field {
         Err(Unconverged { t })
     }
 
-    /// Returns the face, the outward normal and the number of the solid's part (`Hit::member`) at a point of the surface.
+    /// Returns the face, the outward normal and the solid's part (`Hit::member`) at a point of the surface.
     pub(super) fn surface(&self, p: Vector) -> (Face, Vector, usize) {
         match self {
             Self::Menger { .. } | Self::Box { .. } | Self::Cubes { .. } | Self::Planes { .. } => {
@@ -125,7 +125,7 @@ impl Field {
     }
 }
 
-/// Returns the number of the field that is nearer to a point: 0 for `a`, 1 for `b`.
+/// Returns the index of the field nearer to a point: 0 for `a`, 1 for `b`.
 fn nearer(a: &Field, b: &Field, p: Vector) -> usize {
     usize::from(b.distance(p) < a.distance(p))
 }

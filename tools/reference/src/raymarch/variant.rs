@@ -1,4 +1,4 @@
-//! Other methods to march rays to the Menger sponge, in f64, whose numbers of steps are compared with Glint's method.
+//! Other methods to march rays to the Menger sponge, in f64, for comparisons of their numbers of steps with Glint's.
 
 use super::distance::euclidean;
 use super::metrics::RayOutcome;
@@ -6,12 +6,12 @@ use super::raymarched::RenderedRay;
 use super::{Face, Field};
 use crate::camera::{Ray, Vector, length};
 
-/// A norm: how the length of a vector is computed.
+/// A vector norm.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Norm {
-    /// The largest magnitude of a coordinate.
+    /// Maximum norm.
     Maximum,
-    /// The square root of the sum of the coordinates' squares.
+    /// Euclidean norm.
     Euclidean,
 }
 
@@ -30,11 +30,10 @@ pub const GROWTH_STEPS: u32 = 64;
 /// A method to march rays to the Menger sponge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
-    /// Norm in which the distance to the sponge is computed.
+    /// Norm of the distance to the sponge.
     pub distance: Norm,
-    /// Norm of a step: in this norm, a step is as long as the distance. If it is the norm of `distance`, steps are as long as the
-    /// distance allows. With distances in the maximum norm, steps of the Euclidean norm are shorter than the distance allows.
-    /// Euclidean distances require the Euclidean norm here.
+    /// Norm in which the length of a step equals the distance. If equal to `distance`, steps are as long as the distance allows.
+    /// With distances in the maximum norm, Euclidean steps are shorter. Euclidean distances require Euclidean steps.
     pub rays: Norm,
     /// Constant part of the threshold, in world units. A ray hits where its distance from the sponge is below the threshold.
     pub threshold: f64,
@@ -42,24 +41,23 @@ pub struct Method {
     pub footprint: f64,
     /// Limit of the number of steps of a ray.
     pub cap: u32,
-    /// Factor by which the threshold grows after each [`GROWTH_STEPS`] steps; 1 if it does not grow.
+    /// Growth factor of the threshold after each [`GROWTH_STEPS`] steps; 1 for a constant threshold.
     pub growth: f64,
-    /// Whether the hit of a ray that approaches a face is moved forward to the plane of the face. The ray's parameter grows by
-    /// the remaining distance divided by the component of the ray's direction along the normal.
+    /// Whether to move the hit of a ray that approaches a face forward to the plane of the face. The ray's parameter grows by the
+    /// remaining distance divided by the component of the ray's direction along the normal.
     pub correct: bool,
 }
 
 impl Method {
     /// Marches a ray to a sponge with `depth` levels of holes, from the ray's parameter `start`.
     ///
-    /// The normal of a hit points along an axis: the axis of the largest component in the gradient of the distance, which is
-    /// computed in the maximum norm.
+    /// The normal of a hit points along the axis of the largest component of the gradient of the distance in the maximum norm.
     pub fn march(&self, depth: u32, ray: &Ray, start: f64) -> RenderedRay {
         let sponge = Field::Menger { depth };
         let speed = self.rays.of(ray.direction);
         let distance = |p| match self.distance {
             Norm::Maximum => sponge.distance(p),
-            // Inside the sponge the result is 0, which ends the ray just as a negative distance does.
+            // Inside the sponge the result is 0, which ends the ray like a negative distance.
             Norm::Euclidean => euclidean(depth, p).max(sponge.distance(p).min(0.0)),
         };
         let mut t = start;
@@ -105,7 +103,7 @@ fn outward(ray: &Ray, axis: usize, p: Vector) -> bool {
     (p[axis] < 0.0) == (ray.direction[axis] < 0.0)
 }
 
-/// Returns the parameter at which a ray enters the cube around the sponge, or 0 if the ray starts inside the cube.
+/// Returns the parameter of a ray's entry into the cube around the sponge, or 0 if the ray starts inside the cube.
 pub fn entry(ray: &Ray) -> f64 {
     (0..3)
         .filter(|&axis| !outward(ray, axis, ray.origin))
@@ -113,7 +111,7 @@ pub fn entry(ray: &Ray) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Choice of the points whose distances give an estimate of the normal at a point.
+/// Sample points of the distance for an estimate of the normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taps {
     /// The point, and one neighbour along each axis.
@@ -123,10 +121,10 @@ pub enum Taps {
 }
 
 impl Taps {
-    /// Number of distances that are evaluated for one normal.
+    /// Number of distance evaluations per normal.
     pub const COUNT: u32 = 4;
 
-    /// Estimates the face at the point `p`: it is perpendicular to the axis of the gradient's largest component. The gradient is
+    /// Estimates the face at the point `p`, perpendicular to the axis of the gradient's largest component. The gradient is
     /// estimated from the distances of points whose coordinates differ from `p` by `step`, in world units.
     pub fn face(self, field: &Field, p: Vector, step: f64) -> Face {
         let beside = |offset: Vector| field.distance([0, 1, 2].map(|i| p[i] + step * offset[i]));

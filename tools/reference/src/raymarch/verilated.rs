@@ -1,4 +1,4 @@
-//! The verilated raymarcher (its SystemVerilog, simulated), which measures the clocks and distance evaluations of a picture.
+//! The verilated raymarcher, for measurements of the clocks and distance evaluations of a picture.
 
 use glint_model::raymarch::{FieldSetup, Palette, Rays};
 use glint_model::triangle::descriptor::band_rows;
@@ -7,8 +7,8 @@ use glint_testbench::raymarch::{
 };
 use glint_testbench::{Counters, Module, Port};
 
-/// The raymarcher's SystemVerilog module, built with all kinds of fields. Nothing makes it wait: it may draw each band (strip of
-/// lines) of the picture at once, and each pixel is accepted at once.
+/// The raymarcher's SystemVerilog module, built with all kinds of fields. It never stalls: every band (strip of lines) may be
+/// drawn immediately, and every pixel is accepted immediately.
 pub struct Raymarcher {
     module: Module,
     group: [Port; Pixel::PAYLOAD.len()],
@@ -17,7 +17,7 @@ pub struct Raymarcher {
     counted: Taken,
 }
 
-/// Clocks and distance evaluations that a picture takes.
+/// Clocks and distance evaluations of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Taken {
     /// Number of clocks from the start of the picture to its end.
@@ -27,7 +27,7 @@ pub struct Taken {
 }
 
 impl Raymarcher {
-    /// Number of lanes (parallel pipelines that evaluate the field) in the built raymarcher.
+    /// Number of lanes (parallel pipelines for evaluations of the field) of the built raymarcher.
     pub const LANES: u32 = 2;
 
     /// Makes a raymarcher and resets it.
@@ -90,14 +90,11 @@ impl Raymarcher {
                 }
                 self.clock();
             }
-            assert_eq!(
-                left, 0,
-                "pixels that are missing in band {band} of {setup:?}"
-            );
+            assert_eq!(left, 0, "missing pixels in band {band} of {setup:?}");
             self.module.drive("band_open", 0);
             self.pulse("band_next");
         }
-        // The counters receive the last events a few clocks after the end of the picture.
+        // The counters count the last events a few clocks after the end of the picture.
         (0..4).for_each(|_| self.clock());
         let counted = Taken {
             clocks: self.counters.get("cycles_busy"),

@@ -1,4 +1,4 @@
-//! Cameras that look at the Menger sponge, which the measurements and the tests share.
+//! Cameras that look at the Menger sponge, shared by the measurements and the tests.
 
 use crate::camera::{Camera, Vector};
 
@@ -10,7 +10,7 @@ pub const NEAR: f64 = 0.01;
 
 /// Returns name, position of the eye and position of the target of each view. Positions are in world units, and +z is up.
 ///
-/// Every coordinate is a multiple of 1/64, and is therefore exact in every fixed-point format.
+/// Every coordinate is a multiple of 1/64, hence exact in every fixed-point format.
 pub fn views() -> [(&'static str, Vector, Vector); 4] {
     [
         ("outside", [2.1875, 1.6875, 1.3125], [0.0; 3]),

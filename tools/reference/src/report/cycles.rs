@@ -1,4 +1,4 @@
-//! Cycles that kernels take on the soft core, as measured by the firmware's console command `bench`.
+//! Cycles of kernels on the soft core, measured by the firmware's console command `bench`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use virtual_board::{Start, VirtualBoard};
 
 use super::workspace;
 
-/// Cycles of the calls of a kernel (a measured function of the firmware), in clocks of the soft core.
+/// Cycles per call of a kernel (a measured function of the firmware), in clocks of the soft core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Figures {
     /// Number of cycles of the fastest call.
@@ -26,7 +26,7 @@ pub type Cycles = BTreeMap<String, Figures>;
 /// Reads the lines `bench NAME min MIN median MEDIAN max MAX cycles` of a console's output.
 ///
 /// # Errors
-/// When a line that starts with `bench` is malformed, or there is no such line.
+/// When a line that starts with `bench` is malformed or missing.
 pub fn parse(console: &str) -> Result<Cycles> {
     let mut cycles = Cycles::new();
     for line in console.lines() {
@@ -71,10 +71,10 @@ pub fn parse(console: &str) -> Result<Cycles> {
 
 /// The console's prompt.
 const PROMPT: &str = "glint> ";
-/// Limit in cycles, both for the start of the firmware and for the run of all kernels. Each of the two takes several times less.
+/// Limit in cycles for the firmware's start, and for the run of all kernels. Both need only a fraction of the limit.
 const LIMIT: u64 = 500_000_000;
 
-/// Command-line arguments that choose the source of the cycles: a run on the virtual board, or a transcript.
+/// Command-line arguments for the source of the cycles: a run on the virtual board, or a transcript.
 #[derive(clap::Args)]
 pub struct Source {
     /// Verilated SoC [default: the build of `cargo xtask gateware`]
@@ -83,13 +83,13 @@ pub struct Source {
     /// Firmware [default: the build of `cargo xtask firmware --features peers`]
     #[arg(long, value_name = "FILE")]
     firmware: Option<PathBuf>,
-    /// Console transcript of `bench`, for instance of a real board, instead of a run on the virtual board
+    /// Console transcript of `bench`, such as from a real board, instead of a run on the virtual board
     #[arg(long, value_name = "FILE")]
     transcript: Option<PathBuf>,
 }
 
 impl Source {
-    /// Returns the cycles that the console command `bench KERNELS` reports.
+    /// Returns the cycles reported by the console command `bench KERNELS`.
     ///
     /// # Errors
     /// When the transcript cannot be read, or the run on the virtual board fails.
@@ -115,7 +115,7 @@ impl Source {
     }
 }
 
-/// Runs the console command `bench KERNELS` on the virtual board and returns the cycles that it reports.
+/// Runs the console command `bench KERNELS` on the virtual board and returns the reported cycles.
 ///
 /// # Errors
 /// When the board or the firmware is not built, or the console does not answer.
@@ -157,7 +157,7 @@ fn measure(library: &Path, firmware: &Path, kernels: &str) -> Result<Cycles> {
     parse(&reply).with_context(|| format!("`{command}` on the virtual board"))
 }
 
-/// Whether the reply to a command is complete, which means that its last line is `ok` or an error.
+/// Whether the reply to a command is complete: its last line is `ok` or an error.
 fn ends(reply: &[u8]) -> bool {
     let last = reply.strip_suffix(PROMPT.as_bytes()).unwrap_or(reply);
     let last = last

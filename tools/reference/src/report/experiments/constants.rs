@@ -1,4 +1,4 @@
-//! Constants of the firmware, the gateware and the experiments that the text of a page states.
+//! Constants of the firmware, the gateware and the experiments for the text of the pages.
 
 use glint_model::raymarch::{DEFAULT_TUNING, ROUND_TUNING};
 use serde::{Deserialize, Serialize};
@@ -13,7 +13,7 @@ use crate::raymarch::verilated::Raymarcher;
 pub struct Row {
     /// Name in the templates of the pages.
     pub name: String,
-    /// Value, as the page shows it.
+    /// Value, as displayed on the page.
     pub value: String,
 }
 

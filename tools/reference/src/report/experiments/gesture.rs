@@ -1,5 +1,5 @@
-//! Experiment: the control of the camera by a hand. Errors of the hand's centre, noise, lag and tracking errors of filters with their
-//! cycles on the soft core, and stiff cases.
+//! Experiment: the control of the camera by a hand. Errors of the hand's centre; noise, lag, tracking errors and cycles of
+//! filters; and stiff cases.
 
 use anyhow::{Context, Result};
 use glint_core::gesture::{RUN_MOVING, RUN_RESTING, RUN_SEARCHING, Region, Setting};
@@ -15,7 +15,7 @@ use crate::gesture::path::{Path, record};
 use crate::report::cycles::Cycles;
 use crate::report::provenance::Provenance;
 
-/// Number of frames per second at which filters are compared.
+/// Frame rate of the comparison of filters, in frames per second.
 pub const RATE: f64 = 60.0;
 
 /// Errors of the hand's centre: a line of `gesture-centre.csv`. Errors are in pixels, per coordinate.
@@ -23,17 +23,17 @@ pub const RATE: f64 = 60.0;
 pub struct Centre {
     /// Shape and area of the hand.
     pub hand: String,
-    /// What the engine counts.
+    /// Setting of the engine.
     pub counted: String,
-    /// Whether the firmware's settings count this.
+    /// Whether the firmware uses this setting.
     pub shipped: bool,
     /// Root mean square of the errors.
     pub rms: f64,
-    /// 99th percentile of their magnitudes.
+    /// 99th percentile of the errors' magnitudes.
     pub p99: f64,
     /// The largest magnitude.
     pub max: f64,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
@@ -44,7 +44,7 @@ pub struct Row {
     pub filter: String,
     /// Parameters of the filter.
     pub parameters: String,
-    /// Whether it is the filter in use.
+    /// Whether the firmware uses the filter.
     pub shipped: bool,
     /// RMS in degrees of the camera's motion while the hand rests.
     pub rest: f64,
@@ -54,11 +54,11 @@ pub struct Row {
     pub tracking: f64,
     /// Largest tracking error in degrees.
     pub largest: f64,
-    /// Median of the cycles for one channel and frame on the soft core; `None` if it was not measured.
+    /// Median of the soft core's cycles per channel and frame; `None` if not measured.
     pub cycles: Option<u64>,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the row was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
@@ -69,17 +69,17 @@ pub struct Stiff {
     pub case: String,
     /// Presence of the hand half a second later.
     pub presence: String,
-    /// Reason why the frames are not used; empty if they are.
+    /// Reason for not using the frames; empty if the frames are used.
     pub reason: String,
-    /// Largest angle in degrees between the camera during the case and before it.
+    /// Largest angle in degrees between the camera's directions during and before the case.
     pub moved: f64,
     /// Time in ms from the end of the case until the hand steers the camera again.
     pub back: f64,
-    /// Largest angle in degrees that the camera turns in a frame.
+    /// Largest rotation of the camera in a frame, in degrees.
     pub step: f64,
-    /// Angle in degrees between camera and hand two seconds after the case.
+    /// Angle in degrees between the directions of camera and hand two seconds after the case.
     pub end: f64,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
@@ -92,19 +92,19 @@ pub struct Target {
     pub unit: String,
     /// Required upper bound.
     pub at_least: f64,
-    /// Measured value; `None` if it was not measured.
+    /// Measured value; `None` if not measured.
     pub measured: Option<f64>,
-    /// Commit with which the figure was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
-/// A setting of the engine that is compared.
+/// A setting of the engine for the comparison.
 struct Compared {
     /// Description.
     counted: &'static str,
     /// Region for a hand with these bounds.
     region: fn(&Region) -> Region,
-    /// Smallest number of pixels in a run that counts.
+    /// Minimum length of a counted run, in pixels.
     least_run: u8,
     /// Whether the firmware uses this setting for a hand at rest.
     shipped: bool,
@@ -133,7 +133,7 @@ fn large(bounds: &Region) -> Region {
     Setting::moving(bounds, SIZE).region
 }
 
-/// The settings of the engine that are compared.
+/// The compared settings of the engine.
 const SETTINGS: [Compared; 8] = [
     Compared::new("all pixels", whole, 1),
     Compared::new("runs of 6", whole, RUN_SEARCHING),
@@ -148,8 +148,8 @@ const SETTINGS: [Compared; 8] = [
     Compared::new("the small region, runs of 4", small, 4),
 ];
 
-/// Measures the errors of the centre of discs and hands with 5 % of salt noise, at `places` places each. With `only_shipped`, only
-/// the firmware's setting for a hand at rest is measured.
+/// Measures the errors of the centre of discs and hands with 5 % of salt noise, at `places` positions each. `only_shipped`
+/// restricts the measurement to the firmware's setting for a hand at rest.
 pub fn centres(places: u32, only_shipped: bool) -> Vec<Centre> {
     let commit = Provenance::find().commit;
     let noise = Noise {
@@ -203,7 +203,7 @@ fn compared() -> Vec<Filter> {
     filters
 }
 
-/// Records the frames that filters are compared on, with the noise of a sensor.
+/// Records the frames for the comparison of filters, with sensor noise.
 pub fn recordings() -> Recordings {
     let record = |path, seconds| record(path, &Noise::SENSOR, RATE, seconds);
     Recordings {
@@ -256,8 +256,8 @@ pub fn stiff() -> Vec<Stiff> {
     rows.collect()
 }
 
-/// Collects the figures that have a requirement. `centres` and `recordings` are the results of the functions above, `cycles` that of
-/// the console command `bench gesture`.
+/// Collects the figures that have a requirement. `centres` and `recordings` are results of the functions above, `cycles` is the
+/// result of the console command `bench gesture`.
 ///
 /// # Errors
 /// When the shipped setting is missing in `centres`.

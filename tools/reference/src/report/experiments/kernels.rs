@@ -1,5 +1,5 @@
-//! Errors and cycles of the kernels that have no page of their own: reciprocals, roots, lengths, quotients, depth codes, colours, and
-//! the number formats of the pipeline's stages.
+//! Errors and cycles of kernels without a separate page: reciprocals, roots, lengths, quotients, depth codes, colours, and the
+//! number formats of the pipeline's stages.
 
 mod arithmetic;
 mod formats;
@@ -17,9 +17,9 @@ use crate::report::provenance::Provenance;
 /// Error and cost of one configuration of a kernel: a line of `kernels.csv`.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Row {
-    /// What the kernel computes.
+    /// Function of the kernel.
     pub family: String,
-    /// Name of the kernel; that of the firmware's `bench kernels` if it has cycles.
+    /// Name of the kernel; its name in the firmware's `bench kernels` if it has cycles.
     pub kernel: String,
     /// Word length and method.
     pub config: String,
@@ -33,7 +33,7 @@ pub struct Row {
     pub argmax: String,
     /// Number of inputs.
     pub samples: u64,
-    /// Number of bits of a stored number, where these are the cost.
+    /// Number of bits of a stored number, if the bits are the cost.
     pub bits: Option<u32>,
     /// Number of cycles of the fastest call on the soft core; `None` if the kernel was not measured there.
     pub cycles_min: Option<u64>,
@@ -41,20 +41,20 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the row was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
-/// Name of a family, and the function that measures its trials, whose argument is the thinning of the inputs.
+/// Name of a family, and the function that measures its trials for a thinning of the inputs.
 type Family = (&'static str, fn(u32) -> Result<Vec<Trial>>);
 
-/// Measures all configurations, or those of one family. `thinning` is 1 for all inputs of a kernel, and n for every n-th. `cycles` is the
+/// Measures all configurations, or only one family. `thinning` is 1 for all inputs of a kernel, and n for every n-th. `cycles` is the
 /// result of the console command `bench kernels`.
 ///
 /// # Errors
-/// When the terminal refuses a progress bar, or a camera is refused.
+/// When the terminal refuses a progress bar, or a camera is invalid.
 pub fn measure(only: Option<&str>, thinning: u32, cycles: &Cycles) -> Result<Vec<Row>> {
     let provenance = Provenance::find();
     let families: [Family; 9] = [

@@ -1,5 +1,5 @@
-//! Experiment: pictures of the built-in scenes as a monitor shows them, against the same frames in f64, by size and by precision of the
-//! rays, and the cycles of these frames on the whole SoC.
+//! Experiment: pictures of the built-in scenes as displayed on a monitor, against the same frames in f64, by size and precision
+//! of the rays, and the cycles of these frames on the whole SoC.
 
 use anyhow::{Context, Result};
 use glint::board::built_firmware;
@@ -32,9 +32,9 @@ pub struct Row {
     pub wrong: f64,
     /// RMS of the errors of a channel ([`Measured::colour`]).
     pub colour: f64,
-    /// Commit with which the frame was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the frame was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
@@ -49,7 +49,7 @@ pub struct Cycles {
     pub rays: Option<String>,
     /// Number of cycles of the frame on the whole SoC, drawn alone.
     pub cycles: u64,
-    /// Commit with which the frame was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 

@@ -55,9 +55,9 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit with which the kernel was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the kernel was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 

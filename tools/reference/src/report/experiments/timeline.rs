@@ -36,9 +36,9 @@ pub struct Row {
     pub words: u64,
     /// Evaluations of the field; `None` without a field.
     pub evaluations: Option<u64>,
-    /// Commit with which the frame was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the frame was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 

@@ -215,9 +215,9 @@ pub struct Row {
     pub aim: Option<f64>,
     /// Whether `measured` meets the required bound.
     pub met: bool,
-    /// Commit with which the scene was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the scene was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
@@ -228,7 +228,7 @@ pub struct CpuRow {
     pub scene: String,
     /// Number of cycles of a frame.
     pub cycles: u64,
-    /// Commit with which the scene was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 

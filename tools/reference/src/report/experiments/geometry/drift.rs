@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::report::provenance::Provenance;
 use crate::wireframe::{Drift, Form, Session, drift};
 
-/// Numbers of steps after which the errors are measured.
+/// Numbers of steps before the measurements of the errors.
 const STEPS: [u32; 5] = [1, 10, 100, 1_000, 10_000];
 
 /// Errors of the corners of a cube of side 4 after some rotations: a line of `geometry-drift.csv`.
@@ -13,21 +13,21 @@ const STEPS: [u32; 5] = [1, 10, 100, 1_000, 10_000];
 pub struct Row {
     /// Sequence of rotations.
     pub session: String,
-    /// Form of the motion.
+    /// Implementation of the motion.
     pub form: String,
     /// Number of rotations.
     pub steps: u32,
-    /// Largest distance of a corner from its position by f64.
+    /// Largest distance of a corner from its position in f64.
     pub max_err: f64,
-    /// Mean distance of the corners from the origin, over that at the start, less 1.
+    /// Relative growth of the corners' mean distance from the origin.
     pub growth: f64,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the row was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
-/// Measures all sessions with all forms of the motion.
+/// Measures all sessions with all implementations of the motion.
 pub fn measure() -> Vec<Row> {
     let provenance = Provenance::find();
     let mut rows = Vec::new();

@@ -21,7 +21,7 @@ pub struct Row {
     pub kernel: String,
     /// Word length and method.
     pub config: String,
-    /// Whether it is the method in use.
+    /// Whether Glint uses the method.
     pub shipped: bool,
     /// Largest error: of an entry of a matrix, of a component of a normal, or of a position in 1/256 pixel.
     pub max_err: f64,
@@ -35,9 +35,9 @@ pub struct Row {
     pub cycles_median: Option<u64>,
     /// Number of cycles of the slowest call on the soft core.
     pub cycles_max: Option<u64>,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the row was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
@@ -172,7 +172,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A number of a matrix with some fraction bits.
+/// A matrix entry with `bits` fraction bits.
 trait Entry: Copy {
     fn rounded(x: f64) -> Self;
     fn value(self) -> f64;
@@ -196,7 +196,7 @@ impl Entry for i64 {
     }
 }
 
-/// Errors of the entries of chains of rotations about random axes, from the first rotation to the last product.
+/// Errors of the entries of products of chains of rotations about random axes.
 fn chains<T: Entry>(bits: i32, product: fn(&Rows<T>, &Rows<T>) -> Rows<T>) -> Errors {
     let unit = 2f64.powi(bits);
     let mut random = Pcg64Mcg::seed_from_u64(1);
@@ -233,8 +233,7 @@ fn rotation(axis: usize, angle: f64) -> Rows<f64> {
     rows
 }
 
-/// Errors of the components of normals of length 1, from a normal in f64 to the one that is turned by a model matrix, with scales
-/// of 0.5 to 2 along three axes.
+/// Errors of the components of unit normals transformed by a model matrix with scales of 0.5 to 2 along three axes, from f64 to the result.
 fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
     let unit = 2f64.powi(bits);
     let mut random = Pcg64Mcg::seed_from_u64(2);
@@ -269,8 +268,8 @@ fn normals(bits: i32, turn: fn(&Matrix, [i16; 3]) -> [i16; 3]) -> Errors {
     errors
 }
 
-/// Errors of positions on the screen in 1/256 pixel, up to half a picture of 1280 pixels from its middle, for all mantissas of the
-/// depth: step 7 of the vertex stage (docs/formats/triangle.md), with its rounding.
+/// Errors of screen positions in 1/256 pixel, up to half a picture of 1280 pixels from its middle, for all mantissas of the
+/// depth: step 7 of the vertex stage (docs/formats/triangle.md), with rounding.
 fn positions(reciprocal: fn(u32) -> u32) -> Errors {
     let mut random = Pcg64Mcg::seed_from_u64(3);
     let mut errors = Errors::default();

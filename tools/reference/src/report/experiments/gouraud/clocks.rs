@@ -1,4 +1,4 @@
-//! Experiment: clocks of smooth pictures on the verilated rasterizer, by the number of pixels that are shaded in a clock.
+//! Experiment: clocks of smooth pictures on the verilated rasterizer, by the number of shaded pixels per clock.
 
 use anyhow::{Context, Result};
 use glint_model::triangle::setup::Setup;
@@ -11,7 +11,7 @@ use crate::triangle::smooth::verilated::{Band, Rasterizer};
 /// Clocks of the rasterizer for a picture: a line of `gouraud-clocks.csv`.
 #[derive(Serialize, Deserialize)]
 pub struct Row {
-    /// Name of the rate at which pixels are shaded.
+    /// Name of the shading rate.
     pub rate: String,
     /// Description of the scene.
     pub scene: String,
@@ -23,10 +23,10 @@ pub struct Row {
     pub groups: u64,
     /// Number of clocks of all bands.
     pub clocks: u64,
-    /// Whether the clocks were measured. Computed ones are the sum over the bands of the larger of two numbers: the measured clocks
-    /// with flat triangles, and the sum of the groups' clocks.
+    /// Whether the clocks were measured. Computed clocks are the sum over the bands of the larger of the measured clocks with
+    /// flat triangles and the sum of the groups' clocks.
     pub measured: bool,
-    /// Commit with which the picture was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
@@ -34,9 +34,9 @@ pub struct Row {
 pub const SHIPPED: &str = "a pixel a clock";
 /// The rate of flat triangles.
 pub const GROUPS: &str = "a group a clock";
-/// The rate of two pixels in a clock.
+/// The rate of two pixels per clock.
 pub const PAIRS: &str = "two pixels a clock";
-/// The rate of one division in a clock, for two pixels of each group.
+/// The rate of one division per clock, for two pixels of each group.
 pub const ENDS: &str = "a division a clock";
 
 /// Measures the pictures.
@@ -103,7 +103,7 @@ pub fn measure() -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Computes the clocks of bands whose groups take the clocks `of`, from the bands with flat triangles.
+/// Computes the clocks of bands from the bands with flat triangles; `of` returns the clocks of a group.
 fn computed(flat: &[Band], of: fn(u8) -> u32) -> u64 {
     let bands = flat.iter().map(|band| {
         let shading: u64 = band.masks.iter().map(|&mask| u64::from(of(mask))).sum();
@@ -112,7 +112,7 @@ fn computed(flat: &[Band], of: fn(u8) -> u32) -> u64 {
     bands.sum()
 }
 
-/// Returns the number of pixels of a group that the rasterizer shades: from the first or the fifth to the last covered one.
+/// Returns the number of shaded pixels of a group: from the first or the fifth pixel to the last covered pixel.
 fn pixels(mask: u8) -> u32 {
     let first = if mask & 0xF == 0 { 4 } else { 0 };
     8 - mask.leading_zeros() - first

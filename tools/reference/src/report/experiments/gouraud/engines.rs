@@ -1,4 +1,4 @@
-//! Experiment: FPGA resources of the triangle engine with flat and with smooth shading, today and in earlier forms.
+//! Experiment: FPGA resources of current and earlier triangle engines, with flat and with smooth shading.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,13 +10,13 @@ use crate::report::provenance::Provenance;
 use crate::report::table::read_csv;
 use crate::report::workspace;
 
-/// Name of today's engine.
+/// Name of the current engine.
 pub const TODAY: &str = "Glint";
 /// Name of the engine that shades a group of eight pixels in a clock.
 pub const GROUP: &str = "eight divisions a clock, planes of the channels at once";
 /// Name of the engine that shades a pixel in a clock.
 pub const PIXEL: &str = "a division a clock, planes of the channels at once";
-/// Name of the engine that also computes the planes of the channels one after the other.
+/// Name of the engine that also computes the channels' planes sequentially.
 pub const PLANES: &str = "a division a clock, planes one after the other";
 
 /// Names of earlier engines, and the last commit of each.
@@ -26,13 +26,13 @@ const EARLIER: [(&str, &str); 3] = [
     (PLANES, "71b672ffed3a"),
 ];
 
-/// The kinds of shading of an engine, and the name of the module with them in `gateware/tests/run.py`.
+/// The shading modes of an engine, each with its module in `gateware/tests/run.py`.
 const MODULES: [(&str, &str); 2] = [
     ("flat", "triangle_engine"),
     ("flat and smooth", "triangle_engine_smooth"),
 ];
 
-/// Instances that divide light by depth begin with one of these names.
+/// Name prefixes of the instances that divide light by depth.
 const DIVISIONS: [&str; 2] = ["pixel_colour", "quotients"];
 
 /// Resources of a triangle engine: a line of `gouraud-cost.csv`.
@@ -40,7 +40,7 @@ const DIVISIONS: [&str; 2] = ["pixel_colour", "quotients"];
 pub struct Cost {
     /// Name of the engine.
     pub engine: String,
-    /// The kinds of shading that the engine supports.
+    /// The shading modes of the engine.
     pub shading: String,
     /// Number of LUTs, including the LUTs used as memory.
     #[serde(rename = "LUT")]
@@ -64,7 +64,7 @@ pub struct Cost {
     pub commit: String,
 }
 
-/// Numbers of cells of a module by their kind, and the length of the longest path, as found by Yosys.
+/// Yosys's numbers of cells of a module by kind, and the length of the longest path.
 #[derive(Deserialize)]
 struct Cells {
     logic: u32,
@@ -78,7 +78,7 @@ struct Cells {
     instances: Vec<Instance>,
 }
 
-/// Cells of an instance in a module, without those of the instances in it.
+/// Cells of an instance in a module, without the cells of nested instances.
 #[derive(Deserialize)]
 struct Instance {
     path: Vec<String>,
@@ -86,7 +86,7 @@ struct Instance {
     dsp48: u32,
 }
 
-/// Synthesises today's engine and returns its resources.
+/// Synthesises the current engine and returns its resources.
 ///
 /// # Errors
 /// When the synthesis fails.
@@ -97,7 +97,7 @@ pub fn today() -> Result<Vec<Cost>> {
 /// Synthesises the earlier engines, from the gateware of their commits, and returns their resources.
 ///
 /// # Errors
-/// When git has no such commit, or the synthesis fails.
+/// When a commit is missing in git, or the synthesis fails.
 pub fn earlier() -> Result<Vec<Cost>> {
     let mut rows = Vec::new();
     for (engine, commit) in EARLIER {
@@ -116,7 +116,7 @@ pub fn kept() -> Result<Vec<Cost>> {
     Ok(rows)
 }
 
-/// Extracts the gateware of a commit from git, and returns the folder that contains it.
+/// Extracts the gateware of a commit from git, and returns its folder.
 fn gateware_of(commit: &str) -> Result<PathBuf> {
     let folder = workspace::path("target/report").join(commit);
     std::fs::create_dir_all(&folder)

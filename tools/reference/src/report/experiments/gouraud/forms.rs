@@ -1,4 +1,4 @@
-//! Experiment: errors of forms of smooth shading.
+//! Experiment: errors of different forms of smooth shading.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,7 +18,7 @@ pub struct Row {
     pub shipped: bool,
     /// Description of the scene.
     pub scene: String,
-    /// Whether depth or light change much between neighbouring pixels.
+    /// Whether depth or light change strongly between neighbouring pixels.
     pub stiff: bool,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
@@ -28,9 +28,9 @@ pub struct Row {
     pub rms: f64,
     /// Largest difference, in whole steps, from the rounded exact colour.
     pub steps: u32,
-    /// Fraction of the channels that differ from the rounded exact colour.
+    /// Fraction of the channels with another value than the rounded exact colour.
     pub differing: f64,
-    /// Commit with which the form was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
@@ -49,7 +49,7 @@ pub const FORMS: [(&str, &str, Form); 9] = [
 
 const ENDS: &str = "ends of a group";
 const PIXELS: &str = "each pixel";
-/// Name of the form without a division.
+/// Name of the form without division.
 pub const AFFINE: &str = "linear on the screen";
 /// Name of the form that Glint uses.
 pub const SHIPPED: &str = "1024 entries of 17 bits";
@@ -84,10 +84,10 @@ struct Measured {
     differing: u64,
 }
 
-/// Measures all forms in a scene. `commit` goes to the rows.
+/// Measures all forms in a scene for the commit `commit`.
 ///
 /// # Panics
-/// When the light of Glint's form is not that of the model.
+/// When the light of Glint's form differs from the model's.
 pub fn measure_scene(scene: &Scene, commit: &str) -> Vec<Row> {
     let mut measured = [Measured::default(); FORMS.len()];
     let mut pixels = 0;

@@ -1,4 +1,4 @@
-//! Experiments on smooth shading: errors of the model and of other forms of it, and their clocks and FPGA resources.
+//! Experiments on smooth shading: errors, clocks and FPGA resources of Glint's form and of other forms.
 
 pub mod clocks;
 pub mod engines;

@@ -10,11 +10,11 @@ use crate::triangle::smooth::{Measured, scenes};
 pub struct Row {
     /// Description of the scene.
     pub scene: String,
-    /// Number of drawn triangles: whole triangles, and those that the clipper made.
+    /// Number of drawn triangles: unclipped triangles, and triangles from the clipper.
     pub triangles: u64,
-    /// Number of drawn triangles that the clipper made.
+    /// Number of drawn triangles from the clipper.
     pub clipped: u64,
-    /// Number of drawn triangles that show their back face.
+    /// Number of drawn triangles with a visible back face.
     pub back_faces: u64,
     /// Number of covered pixels, summed over the triangles.
     pub pixels: u64,
@@ -30,13 +30,13 @@ pub struct Row {
     pub rounded_max_err: f64,
     /// RMS of the errors of the exact colours after rounding to whole steps.
     pub rounded_rms: f64,
-    /// Largest error of colours that are interpolated linearly on the screen, without the division by depth.
+    /// Largest error of colours interpolated linearly on the screen, without the division by depth.
     pub affine_max_err: f64,
-    /// RMS of the errors of colours that are interpolated linearly on the screen.
+    /// RMS of the errors of colours interpolated linearly on the screen.
     pub affine_rms: f64,
-    /// Commit with which the scene was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the scene was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 

@@ -1,4 +1,4 @@
-//! Experiment: errors of the inclination with different filters, which correct the attitude by the accelerometer.
+//! Experiment: errors of the inclination with different filters for the correction by the accelerometer.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,13 +17,13 @@ pub struct FilterErrors {
     pub shipped: bool,
     /// Error for a sensor at rest.
     pub rest: f64,
-    /// Error during a hand motion that is mostly sideways.
+    /// Error during a mostly sideways hand motion.
     pub hand: f64,
-    /// Error during a hand motion that is mostly up and down.
+    /// Error during a mostly vertical hand motion.
     pub nod: f64,
     /// Error during the motion of a walking person.
     pub walk: f64,
-    /// Commit with which the filter was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 

@@ -24,16 +24,15 @@ pub struct Trial {
     pub rate: f64,
     /// Error of the attitude after 20 s, in degrees.
     pub error: f64,
-    /// Observed order of the method, from this sample rate and the next lower one: the exponent p, if the error is proportional
-    /// to step^p.
+    /// Observed order p of the method (error proportional to step^p), from this and the next lower sample rate.
     pub order: Option<f64>,
-    /// Median of the cycles per sample on the soft core; `None` for methods that the firmware does not contain.
+    /// Median of the cycles per sample on the soft core; `None` for methods outside the firmware.
     pub cycles: Option<u64>,
-    /// Commit with which the error was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
-/// Returns the name of a method in the console command `bench attitude`; `None` if the firmware does not contain the method.
+/// Returns the name of a method in the console command `bench attitude`; `None` for methods outside the firmware.
 fn kernel(method: Method) -> Option<&'static str> {
     match method {
         Method::Angles => Some("angles"),

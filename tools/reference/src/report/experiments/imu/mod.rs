@@ -1,6 +1,6 @@
-//! Experiments on the errors of the attitude that is computed from gyroscope and accelerometer.
+//! Experiments on the errors of the attitude from gyroscope and accelerometer.
 //!
-//! - `targets`: errors that have a requirement.
+//! - `targets`: errors with a requirement.
 //! - `methods`, `filters`: errors of integration methods and of filters, compared with the true attitude.
 //! - `time`: growth of the errors over time.
 //! - `stiff`: stiff and extreme inputs.

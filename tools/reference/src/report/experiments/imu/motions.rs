@@ -1,10 +1,10 @@
-//! Motions that several experiments use.
+//! Motions of several experiments.
 
 use crate::imu::motion::Motion;
 
-/// Rotation at up to 700 °/s about an axis that itself turns.
+/// Rotation at up to 700 °/s about a rotating axis.
 pub const TUMBLE: Motion = Motion::Tumble(700.0);
-/// Coning with a half angle of 5° at 10 turns per second.
+/// Coning with a half angle of 5° at 10 revolutions per second.
 pub const CONING: Motion = Motion::Coning {
     angle: 5.0,
     frequency: 10.0,

@@ -1,5 +1,5 @@
-//! Experiment: the attitude on the soft core. It measures the cycles per sample and compares each attitude, bit for bit, with
-//! the one that the host computes by the same code.
+//! Experiment: the attitude on the soft core. Measures the cycles per sample, and compares each attitude bit for bit with the
+//! same code on the host.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::{self, Board, Route, built_firmware};
@@ -14,8 +14,8 @@ use crate::imu::sensor::Sensor;
 use crate::report::cycles::{Cycles, Source};
 use crate::report::progress;
 
-/// The kernels of the firmware's integration. Each has its name in the console command `bench attitude`,
-/// a description, and a required upper bound and a goal in cycles per sample.
+/// The kernels of the firmware's integration. For each: name in the console command `bench attitude`, description, and required
+/// upper bound and goal in cycles per sample.
 const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic", "integration, even steps", 800, 500),
     ("cubic_jitter", "integration, uneven steps", 800, 500),
@@ -23,14 +23,14 @@ const KERNELS: [(&str, &str, u64, u64); 4] = [
     ("cubic_tilt_jitter", "with tilt, uneven steps", 2_000, 1_200),
 ];
 
-/// Cycles of a kernel of the firmware: a line of `imu-cycles.csv`. All figures are cycles per sample.
+/// Cycles of a kernel of the firmware: a line of `imu-cycles.csv`. Figures are in cycles per sample.
 #[derive(Serialize, Deserialize)]
 pub struct Kernel {
-    /// Description of the kernel and of the samples that it takes.
+    /// Description of the kernel and of its samples.
     pub what: String,
     /// Required upper bound of the cycles per sample.
     pub at_least: u64,
-    /// The goal for the cycles per sample, beyond that bound.
+    /// Goal for the cycles per sample, below the required bound.
     pub aim: u64,
     /// Median of the cycles per sample, over the measured runs.
     pub median: u64,
@@ -45,9 +45,9 @@ pub struct Replay {
     pub board: String,
     /// Number of replayed samples.
     pub samples: u64,
-    /// Number of samples after which the attitudes of board and host differ in any bit.
+    /// Number of samples with any difference between the attitudes of board and host.
     pub differing: usize,
-    /// Mean cycles per sample, on the virtual board: those of the emulated board are estimates.
+    /// Mean cycles per sample on the virtual board; the emulated board has only estimates.
     pub cycles: Option<u64>,
 }
 
@@ -71,8 +71,8 @@ pub fn kernels(cycles: &Cycles) -> Result<Vec<Kernel>> {
     KERNELS.into_iter().map(kernel).collect()
 }
 
-/// Replays a hand motion of `samples` samples at 1 kHz on the emulated board, and the first tenth of it on the virtual board, whose
-/// cycles are exact but which needs minutes for it.
+/// Replays a hand motion of `samples` samples at 1 kHz on the emulated board, and its first tenth on the virtual board, which has
+/// exact cycles but takes minutes.
 ///
 /// # Errors
 /// When the virtual board is not built or a replay fails.
@@ -90,7 +90,7 @@ pub fn replays(source: &Source, samples: u64) -> Result<[Replay; 2]> {
     ])
 }
 
-/// Replays a hand motion at 1 kHz on a board and on the host. The tilt is corrected and the bias is tracked.
+/// Replays a hand motion at 1 kHz on a board and on the host. Tilt correction and bias tracking are on.
 fn replay(name: &str, mut board: impl Board, samples: u64) -> Result<Replay> {
     let counts = Sensor::real(1000.0).samples(Motion::Hand, samples, 1);
     let entries: Vec<Entry> = counts

@@ -1,4 +1,4 @@
-//! Experiment: stiff and extreme inputs of the attitude computation, on which simple filters and integrators diverge or drift.
+//! Experiment: stiff and extreme inputs of the attitude computation, for which simple filters and integrators diverge or drift.
 
 use glint_core::calibration::{RestBias, Units};
 use glint_core::orientation::{Gain, Sample};
@@ -15,7 +15,7 @@ use crate::imu::sensor::Sensor;
 pub struct StiffCase {
     /// Description of the input and of the measured quantity.
     pub case: String,
-    /// Result of other methods. Empty if no other method is compared.
+    /// Result of other methods, or empty.
     pub other: String,
     /// Result of Glint's method.
     pub glint: String,
@@ -23,8 +23,8 @@ pub struct StiffCase {
     pub outcome: String,
 }
 
-/// Measures all cases. `part` is the fraction of the full duration of long cases. Cases of a whole day need `count`, the errors after a
-/// day's rotation at one count of the gyroscope.
+/// Measures all cases. `part` is the fraction of the full duration of long cases. `count` has the errors after a day's rotation
+/// at one count of the gyroscope, for the cases of a whole day.
 pub fn measure(part: f64, count: Option<Largest>) -> Vec<StiffCase> {
     let mut rows = gains();
     rows.extend(words(part));
@@ -49,15 +49,15 @@ pub fn measure(part: f64, count: Option<Largest>) -> Vec<StiffCase> {
     rows
 }
 
-/// Measures the fraction of an error that one step of a first-order filter with the time constant τ leaves. The explicit gain
-/// dt/τ is compared with the exact gain 1 − exp(−dt/τ), which Glint uses.
+/// Measures the remaining fraction of an error after one step of a first-order filter with the time constant τ. Compares the
+/// explicit gain dt/τ with Glint's exact gain 1 − exp(−dt/τ).
 fn gains() -> Vec<StiffCase> {
     [1e-4, 1e-3, 1e-2, 0.1, 0.5, 1.0, 1.9, 2.1, 5.0, 10.0]
         .map(|ratio: f64| {
             let step = 10_000;
             let time_constant = (f64::from(step) / ratio).round() as u32;
             let gain = f64::from(Gain::new(time_constant).of(step)) / 2f64.powi(32);
-            // The time constant was rounded to whole microseconds, which changes the ratio slightly.
+            // The time constant is rounded to microseconds, which changes the ratio slightly.
             let ratio = f64::from(step) / f64::from(time_constant);
             let explicit = 1.0 - ratio;
             let outcome = match ratio {
@@ -79,7 +79,7 @@ fn gains() -> Vec<StiffCase> {
         .into()
 }
 
-/// Learns a bias of 1 LSB by running means whose accumulators have different numbers of fraction bits.
+/// Estimates a bias of 1 LSB by running means with accumulators of different numbers of fraction bits.
 fn words(part: f64) -> Vec<StiffCase> {
     [10, 100, 1000]
         .map(|time_constant: u32| {
@@ -110,7 +110,7 @@ fn words(part: f64) -> Vec<StiffCase> {
         .into()
 }
 
-/// Measures by how much the attitude moves at rest without noise. A limit cycle of the filter's roundings would show as motion.
+/// Measures the motion of the attitude at rest without noise. A limit cycle by the filter's rounding would appear as motion.
 fn rest_cycle() -> StiffCase {
     let mut tracker = tracker(&Sensor::ideal(1000.0), true);
     let mut first: Option<Quaternion> = None;
@@ -135,7 +135,7 @@ fn rest_cycle() -> StiffCase {
     }
 }
 
-/// Integrates uneven and incomplete samples, once by their time stamps and once as if they were evenly spaced.
+/// Integrates uneven and incomplete samples by their time stamps, and as if evenly spaced.
 fn uneven() -> Vec<StiffCase> {
     let even = Sensor::ideal(200.0);
     let error = |sensor: Sensor, stamped: bool| {
@@ -179,7 +179,7 @@ fn uneven() -> Vec<StiffCase> {
     .into()
 }
 
-/// Measures the errors of the inclination after the gyroscope was saturated for 30 ms of a hand motion.
+/// Measures the errors of the inclination after a saturation of the gyroscope for 30 ms of a hand motion.
 fn saturation() -> StiffCase {
     let sensor = Sensor::real(1000.0);
     let mut tracker = tracker(&sensor, true);
@@ -208,7 +208,7 @@ fn saturation() -> StiffCase {
     }
 }
 
-/// Measures the bias that the firmware learns from rates that are square waves. It should be zero, as the waves have zero mean.
+/// Measures the firmware's bias estimate for square-wave rates. The expected bias is zero, the mean of the waves.
 fn squares() -> Vec<StiffCase> {
     [(1500.0, 1.0), (1500.0, 0.1), (5.0, 0.1)]
         .map(|(rate, frequency)| {

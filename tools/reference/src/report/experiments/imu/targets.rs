@@ -1,4 +1,4 @@
-//! Experiment: the errors of the attitude that have a requirement and a goal.
+//! Experiment: attitude errors with a requirement and a goal.
 
 use serde::{Deserialize, Serialize};
 
@@ -18,24 +18,25 @@ pub struct Target {
     pub unit: String,
     /// Required upper bound of the error.
     pub at_least: f64,
-    /// The goal beyond that bound.
+    /// Goal, below the required bound.
     pub aim: f64,
     /// Measured value of the error.
     pub measured: f64,
-    /// The best bound that was met: `aim` (the goal), `at least` (only the requirement), or `missed` (neither of them).
+    /// Best bound met: `aim` (the goal), `at least` (only the requirement), or `missed` (neither).
     pub reached: String,
-    /// Commit with which the error was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the error was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 
-/// Measures the errors during a rotation at one count of the gyroscope for this part of a day. It takes longer than all other motions.
+/// Measures the errors during a rotation at one count of the gyroscope for this fraction of a day. This motion takes longer than
+/// all others together.
 pub fn one_count(part: f64) -> Largest {
     against_f64(Sensor::ideal(1000.0), COUNT, part * DAY, false)
 }
 
-/// Measures all errors that have a requirement, except `count`, which [`one_count`] measures. `part` is the fraction of the full
+/// Measures all errors with a requirement, except `count`, the result of [`one_count`]. `part` is the fraction of the full
 /// duration of long motions.
 pub fn measure(part: f64, count: Largest) -> Vec<Target> {
     let Provenance { commit, tools } = Provenance::find();

@@ -1,4 +1,4 @@
-//! Experiment: growth of the attitude's errors over time, when it is computed from the gyroscope alone.
+//! Experiment: growth over time of the errors of the attitude from the gyroscope alone.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,26 +9,26 @@ use crate::imu::motion::Motion;
 use crate::imu::quaternion::Quaternion;
 use crate::imu::sensor::Sensor;
 
-/// Angle random walk of a gyroscope with noise of 0.1 °/s at 1 kHz: after t seconds, the integrated noise has a standard
-/// deviation of `WALK`·√t degrees.
+/// Angle random walk of a gyroscope with noise of 0.1 °/s at 1 kHz: the integrated noise has a standard deviation of `WALK`·√t
+/// degrees after t seconds.
 const WALK: f64 = 0.1 * 0.031_622_776_601_683_79;
 
-/// Errors of the attitude at a moment of the motion: a line of `imu-time.csv`. Errors are in degrees.
+/// Errors of the attitude at a time in the motion: a line of `imu-time.csv`. Errors are in degrees.
 #[derive(Serialize, Deserialize)]
 pub struct ErrorsAtTime {
     /// Time since the start of the motion, in seconds.
     pub seconds: f64,
-    /// Error of the firmware against the same method in f64, both on the same samples without noise.
+    /// Error of the firmware against the same method in f64, on the same noise-free samples.
     pub numeric: f64,
-    /// Error of the firmware against the true attitude, on samples without noise.
+    /// Error of the firmware against the true attitude, on noise-free samples.
     pub counts: f64,
-    /// Error of the firmware against the true attitude, on samples with noise.
+    /// Error of the firmware against the true attitude, on noisy samples.
     pub sensor: f64,
-    /// Standard deviation of the error that the sensor's integrated noise alone causes.
+    /// Standard deviation of the error from the sensor's integrated noise alone.
     pub floor: f64,
 }
 
-/// Measures the errors during a hand motion of this duration, at times that grow by about 5 % from row to row.
+/// Measures the errors during a hand motion of this duration, at times about 5 % apart.
 pub fn measure(seconds: f64) -> Vec<ErrorsAtTime> {
     let motion = Motion::Hand;
     let ideal = Sensor::ideal(1000.0);

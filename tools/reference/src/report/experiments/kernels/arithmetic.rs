@@ -1,23 +1,23 @@
-//! Errors of reciprocals, roots, quotients, lengths and unit vectors. Inputs are those of `bench kernels`, in greater number.
+//! Errors of reciprocals, roots, quotients, lengths and unit vectors. Inputs have the form of those of `bench kernels`, in greater number.
 
 use glint_variants::kernel::{Format, Kernel};
 use glint_variants::{division, inverse_root, length, reciprocal, root, unit};
 
 use super::trial::{Errors, Trial};
 
-/// Number of the inputs of a kernel with one mantissa: all of them.
+/// Number of inputs of a kernel of one mantissa: all mantissas.
 const MANTISSAS: u32 = 1 << 23;
-/// Number of the inputs of a kernel with several numbers.
+/// Number of inputs of a kernel of several numbers.
 const SEVERAL: u32 = 1 << 20;
 
-/// Phases of the golden ratio, as in the firmware: they cover the circle evenly.
+/// Multiples of the golden ratio as phases, as in the firmware: evenly distributed on the circle.
 fn spread(count: u32, thinning: u32) -> impl Iterator<Item = u32> {
     (0..count / thinning).map(|i| i.wrapping_mul(0x9e37_79b9))
 }
 
-/// Phases of all inputs of a kernel with numbers of `bits` bits.
+/// Phases of all inputs of a kernel of numbers of `bits` bits.
 fn all(bits: u32, thinning: u32) -> impl Iterator<Item = u32> {
-    // An odd step meets all values of the low bits.
+    // An odd step covers all values of the low bits.
     (0..1 << bits)
         .step_by(thinning as usize | 1)
         .map(move |x| x << (32 - bits))
@@ -99,7 +99,7 @@ pub fn divisions(thinning: u32) -> Vec<Trial> {
     )
 }
 
-/// Inputs of vectors; the zero vector has no length.
+/// Inputs of vectors, without the zero vector, which has no relative error.
 fn vectors(thinning: u32) -> Box<dyn Iterator<Item = u32>> {
     Box::new(spread(SEVERAL, thinning).filter(|&phase| length::input(phase) != [0; 3]))
 }

@@ -1,4 +1,4 @@
-//! Errors of positions on the screen and of shades, if one stage of the pipeline has a shorter or longer word.
+//! Errors of screen positions and of shades for a shorter or longer word in one stage of the pipeline.
 
 use anyhow::Result;
 use glint_model::triangle::MeshSetup;
@@ -22,7 +22,7 @@ fn rounded(x: f64, bits: u32) -> f64 {
     (x * unit).round() / unit
 }
 
-/// A vertex of a mesh in the box of 1×1×1, and a camera at a distance of 2 to 5 that looks at its middle.
+/// A vertex of a mesh in the box of 1×1×1, and a camera at a distance of 2 to 5 that looks at the box's middle.
 fn case(random: &mut Pcg64Mcg) -> (Vector, Camera) {
     let vertex = [0; 3].map(|_| random.random_range(-0.5..0.5));
     let direction = normalised([0; 3].map(|_| random.random_range(-1.0..1.0f64) + 1e-3));
@@ -156,7 +156,7 @@ pub fn formats(thinning: u32) -> Result<Vec<Trial>> {
     Ok(trials)
 }
 
-/// Errors of the intensity of a face, in steps of 255, with a rounding of its normal and one of the intensity.
+/// Errors of a face's intensity in steps of 1/255, with roundings of the normal and of the intensity.
 fn shades(
     thinning: u32,
     normal: impl Fn(Vector) -> Vector,

@@ -1,4 +1,4 @@
-//! Errors of what a pixel stores: its depth and its colour.
+//! Errors of a pixel's stored depth and colour.
 
 use anyhow::Result;
 use glint_core::fixed::Q32_32;
@@ -14,7 +14,7 @@ const RANGE: [f64; 2] = [0.1, 10.0];
 /// Number of depths.
 const DEPTHS: u32 = 1 << 18;
 
-/// Relative errors of depths from a code and back, at depths that are spread over the range by their logarithm.
+/// Relative errors of depths converted to a code and back, at depths spread logarithmically over the range.
 pub fn depths(thinning: u32) -> Result<Vec<Trial>> {
     let [near, far] = RANGE;
     let depth = |i: u32| near * (far / near).powf(f64::from(i) / f64::from(DEPTHS));
@@ -73,7 +73,7 @@ pub fn depths(thinning: u32) -> Result<Vec<Trial>> {
     Ok(trials)
 }
 
-/// Passes to `sweep` the function that converts a depth to the code of the vertex stage and back.
+/// Calls `sweep` with the conversion of a depth to the vertex stage's code and back.
 fn shipped(near: f64, sweep: impl Fn(&dyn Fn(f64) -> f64) -> Trial) -> Result<Trial> {
     let camera = Camera::looking_at([0.0, -1.0, 0.0], [0.0; 3], 1.0, near);
     let frame = MeshSetup::new(&camera.view()?, 320, 180, 1 << 15)?;
@@ -87,7 +87,7 @@ fn shipped(near: f64, sweep: impl Fn(&dyn Fn(f64) -> f64) -> Trial) -> Result<Tr
     }))
 }
 
-/// Errors of colours as the display shows them, in steps of 255 of a channel: all colours of eight bits a channel.
+/// Errors of displayed colours in steps of 1/255 of a channel, over all colours of eight bits a channel.
 pub fn colours(thinning: u32) -> Vec<Trial> {
     let trial = |pixel: &glint_variants::colour::Pixel| {
         let mut errors = Errors::default();

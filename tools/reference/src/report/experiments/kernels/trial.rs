@@ -1,8 +1,8 @@
-//! What an experiment finds.
+//! Results of an experiment.
 
 use glint_variants::kernel::Kernel;
 
-/// Names, cost in bits, and errors of a configuration: what an experiment finds.
+/// Result for a configuration: names, cost in bits, and errors.
 pub struct Trial {
     /// Name of the kernel.
     pub kernel: &'static str,
@@ -17,7 +17,7 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// The errors of a kernel, whose cost is its cycles.
+    /// The errors of a kernel with cycles as cost.
     pub fn of<I, O>(kernel: &Kernel<I, O>, errors: Errors) -> Self {
         Self {
             kernel: kernel.name,
@@ -29,7 +29,7 @@ impl Trial {
     }
 }
 
-/// Statistics of errors, with the input of the largest one.
+/// Statistics of errors, with the input of the largest error.
 #[derive(Default)]
 pub struct Errors {
     /// Largest magnitude.
@@ -38,14 +38,14 @@ pub struct Errors {
     pub squares: f64,
     /// Number of errors.
     pub count: u64,
-    /// Number of inputs, each with one error or more.
+    /// Number of inputs, each with at least one error.
     pub inputs: u64,
     /// Input of the largest error.
     pub worst: String,
 }
 
 impl Errors {
-    /// Adds the errors of one input, which `describe` names.
+    /// Adds the errors of one input; `describe` returns the input's name.
     pub fn add(&mut self, errors: &[f64], describe: impl Fn() -> String) {
         self.inputs += 1;
         for error in errors {

@@ -1,4 +1,4 @@
-//! A camera that orbits a mesh by the command `orbit`: its basis against f64, and its pictures turn by turn.
+//! A camera that orbits a mesh by the command `orbit`: the basis against f64, and the pictures of each turn.
 
 use std::f64::consts::TAU;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -17,33 +17,33 @@ use crate::report::provenance::Provenance;
 /// Number of frames of a turn.
 pub const FRAMES: u32 = 2_500;
 
-/// Azimuth and polar angle in degrees of the first camera: as after the start of the board.
+/// Azimuth and polar angle in degrees of the first camera, the camera after the start of the board.
 const START: [u32; 2] = [40, 65];
-/// Distance of the first camera: as after the start of the board.
+/// Distance of the first camera, the camera after the start of the board.
 const DISTANCE: &str = "2.5";
 
 /// The camera and the pictures after some turns: a line of `long-orbit.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// Turns so far.
+    /// Number of turns so far.
     pub turns: u32,
-    /// Number of frames of these turns.
+    /// Number of frames so far.
     pub frames: u64,
-    /// Largest difference of a basis vector's length from 1, over the cameras of one more turn.
+    /// Largest deviation of a basis vector's length from 1, over the cameras of one more turn.
     pub length: f64,
     /// Largest scalar product of two basis vectors.
     pub angle: f64,
-    /// Largest difference of a component from f64.
+    /// Largest difference of a basis vector's component from f64.
     pub reference: f64,
-    /// Pictures of the turns since the previous row that differ from those of the first turn.
+    /// Number of pictures since the previous row that differ from the first turn's.
     pub differing: u64,
-    /// Turns since the row before after which the camera is not, bit for bit, where it was at first.
+    /// Number of turns since the previous row that did not end, bit for bit, at the first camera.
     pub displaced: u32,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
-/// Lets the camera orbit `turns` times, in `frames` frames each.
+/// Runs `turns` orbits of the camera in `frames` frames each.
 ///
 /// # Errors
 /// The firmware has not been built, or refuses a command.
@@ -51,7 +51,7 @@ pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
     let commit = Provenance::find().commit;
     let mut board = start()?;
     command(&mut board, "scene cube")?;
-    // Frames wait for the vertical blanking from the first shown one on.
+    // Frames wait for the vertical blanking, from the first displayed frame on.
     let wait = cycles(&mut board, 100);
     board.inner().run(wait);
     let bar = bar(turns.into())?.with_message("orbit");
@@ -82,20 +82,20 @@ pub fn measure(turns: u32, frames: u32) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The azimuth of a frame of a turn, as the command `orbit` computes it.
+/// The azimuth of a frame of a turn, as in the command `orbit`.
 fn azimuth(frame: u32, frames: u32) -> Turns {
     let turned = (u64::from(frame) << 32) / u64::from(frames);
     Turns::from_degrees(Q32_32::from_num(START[0])).wrapping_add(Turns(turned as u32))
 }
 
-/// Moves the camera to its position in a frame.
+/// Moves the camera to its position in a frame of a turn.
 fn place(board: &mut Emulated, azimuth: Turns) -> Result<()> {
     let (theta, phi) = (azimuth.to_degrees(), START[1]);
     command(board, &format!("camera {DISTANCE} {theta} {phi}"))?;
     Ok(())
 }
 
-/// Hashes of the pictures of a turn, drawn one by one, from its start on. The camera is at the start afterwards.
+/// Hashes of the pictures of a turn from its start, drawn one by one. Returns the camera to the start.
 fn pictures(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     let mut hashes = Vec::new();
     for frame in 0..=frames {
@@ -114,12 +114,12 @@ fn shown(board: &mut Emulated) -> u64 {
     hasher.finish()
 }
 
-/// Hashes of the pictures on the monitor while the camera orbits once.
+/// Hashes of the pictures on the monitor during one orbit of the camera.
 fn orbit(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     let mut hashes = vec![shown(board)];
     begin(board, &format!("orbit {frames}"))?;
     let mut said = Vec::new();
-    // The last frame is shown one blanking after the reply.
+    // The last frame is displayed one blanking after the reply.
     while !said.ends_with(b"ok\r\nglint> ") {
         hashes.push(shown(board));
         board.inner().uart_read(&mut said);
@@ -129,14 +129,14 @@ fn orbit(board: &mut Emulated, frames: u32) -> Result<Vec<u64>> {
     Ok(hashes)
 }
 
-/// Number of pictures by which two sequences differ.
+/// Number of differing pictures of two sequences.
 fn differences(expected: &[u64], found: &[u64]) -> u64 {
     let equal = expected.iter().zip(found).filter(|(a, b)| a == b).count();
     (expected.len().max(found.len()) - equal) as u64
 }
 
-/// The largest errors over the cameras of a turn: of a length, of an angle, and of a component against f64. The camera is at the start
-/// afterwards.
+/// The largest errors over the cameras of a turn: of a length, of an angle (scalar product), and of a component against f64.
+/// Returns the camera to the start.
 pub fn deviations(board: &mut Emulated, frames: u32) -> Result<[f64; 3]> {
     let mut worst = [0.0_f64; 3];
     for frame in 1..=frames {

@@ -1,4 +1,4 @@
-//! A day of the motion sensor on the board: the attitude of the firmware against the true one.
+//! A day of the motion sensor on the board: the firmware's attitude against the true attitude.
 
 use std::sync::{Arc, Mutex};
 
@@ -15,11 +15,11 @@ use crate::imu::quaternion::Quaternion;
 use crate::report::progress::bar;
 use crate::report::provenance::Provenance;
 
-/// Time in s at which the motion begins; before, the sensor rests and is calibrated.
+/// Start of the motion in s; before, the sensor rests and is calibrated.
 const BEGIN: f64 = 20.0;
-/// Rates about the sensor's axes in °/s of the sensor that turns: 30 °/s about an axis that is not an axis of the sensor.
+/// Rates of the turning sensor about its axes in °/s: 30 °/s about an oblique axis.
 const RATE: [f64; 3] = [10.0, 20.0, -20.0];
-/// The sensor's bias in °/s, and its noise in °/s and g per √Hz, which is that of a real one.
+/// The sensor's bias in °/s, and a real sensor's noise in °/s and g per √Hz.
 const IMPERFECTIONS: Imperfections = Imperfections {
     bias: [4.5, 0.05, 1.1],
     noise: 0.005,
@@ -28,7 +28,7 @@ const IMPERFECTIONS: Imperfections = Imperfections {
     ..Imperfections::NONE
 };
 
-/// Minutes after [`BEGIN`] at which the attitude is measured, up to an hour; then it is measured each hour.
+/// Times of measurements in the first hour, in minutes after [`BEGIN`]; then one measurement an hour.
 const MINUTES: [f64; 9] = [1.0 / 6.0, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0];
 
 /// Path of the sensor.
@@ -36,7 +36,7 @@ const MINUTES: [f64; 9] = [1.0 / 6.0, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0
 pub enum Path {
     /// At rest.
     Rest,
-    /// Turning at 30 °/s about an oblique axis.
+    /// Rotation at 30 °/s about an oblique axis.
     Turning,
 }
 
@@ -80,61 +80,61 @@ impl Path {
     }
 }
 
-/// Errors of the attitude at one time: a line of `long-sensor.csv`.
+/// Errors of the attitude at a time: a line of `long-sensor.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Path of the sensor.
     pub path: String,
-    /// Time since the motion began, in s.
+    /// Time since the start of the motion, in s.
     pub seconds: f64,
     /// Error of the rotation about the vertical since the start of the motion, in degrees.
     pub heading: f64,
-    /// Angle between the vertical and the firmware's, in degrees.
+    /// Angle between the true vertical and the firmware's, in degrees.
     pub inclination: f64,
-    /// Largest error of a length or an angle of the basis of a camera that the sensor turns.
+    /// Largest error of a length or an angle of the basis of the camera steered by the sensor.
     pub basis: f64,
-    /// Number of samples that the firmware has taken.
+    /// Number of samples read by the firmware.
     pub samples: u64,
-    /// Number of samples of the sensor that the firmware has not taken.
+    /// Number of the sensor's samples lost by the firmware.
     pub lost: u64,
-    /// Gaps in the samples, of more than half a second.
+    /// Number of gaps of more than half a second in the samples.
     pub gaps: u64,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
-/// Number of measurements whose times are known: more than the firmware has not taken yet.
+/// Number of the last measurements with stored times: more than the firmware's backlog.
 const KNOWN: usize = 64;
 
-/// Number of statuses of which one, at least, should have no measurement that the firmware has not taken yet.
+/// Number of status polls: at least one should find the firmware without backlog.
 const POLLS: u32 = 24;
 
-/// Times of the last measurements of the chip, and their number.
+/// The chip's number of measurements, and the times of the last ones.
 struct Measured {
     count: u64,
     times: [f64; KNOWN],
 }
 
 impl Measured {
-    /// Time of a measurement by its number from 1 on, if it is one of the last ones.
+    /// Time of a measurement by its number, from 1; `None` if it is no longer stored.
     fn time(&self, number: u64) -> Option<f64> {
         let is_known = number <= self.count && number + KNOWN as u64 > self.count;
         is_known.then(|| self.times[number as usize % KNOWN])
     }
 }
 
-/// The board with its sensor, and the times and numbers of the samples.
+/// The board with its sensor, and the sensor's measurements.
 struct Bench {
     path: Path,
     board: Emulated,
     measured: Arc<Mutex<Measured>>,
-    /// Number by which the chip's measurements exceed the firmware's samples.
+    /// Number of the chip's measurements minus number of the firmware's samples.
     ahead: u64,
-    /// The turn about the vertical when the motion began.
+    /// The rotation about the vertical at the start of the motion.
     heading: f64,
 }
 
-/// What the firmware says about the sensor.
+/// The firmware's status of the sensor.
 struct Status {
     samples: u64,
     gaps: u64,
@@ -163,7 +163,7 @@ pub fn measure(path: Path, hours: f64) -> Result<Vec<Row>> {
 }
 
 impl Bench {
-    /// A board with a calibrated sensor, just before the motion begins.
+    /// A board with a calibrated sensor, just before the start of the motion.
     fn new(path: Path) -> Result<Self> {
         let mut board = start()?;
         let measured = Arc::new(Mutex::new(Measured {
@@ -234,14 +234,13 @@ impl Bench {
         })
     }
 
-    /// Number by which the chip's measurements exceed the samples of a status that has just been read.
+    /// Number of the chip's measurements minus the samples of a new status.
     fn excess(&self, status: &Status) -> Result<u64> {
         Ok(self.count()?.saturating_sub(status.samples))
     }
 
-    /// The firmware's status of the newest sample, and the number by which the chip's measurements exceed the samples. Some
-    /// measurements have not been taken yet, so the smallest of several numbers counts. That of the returned status is one of them:
-    /// its last sample is then a measurement that the chip has made.
+    /// The firmware's newest status, and the smallest excess of the chip's measurements over the samples of several statuses.
+    /// Larger excesses include the firmware's backlog.
     fn newest(&mut self) -> Result<(Status, u64)> {
         let mut status = self.status()?;
         let mut ahead = self.excess(&status)?;
@@ -262,7 +261,7 @@ impl Bench {
         let truth = self
             .path
             .attitude(time.context("the last sample has no time")?)?;
-        // What turns the true attitude to the firmware's, about the axes of the world.
+        // Rotation from the true to the firmware's attitude, in world axes.
         let error = status.attitude.times(truth.inverse());
         let [heading, ..] = error.angles();
         let turned = (heading - self.heading).to_degrees();
@@ -279,7 +278,7 @@ impl Bench {
         })
     }
 
-    /// The largest error of a length or an angle of the camera's basis, while the sensor turns the camera.
+    /// The largest error of a length or an angle of the camera's basis, with the camera steered by the sensor.
     fn basis(&mut self) -> Result<f64> {
         command(&mut self.board, "imu look")?;
         let wait = cycles(&mut self.board, 50);

@@ -1,5 +1,4 @@
-//! The board beyond the ranges of its counters: commands while a counter wraps, pauses that are short in 32 bits, and counters of the
-//! engines.
+//! Overflows of the board's counters: commands while a counter wraps, pauses that seem short in 32 bits, and counters of the engines.
 
 use anyhow::{Context, Result, ensure};
 use glint::board::Board;
@@ -17,22 +16,22 @@ use crate::emulated::{Emulated, command, cycles, start, value, view};
 use crate::report::progress::bar;
 use crate::report::provenance::Provenance;
 
-/// A question to the board, with the expected and the measured answer: a line of `long-uptime.csv`.
+/// A query to the board, with the expected and the measured reply: a line of `long-uptime.csv`.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Row {
-    /// Time of the question.
+    /// Time of the query.
     pub when: String,
-    /// The question.
+    /// The query.
     pub what: String,
-    /// The expected answer.
+    /// The expected reply.
     pub expected: String,
-    /// The measured answer.
+    /// The measured reply.
     pub measured: String,
-    /// Commit with which the row was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
-/// Commands whose replies do not change with the time, and the first words of the lines that count; all lines without such a word.
+/// Commands with time-independent replies, and the keys of the compared lines; no key means all lines.
 const QUESTIONS: [(&str, &[&str]); 7] = [
     ("echo still", &[]),
     ("info", &["firmware_id", "scene", "size", "uart_lost"]),
@@ -48,19 +47,19 @@ const QUESTIONS: [(&str, &[&str]); 7] = [
 
 /// 2^32: the number of values of the counters' low words.
 const WRAP: u64 = 1 << 32;
-/// A pause in ms after which a hand is still tracked.
+/// A pause in ms that does not interrupt the tracking of a hand.
 const SHORT: u64 = 100;
 
-/// The board, and what was found.
+/// The board and the results.
 struct Bench {
     board: Emulated,
     rows: Vec<Row>,
     commit: String,
-    /// Seconds of the board's time.
+    /// Progress in seconds of the board's time.
     bar: ProgressBar,
 }
 
-/// Asks all questions; `quick` leaves out those that need more than 2^32 cycles a few times.
+/// Makes all queries; `quick` skips the queries that need several times 2^32 cycles.
 ///
 /// # Errors
 /// The firmware has not been built, or does not answer.
@@ -103,7 +102,7 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
         })?;
         bench.sensor_is_off()?;
         bench.engine_counters()?;
-        // Without a sensor, because the time of its transfers is most of the time on the host.
+        // Without a sensor, whose transfers would take most of the host's time.
         let wait = hours * 3_600_000 - bench.milliseconds();
         bench.run(wait);
         bench.board.inner().plug(resting_sensor());
@@ -117,7 +116,7 @@ pub fn measure(quick: bool) -> Result<Vec<Row>> {
 }
 
 impl Bench {
-    /// Time of the board in ms.
+    /// The board's time in ms.
     fn milliseconds(&mut self) -> u64 {
         self.board.inner().cycles() / cycles(&mut self.board, 1)
     }
@@ -148,8 +147,7 @@ impl Bench {
         });
     }
 
-    /// Does something now, and again so that the number of cycles passes a multiple of 2^32 meanwhile, `lead` ms after it has begun. The
-    /// answers must be equal.
+    /// Makes a query now, and again across a multiple of 2^32 cycles, `lead` ms after the query's start. The replies must be equal.
     fn across(
         &mut self,
         what: &str,
@@ -167,7 +165,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The answers to the questions.
+    /// The replies to the queries.
     fn answers(&mut self) -> Result<Vec<String>> {
         let ask = |(question, words): (&str, &[&str])| {
             Ok(picked(command(&mut self.board, question)?, words))
@@ -194,12 +192,12 @@ impl Bench {
         Ok(())
     }
 
-    /// A hand in front of the image sensor, while the main loop is busy with an upload for slightly more than 2^32 cycles.
+    /// Tests a hand in front of the image sensor while an upload blocks the main loop for slightly more than 2^32 cycles.
     fn hand(&mut self) -> Result<()> {
         let mut sensor = image_sensor(moving_hand([320, 240]));
         let still = sensor.source.frame(0.0);
         sensor.source = Box::new(Still(still));
-        // 20 frames per second, of few periods, which take time on the host.
+        // 20 frames per second with few clock periods, to save time on the host.
         sensor.timing.clock = 4_000_000;
         sensor.timing.blank = [3, 20, 20];
         self.board.inner().plug_image_sensor(sensor);
@@ -217,9 +215,9 @@ impl Bench {
         Ok(())
     }
 
-    /// Begins an upload, and keeps it open up to a cycle.
+    /// Begins an upload, and keeps it open until the cycle `end`.
     fn hold_transfer(&mut self, end: u64) -> Result<()> {
-        // Time from Ctrl-C to its effect.
+        // Time from Ctrl-C to the end of the upload.
         let effect = cycles(&mut self.board, 60);
         let mesh = cube();
         let Manifest { length, crc32 } = Manifest::of(&mesh);
@@ -232,7 +230,7 @@ impl Bench {
         let length = Sender::new(&mesh, 1, Timing::HOST, now).poll(now, &mut frame);
         let mut said = Vec::new();
         loop {
-            // Each opening frame tells the board that the line is alive.
+            // Each opening frame keeps the upload from timing out.
             self.board.write(&frame[..length])?;
             let left = (end - effect).saturating_sub(self.board.inner().cycles());
             let span = cycles(&mut self.board, 800);
@@ -247,7 +245,8 @@ impl Bench {
         Ok(())
     }
 
-    /// A sensor that turns is unplugged for 2^32 µs and a little, and then comes back; its samples then pass a multiple of 2^32 µs.
+    /// Tests a turning sensor that is unplugged for slightly more than 2^32 µs and plugged in again; then the time stamps cross a
+    /// multiple of 2^32 µs.
     fn sensor_is_off(&mut self) -> Result<()> {
         let attitude = |bench: &mut Self| value::<String>(&mut bench.board, "imu", "angles");
         let gaps = |bench: &mut Self| value::<u64>(&mut bench.board, "imu", "gaps");
@@ -272,7 +271,7 @@ impl Bench {
         let yaw = |angles: &str| -> Result<f64> {
             Ok(angles.split(' ').next().context("angles")?.parse()?)
         };
-        // The samples since the gap turn it by a few tenths.
+        // The samples since the gap change yaw by a few tenths of a degree.
         let moved = (yaw(&turned)? - yaw(&before)? + 180.0).rem_euclid(360.0) - 180.0;
         let is_kept = moved.abs() < 1.0;
         let kept = "within 1 of that before the pause".to_owned();
@@ -293,7 +292,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Frames of a field until the engines have been busy for 2^32 cycles.
+    /// Tests frames of a field until the engines have been busy for 2^32 cycles.
     fn engine_counters(&mut self) -> Result<()> {
         const WORDS: [&str; 5] = [
             "evaluations",
@@ -325,7 +324,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The clocks that the firmware shows, against those of the emulated board.
+    /// Compares the firmware's clocks with the emulated board's.
     fn clocks(&mut self, when: &str) -> Result<()> {
         let shown: u64 = value(&mut self.board, "info uptime_ms", "uptime_ms")?;
         let exact = self.milliseconds();
@@ -355,7 +354,7 @@ impl Bench {
     }
 }
 
-/// The lines of a reply whose first word is one of `words`, or all lines without words.
+/// The lines of a reply with a key of `words`, or all lines if `words` is empty.
 fn picked(lines: Vec<String>, words: &[&str]) -> String {
     let counts = |line: &String| {
         let word = line.split(' ').next().unwrap_or_default();
@@ -370,7 +369,7 @@ fn picked(lines: Vec<String>, words: &[&str]) -> String {
 
 const STREAM: &str = "200 samples, each at most 1.2 ms after the one before";
 
-/// Streams samples, and states whether their times grow by a sample's period each.
+/// Streams samples, and reports whether their times are a sample period apart.
 fn stream(board: &mut Emulated) -> Result<String> {
     const COMMAND: &str = "imu stream 200";
     let lines = command(board, COMMAND)?;
@@ -384,7 +383,7 @@ fn stream(board: &mut Emulated) -> Result<String> {
     })
 }
 
-/// Uploads a mesh, and states what the board has then.
+/// Uploads a mesh, and reports the board's mesh statistics.
 fn upload_mesh(board: &mut Emulated) -> Result<String> {
     let (mesh, _) = glint::convert::convert(
         &glint::generate::named("icosphere:5")?,
@@ -397,7 +396,7 @@ fn upload_mesh(board: &mut Emulated) -> Result<String> {
         Ok(lines)
     };
     let lines = send(board, &mesh)?;
-    // Uploads another mesh first, because data that the board already has are not sent again.
+    // Uploads another mesh between, because data already on the board are not sent again.
     send(board, &cube())?;
     command(board, "scene cube")?;
     Ok(picked(lines, &["vertices", "triangles"]))
@@ -407,7 +406,7 @@ fn cube() -> Vec<u8> {
     Model::cube(8_192).encoded()
 }
 
-/// An image sensor that sees one picture.
+/// An image sensor with a constant picture.
 struct Still(Frame);
 
 impl Pictures for Still {

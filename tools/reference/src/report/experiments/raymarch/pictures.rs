@@ -58,9 +58,9 @@ pub struct Row {
     pub missed: String,
     /// Names of the goals that the picture misses.
     pub not_reached: String,
-    /// Commit with which the picture was measured.
+    /// Commit of the measurement.
     pub commit: String,
-    /// Versions of the tools with which the picture was measured.
+    /// Tool versions of the measurement.
     pub tools: String,
 }
 

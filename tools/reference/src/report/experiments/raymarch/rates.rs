@@ -199,7 +199,7 @@ pub struct Row {
     pub at_least: f64,
     /// The goal beyond the requirement, in frames per second.
     pub aim: Option<f64>,
-    /// Commit with which the pose was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 

@@ -41,7 +41,7 @@ pub struct Trial {
     pub cycles: Option<f64>,
     /// Names of the requirements that the configuration misses.
     pub failed: String,
-    /// Commit with which the configuration was measured.
+    /// Commit of the measurement.
     pub commit: String,
 }
 
