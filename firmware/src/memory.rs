@@ -74,13 +74,13 @@ pub fn size() -> u32 {
     end.addr() as u32 - MAIN_RAM.base
 }
 
-/// Expands to a slice of a window of memory. The arguments are the linker symbols of its first byte and of its size in
-/// bytes, and the type of the elements.
+/// Expands to a slice of a window of memory. The arguments are the linker symbols of the window's first byte and of its size in bytes, and
+/// the element type.
 macro_rules! window {
     ($start:ident, $size:ident, $element:ty) => {{
         let bytes = (&raw const $size).addr();
         // SAFETY: memory.x reserves this window for this use and asserts alignment and no overlap; every bit pattern is
-        // a valid element; the caller lends the window once.
+        // a valid element; the caller makes at most one slice of the window.
         unsafe { slice::from_raw_parts_mut((&raw mut $start).cast::<$element>(), bytes / size_of::<$element>()) }
     }};
 }
@@ -115,11 +115,11 @@ impl Memory {
     }
 }
 
-/// Copies the fast code, which memory.x selects, to the SRAM. Fast code must not run before this call. Every SoC has this
-/// SRAM, because the BIOS needs it.
+/// Copies the fast code, which memory.x selects, to the SRAM. Fast code must not run before this call. Every SoC has the SRAM, because the
+/// BIOS needs it.
 pub fn load_fast_code() {
     let size = (&raw const _fast_size).addr();
-    // SAFETY: memory.x reserves the SRAM at `_fast` for the fast code and loads that code at `_fast_loaded` with the program.
+    // SAFETY: memory.x reserves the SRAM at `_fast` for the fast code, and places the code's load image at `_fast_loaded`.
     // Both regions have `_fast_size` bytes, a multiple of a word, and nothing else uses them.
     unsafe {
         ptr::copy_nonoverlapping(&raw const _fast_loaded, &raw mut _fast, size);
@@ -134,7 +134,7 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Returns memory for at least `count` vertices, or the whole memory if it has fewer.
+    /// Returns memory for at least `count` vertices, or the whole memory if it holds fewer.
     pub fn vertices(&mut self, count: usize) -> &mut [Projected] {
         let count = count.min(self.memory.len());
         if let Some(fresh) = self.memory.get_mut(self.ready..count) {

@@ -1,4 +1,4 @@
-//! Meshes and wireframe programs: the built-in ones and the uploaded ones, and the staging memory for the next upload.
+//! Meshes and wireframe programs, built-in and uploaded, and the staging memory for the next upload.
 
 use core::slice;
 
@@ -25,17 +25,17 @@ struct Named {
     mesh: Mesh<'static>,
 }
 
-/// Reason why no mesh can be uploaded under a name.
+/// Reason why a name is not allowed for an upload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NameError {
-    /// The name is that of a scene.
+    /// The name is the name of a scene.
     Scene,
     /// There are [`MAX_MESHES`] meshes with other names.
     Full,
 }
 
-/// The built-in meshes and program, the uploaded ones side by side in an arena, and the objects that are made of the meshes. An
-/// uploaded mesh replaces a built-in one with its name.
+/// The built-in meshes and program, the uploads in an arena, and the objects made of the meshes. An uploaded mesh replaces a built-in mesh
+/// of equal name.
 pub struct Models {
     arena: Arena,
     /// The uploaded meshes and their memory.
@@ -50,8 +50,8 @@ pub struct Models {
 }
 
 impl Models {
-    /// The models at start. `shapes` is memory for the built-in meshes, `turned` for copies of meshes with transformed
-    /// normals, and `cube_program` the built-in wireframe program.
+    /// Makes the initial models. `shapes` is memory for the built-in meshes, `turned` is memory for copies of meshes with transformed
+    /// normals, and `cube_program` is the built-in wireframe program.
     ///
     /// # Errors
     /// [`MeshError`] for a damaged cube.
@@ -72,17 +72,17 @@ impl Models {
         })
     }
 
-    /// A number that is another one after each change of uploads.
+    /// A number that changes with each change of the uploads.
     pub const fn revision(&self) -> u32 {
         self.revision
     }
 
-    /// The mesh that `scene` has, alone or in its field; the cube if there is none.
+    /// The mesh of `scene`, with or without a field; the cube if the mesh does not exist.
     pub fn mesh(&self, scene: &Scene) -> Mesh<'_> {
         self.known(&scene.mesh).unwrap_or(self.shapes.cube())
     }
 
-    /// The frame of `scene`. Its objects are those of the last [`update`](Self::update_objects).
+    /// The frame of `scene`. Its objects are as of the last [`update`](Self::update_objects).
     pub fn frame<'a>(&'a self, scene: &'a Scene) -> Frame<'a> {
         scene.frame(Content {
             mesh: Some(self.mesh(scene)),
@@ -91,7 +91,7 @@ impl Models {
         })
     }
 
-    /// Prepares the objects of `scene`, if it shows them, for the next frame. Calls `progress` at short intervals.
+    /// Prepares the objects of `scene`, if it shows objects, for the next frame. Calls `progress` at short intervals.
     pub fn update_objects(&mut self, scene: &Scene, progress: &mut dyn FnMut()) {
         if scene.shows_objects() {
             let Self {
@@ -109,7 +109,7 @@ impl Models {
         self.uploaded_program().unwrap_or(&self.cube_program)
     }
 
-    /// The uploaded program, if there is one.
+    /// The uploaded program, if any.
     pub fn uploaded_program(&self) -> Option<&Program<'_>> {
         self.program.as_ref().map(|(program, _)| program)
     }
@@ -120,17 +120,17 @@ impl Models {
         uploads.map(|(named, _)| (named.name.as_str(), &named.mesh))
     }
 
-    /// Names of the built-in meshes that no upload has taken the place of.
+    /// Names of the built-in meshes that no upload replaces.
     pub fn built_in(&self) -> impl Iterator<Item = &'static str> {
         Shapes::names().filter(move |built_in| self.uploads().all(|(name, _)| name != *built_in))
     }
 
-    /// Number of bytes without an upload.
+    /// Number of free bytes.
     pub fn free(&self) -> usize {
         self.arena.free()
     }
 
-    /// A built-in shape; `None` if there is no memory for it.
+    /// A built-in shape; `None` if its memory is too small.
     pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         self.shapes.shape(shape)
     }
@@ -145,12 +145,12 @@ impl Models {
         self.has_upload(name) || Shapes::names().any(|built_in| built_in == name)
     }
 
-    /// Whether there is a mesh with this name. A shape is made when it is used for the first time.
+    /// Whether there is a mesh with this name. Makes a built-in shape on first use.
     pub fn prepare(&mut self, name: &str) -> bool {
         self.has_upload(name) || self.shapes.named(name).is_some()
     }
 
-    /// The mesh with this name, if it is an upload or has been made.
+    /// The mesh with this name, if it is an upload or a built-in mesh that has been made.
     pub fn known(&self, name: &str) -> Option<Mesh<'_>> {
         known(&self.meshes, &self.shapes, name)
     }
@@ -160,10 +160,10 @@ impl Models {
         self.arena.staging()
     }
 
-    /// Checks that an upload may have this name, which is not that of a scene. An upload that is under way counts as a mesh.
+    /// Checks that an upload may have this name, which must not be the name of a scene. An upload in progress counts as a mesh.
     ///
     /// # Errors
-    /// The reason why not.
+    /// The reason why the name is not allowed.
     pub fn check_name(&self, name: &str) -> Result<(), NameError> {
         if self.meshes.len() + self.arena.lent() >= MAX_MESHES && !self.has_upload(name) {
             return Err(NameError::Full);
@@ -171,8 +171,8 @@ impl Models {
         Ok(())
     }
 
-    /// Lends the first `length` bytes of the staging memory; `None` if the free memory is shorter. This may move uploads, so no frame
-    /// may be in progress.
+    /// Lends the first `length` bytes of the staging memory; `None` if the free memory is smaller. This may move uploads, so no frame may
+    /// be in progress.
     pub fn lend(&mut self, length: usize) -> Option<Loan> {
         let moves = self.arena.lent() == 0;
         if moves && (self.arena.staging().len() + 1..=self.arena.free()).contains(&length) {
@@ -181,12 +181,13 @@ impl Models {
         self.arena.lend(length)
     }
 
-    /// Takes memory back that [`lend`](Self::lend) has lent. The staging memory keeps its bytes.
+    /// Takes back memory that [`lend`](Self::lend) has lent. The bytes stay unchanged in the staging memory.
     pub fn give_back(&mut self, loan: Loan) {
         self.arena.give_back(loan);
     }
 
-    /// Checks lent memory as a mesh, and keeps the mesh under `name`, instead of an earlier one of this name. No frame may be in progress.
+    /// Checks lent memory as a mesh, and keeps the mesh under `name`; it replaces an earlier mesh of this name. No frame may be in
+    /// progress.
     ///
     /// # Errors
     /// [`MeshError`] for an invalid mesh; then nothing changes, and the memory is given back.
@@ -214,13 +215,13 @@ impl Models {
         Ok(())
     }
 
-    /// Notes that uploads change. Nothing outside of them has their meshes from now on.
+    /// Records a change of the uploads, and drops all references to their meshes outside of the list of uploads.
     fn revise(&mut self) {
         self.revision = self.revision.wrapping_add(1);
         self.objects.truncate(0);
     }
 
-    /// Checks lent memory as a wireframe program, and keeps the program instead of the last one. No frame may be in progress.
+    /// Checks lent memory as a wireframe program, and keeps the program; it replaces the last program. No frame may be in progress.
     ///
     /// # Errors
     /// [`ProgramError`] for an invalid program; then nothing changes, and the memory is given back.
@@ -242,7 +243,8 @@ impl Models {
         }
     }
 
-    /// Removes an uploaded mesh, and moves the others together, so no frame may be in progress. Returns whether there is such a mesh.
+    /// Removes an uploaded mesh, and closes the gap by moving other uploads, so no frame may be in progress. Returns whether the mesh
+    /// existed.
     pub fn remove(&mut self, name: &str) -> bool {
         let Some(position) = self.meshes.iter().position(|(named, _)| named.name == name) else {
             return false;
@@ -253,11 +255,11 @@ impl Models {
         true
     }
 
-    /// Moves all uploads together, so that one gap remains.
+    /// Moves all uploads so that one gap remains.
     fn close_gaps(&mut self) {
         self.revise();
         let cube = self.shapes.cube();
-        // Nothing may borrow from the arena while it moves its regions.
+        // No references into the arena may exist while it moves its regions.
         let lengths: Vec<usize, MAX_MESHES> = self
             .meshes
             .iter_mut()
@@ -287,9 +289,9 @@ impl Models {
     /// The first `length` bytes of a region, for a mesh or a program that borrows them.
     fn lasting(&self, region: Region, length: usize) -> &'static [u8] {
         let bytes = self.arena.bytes(region, length);
-        // SAFETY: the memory is 'static. What borrows these bytes is dropped, or kept in `meshes`, `program` and `objects`,
-        // which are private. `accept`, `accept_program` and `remove` take it out of these before they release its region, and
-        // `close_gaps` before it moves the regions; the arena lends nothing but gaps for writing.
+        // SAFETY: the memory is 'static. All borrowers of these bytes are dropped, or are in the private fields `meshes`, `program` and
+        // `objects`. `accept`, `accept_program` and `remove` take a borrower out of these fields before they release its region, and
+        // `close_gaps` before it moves the regions; the arena lends only gaps mutably.
         unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) }
     }
 }

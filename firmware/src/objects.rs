@@ -1,4 +1,4 @@
-//! The objects of the scene as drawn: meshes with places, and copies of meshes with transformed normals.
+//! The objects of the scene as drawn: meshes with placements, and copies of meshes with transformed normals.
 
 use core::{ptr, slice};
 
@@ -24,14 +24,14 @@ pub struct Objects {
     objects: Vec<Object<'static>, MAX_OBJECTS>,
     /// Memory for the copies.
     memory: Arena,
-    /// Whether every object has a copy that needs one and for which there is memory.
+    /// Whether all copies that are needed, and that fit the memory, have been made.
     is_turned: bool,
 }
 
-/// The mesh of an object.
+/// The original mesh of an object.
 struct Source {
     mesh: Mesh<'static>,
-    /// The copy that is drawn instead of the mesh.
+    /// The copy that is drawn in place of the mesh.
     copy: Option<Copy>,
 }
 
@@ -39,12 +39,12 @@ struct Source {
 struct Copy {
     /// The memory of the copy.
     region: Region,
-    /// The matrix that has transformed the normals.
+    /// The matrix by which the normals have been transformed.
     normals: Normals,
 }
 
 impl Objects {
-    /// No objects. `memory` is for copies of meshes with transformed normals.
+    /// No objects. Makes an empty list of objects; `memory` is for copies of meshes with transformed normals.
     pub const fn new(memory: Arena) -> Self {
         Self {
             sources: Vec::new(),
@@ -59,7 +59,7 @@ impl Objects {
         &self.objects
     }
 
-    /// Forgets the objects from this index on, and their meshes.
+    /// Removes the objects from this index on, and frees their copies.
     pub fn truncate(&mut self, count: usize) {
         self.objects.truncate(count);
         while self.sources.len() > count {
@@ -67,14 +67,14 @@ impl Objects {
             if let Some(copy) = copy {
                 self.memory.release(copy.region);
             }
-            // There may be memory for further copies now.
+            // The freed memory may hold further copies.
             self.is_turned = false;
         }
     }
 
-    /// Makes the objects those of `scene`, with the meshes that `find` returns for their names. Gives each object whose normals a matrix
-    /// transforms a copy of its mesh with transformed normals, as long as there is memory, so that the gateware can draw it. Calls
-    /// `progress` at short intervals. No frame may be in progress.
+    /// Updates the objects to those of `scene`; `find` returns a mesh by its name. For each object whose matrix transforms normals, makes
+    /// a copy of the mesh with transformed normals, as long as memory is left, so that the gateware can draw the object. Calls `progress`
+    /// at short intervals. No frame may be in progress.
     ///
     /// An object that has not changed since the last call keeps its copy.
     pub fn update(
@@ -85,7 +85,7 @@ impl Objects {
     ) {
         self.truncate(scene.objects.len());
         for (index, placed) in scene.objects.iter().enumerate() {
-            // A scene has no object without a mesh.
+            // Every object of a scene has a mesh.
             if let Some(mesh) = find(&placed.mesh) {
                 self.set(index, scene, placed, mesh);
             }
@@ -107,12 +107,12 @@ impl Objects {
         self.is_turned = true;
     }
 
-    /// Draws `placed` as the object with this index from now on, with the copy of its mesh if that fits.
+    /// Sets the object with this index to `placed`, and keeps the copy of its mesh if the copy is still valid.
     fn set(&mut self, index: usize, scene: &Scene, placed: &PlacedMesh, mesh: Mesh<'static>) {
         let (Some(source), Some(old)) = (self.sources.get_mut(index), self.objects.get_mut(index))
         else {
             let source = Source { mesh, copy: None };
-            // Both lists have room for all objects of a scene.
+            // The capacity of both lists suffices for all objects of a scene.
             let _ = self.sources.push(source);
             let _ = self.objects.push(scene.object(&placed.place, mesh));
             self.is_turned = false;
@@ -126,7 +126,7 @@ impl Objects {
         }
         let mut object = scene.object(&placed.place, mesh);
         match source.copy.take() {
-            // The object has moved, and its normals have not turned.
+            // The object has moved, but its normals are unchanged.
             Some(copy) if is_same && object.placement.normals() == Some(&copy.normals) => {
                 object.placement = object.placement.of_turned_mesh();
                 object.subject.mesh = old.subject.mesh;
@@ -143,7 +143,7 @@ impl Objects {
         *old = object;
     }
 
-    /// Makes the missing copies. Returns whether there was memory for all of them.
+    /// Makes the missing copies. Returns whether all copies fit the memory.
     fn make_copies(&mut self, progress: &mut dyn FnMut()) -> bool {
         let mut is_complete = true;
         for (source, object) in self.sources.iter_mut().zip(&mut self.objects) {
@@ -163,7 +163,7 @@ impl Objects {
     }
 }
 
-/// Copies a mesh into a region of `memory`, with normals that `normals` has turned; `None` without memory for it.
+/// Copies a mesh into a region of `memory`, with normals transformed by `normals`; `None` if the copy does not fit.
 fn copy(
     mesh: &Mesh,
     normals: &Normals,
@@ -180,7 +180,7 @@ fn copy(
     };
     let copy = mesh.copy_with_normals(memory.staging(), &mut turn)?;
     let bytes = copy.bytes();
-    // SAFETY: the memory is 'static, and the region that holds these bytes is written only after its release. `Objects`, whose fields
+    // SAFETY: the memory is 'static, and the region of these bytes is only written after its release. `Objects`, whose fields
     // are private, takes the copy out of its list before it releases the region.
     let bytes: &'static [u8] = unsafe { slice::from_raw_parts(bytes.as_ptr(), bytes.len()) };
     let mesh = Mesh::new_checked(bytes).ok()?;

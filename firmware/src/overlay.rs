@@ -1,4 +1,4 @@
-//! Text over the upper left corner of a picture.
+//! Text overlay in the upper left corner of a picture.
 
 use core::convert::Infallible;
 use core::fmt;
@@ -19,7 +19,7 @@ const MARGIN: i32 = 4;
 /// Height of a line of text, in pixels.
 const LINE: i32 = 11;
 
-/// Writes text over a picture, in white on black. Text beyond the edges is cut.
+/// Writes text on a picture, white on black. Text beyond the edges is clipped.
 pub struct Overlay<'a> {
     picture: Picture<'a>,
     style: MonoTextStyle<'static, Rgb565>,
@@ -27,7 +27,7 @@ pub struct Overlay<'a> {
 }
 
 impl<'a> Overlay<'a> {
-    /// An overlay of the picture `colours`, RGB565 row by row.
+    /// An overlay on the picture `colours`, RGB565 row by row.
     pub fn new(colours: &'a mut [u16], size: Size) -> Self {
         let style = MonoTextStyleBuilder::new()
             .font(&FONT_6X10)
@@ -41,9 +41,9 @@ impl<'a> Overlay<'a> {
         }
     }
 
-    /// Writes a line, and continues with the next one.
+    /// Writes a line, and moves to the next line.
     pub fn line(&mut self, text: fmt::Arguments) {
-        // Drawing does not fail.
+        // Drawing never fails.
         let _ = fmt::write(self, text);
         self.place = Point::new(MARGIN, self.place.y + LINE);
     }
@@ -58,7 +58,7 @@ impl fmt::Write for Overlay<'_> {
     }
 }
 
-/// A picture as a target of drawing. Pixels outside are left out.
+/// A picture as a drawing target. Pixels outside of the picture are ignored.
 struct Picture<'a> {
     colours: &'a mut [u16],
     size: Size,
@@ -81,7 +81,7 @@ impl DrawTarget for Picture<'_> {
     ) -> Result<(), Infallible> {
         let [width, height] = self.size.pixels();
         for Pixel(Point { x, y }, colour) in pixels {
-            // Negative coordinates are large numbers here.
+            // Negative coordinates become large numbers, which are outside of the picture.
             let (x, y) = (x as u32, y as u32);
             if x < width
                 && y < height

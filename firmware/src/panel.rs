@@ -1,32 +1,32 @@
-//! Switches, LEDs and displays of digits of the board.
+//! Switches, LEDs and digit displays of the board.
 
 use glint_core::digits::Display;
 use glint_scene::Scene;
 
 use crate::demo::Demo;
 
-/// Switch 2: the text over the picture.
+/// Switch 2: shows the text overlay.
 const OVERLAY: u16 = 1 << 2;
-/// Switch 3: the demo keeps the shown scene, which has all buttons.
+/// Switch 3: the demo holds the shown scene, which then gets all buttons.
 pub const HOLD: u16 = 1 << 3;
 
 /// LED 0 blinks.
 const BEAT: u16 = 1 << 0;
 /// LED 1: the demo is on.
 const ON: u16 = 1 << 1;
-/// LED 2: the demo keeps the shown scene.
+/// LED 2: the demo holds the shown scene.
 const HELD: u16 = 1 << 2;
 /// LED 3: the demo has had an error.
 const ERROR: u16 = 1 << 3;
 /// The first of the LEDs 4 to 7, which show the number of the scene, from 1.
 const SCENE: u16 = 4;
 
-/// The switches at the last look.
+/// The switches at the last poll.
 #[derive(Default)]
 pub struct Switches(u16);
 
 impl Switches {
-    /// Acts on switches that have changed since the last call, and returns whether there are some. They are off at start.
+    /// Handles switches that have changed since the last call, and returns whether any has. Initially all switches count as off.
     pub fn take(&mut self, switches: u16, demo: &mut Demo, scene: &mut Scene, now: u64) -> bool {
         let changed = core::mem::replace(&mut self.0, switches) ^ switches;
         if changed & OVERLAY != 0 {
@@ -39,7 +39,7 @@ impl Switches {
     }
 }
 
-/// The levels of the LEDs. `blinks` is the level of the first one.
+/// The levels of the LEDs. `blinks` is the level of LED 0.
 pub fn leds(demo: &Demo, blinks: bool) -> u16 {
     let mut leds = if blinks { BEAT } else { 0 };
     if let Some(number) = demo.turns.number() {
@@ -55,8 +55,8 @@ pub fn leds(demo: &Demo, blinks: bool) -> u16 {
     leds
 }
 
-/// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, in turn with that of the last
-/// error.
+/// Segments of the digits: frames per second at the left, and at the right the number of the demo's scene, alternating with the number of
+/// the last error.
 pub fn digits(demo: &Demo, rate: Option<u64>, errors_turn: bool) -> [u8; 8] {
     let left = rate.map(Display::number).unwrap_or_default();
     let number = demo.turns.number().map(|number| number as u64 + 1);

@@ -1,4 +1,4 @@
-//! The last picture: what it shows, how it was drawn, and whether it is out of date.
+//! The last picture: its contents, its statistics, and whether it is out of date.
 
 use core::fmt;
 
@@ -26,7 +26,7 @@ pub struct Drawn {
 }
 
 impl Drawn {
-    /// Number of such frames per second.
+    /// Frame rate: the number of such frames per second.
     pub fn rate(&self, frequency: Frequency) -> u64 {
         u64::from(frequency.hertz()) / self.cycles.max(1)
     }
@@ -44,9 +44,10 @@ pub enum RenderedBy {
 /// Reason why a frame is not drawn.
 #[derive(Clone, Copy, Debug)]
 pub enum DrawError {
-    /// The CPU cannot draw it.
+    /// The CPU cannot draw the frame.
     Render(RenderError),
-    /// The gateware cannot draw it, for this reason or as the backend is the CPU, and this build leaves out drawing by the CPU.
+    /// The gateware cannot draw the frame, for this reason or because the backend is the CPU, and this build does not include the CPU
+    /// backend.
     NoCpu(Option<Fallback>),
 }
 
@@ -60,7 +61,7 @@ impl fmt::Display for DrawError {
     }
 }
 
-/// What a picture shows.
+/// The contents of a picture.
 #[derive(PartialEq)]
 struct Content {
     scene: Scene,
@@ -72,17 +73,17 @@ struct Content {
 /// The last picture, and requests for the next one.
 #[derive(Default)]
 pub struct Picture {
-    /// What the last picture shows; `None` if the next one is wanted anyway.
+    /// The contents of the last picture; `None` if a new picture was requested.
     content: Option<Content>,
     drawn: Option<Result<Drawn, DrawError>>,
-    /// Whether the next frame needs depth codes in memory. The gateware writes them on request only.
+    /// Whether the next frame needs depth codes in memory. The gateware only writes them on request.
     pub wants_depth: bool,
-    /// The mark of the hand's position, if it is drawn.
+    /// The marker of the hand's position, if it is drawn.
     pub mark: Option<Mark>,
 }
 
 impl Picture {
-    /// Whether a new frame is needed: the last one shows another scene or other models, or lacks wanted depth codes.
+    /// Whether a new frame is needed: the last frame shows another scene or other models, or does not have requested depth codes.
     pub fn is_outdated(&self, scene: &Scene, models: &Models) -> bool {
         let lacks_depth = matches!(&self.drawn, Some(Ok(drawn)) if !drawn.has_depth);
         self.wants_depth && lacks_depth
@@ -98,12 +99,12 @@ impl Picture {
         self.content = None;
     }
 
-    /// Statistics of the last frame, if there is one, or the error of its drawing.
+    /// Statistics of the last frame, or the error of its drawing; `None` before the first frame.
     pub const fn drawn(&self) -> Option<Result<Drawn, DrawError>> {
         self.drawn
     }
 
-    /// Stores the statistics of the frame of the present scene, or the error of its drawing.
+    /// Stores the statistics of the current scene's frame, or the error of its drawing.
     pub fn set_drawn(&mut self, drawn: Result<Drawn, DrawError>, scene: &Scene, models: &Models) {
         self.drawn = Some(drawn);
         self.content = Some(Content {

@@ -26,9 +26,9 @@ pub struct Renderer {
     pub right: RightEye,
     /// Memory for projected vertices.
     pub scratch: Scratch,
-    /// The edges of the mesh whose edges were shown last.
+    /// The edge list of the last mesh that was shown with edges.
     pub edges: EdgeList<'static>,
-    /// Frequency of the clock, for the frames per second in the overlay.
+    /// Clock frequency, for the frames per second in the overlay.
     pub frequency: Frequency,
     /// The renderer of the gateware, if the SoC has a triangle engine.
     pub gateware: Option<GatewareRenderer>,
@@ -36,8 +36,8 @@ pub struct Renderer {
 
 impl Renderer {
     /// Draws the frame of `scene` with the mesh or program of `models`, and shows it from the next vertical blanking on. Returns
-    /// `None` while the gateware draws, and while the frame buffer to draw into is still on the screen; `models` and `scene` must
-    /// not change meanwhile. Drawing by the CPU takes long and calls `progress` at short intervals.
+    /// `None` while the gateware draws, and while the frame buffer to draw into is still on the screen; until then, `models` and `scene`
+    /// must not change. Drawing by the CPU is slow and calls `progress` at short intervals.
     pub fn draw(
         &mut self,
         models: &Models,
@@ -83,7 +83,7 @@ impl Renderer {
         Some(drawn)
     }
 
-    /// Draws the mark of the hand's position, if there is one, into the frame that was just drawn.
+    /// Draws the marker of the hand's position, if any, into the frame that was just drawn.
     fn draw_mark(&mut self, scene: &Scene, picture: &Picture) {
         let (Some(mark), Some(back)) = (picture.mark, self.display.back()) else {
             return;
@@ -94,7 +94,7 @@ impl Renderer {
         }
     }
 
-    /// Writes what the scene shows, and how fast it was drawn, over the frame that was just drawn.
+    /// Writes the scene's subject and the drawing speed on the frame that was just drawn.
     fn draw_overlay(&mut self, scene: &Scene, drawn: &Drawn) {
         let (true, Some(back)) = (scene.has_overlay(), self.display.back()) else {
             return;
@@ -139,8 +139,8 @@ impl Renderer {
             .is_some_and(GatewareRenderer::is_ready)
     }
 
-    /// Draws a frame by the gateware. `None` means that the frame is not drawn yet, `Err` that the CPU must draw the frame.
-    /// The error contains no reason if the backend is the CPU or the SoC has no triangle engine.
+    /// Draws a frame by the gateware. `None` means that the frame is not complete, `Err` that the CPU must draw the frame. The error has
+    /// no reason if the backend is the CPU or the SoC has no triangle engine.
     fn draw_by_gateware(
         &mut self,
         frame: &Frame,
@@ -198,7 +198,7 @@ impl Renderer {
         };
         let start = cpu::cycles();
         let stats = match eyes {
-            // The left eye comes last, so that the depth codes are those that it sees.
+            // The left eye comes last, so that the depth codes are the left eye's.
             Some(eyes) => draw(&eyes.right, right, progress).and_then(|of_right| {
                 let of_left = draw(&eyes.left, back, progress)?;
                 self.right.join(eyes, back, progress);
@@ -246,8 +246,8 @@ impl Renderer {
         })
     }
 
-    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and what the CPU needs for its
-    /// part. Returns `None` if the gateware has no triangle engine, or while no frame buffer is free.
+    /// Calls `draw` with the gateware, the right eye, a free frame buffer without depth codes, and the resources of the CPU. Returns
+    /// `None` if the gateware has no triangle engine, or while no frame buffer is free.
     fn unseen<T>(
         &mut self,
         draw: impl FnOnce(&mut GatewareRenderer, &mut RightEye, &mut Output, &mut Cpu) -> T,
@@ -290,7 +290,7 @@ fn draw(
     if EDGES.is_built
         && let Subject::Edges(subject, _) = &frame.subject
     {
-        // First, because this refuses a mesh with too many edges.
+        // Comes first, because it rejects a mesh with too many edges.
         edges.make(&subject.mesh, progress)?;
     }
     let mut stats = frame.draw(&constants, buffer, scratch, progress)?;

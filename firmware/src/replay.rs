@@ -6,7 +6,7 @@ use glint_core::orientation::log::{self, HEADER_BYTES, RECORD_BYTES, Record};
 use glint_core::orientation::{Counts, Tracker};
 use litex_pac::cpu;
 
-/// Number of samples that are replayed in one pass of the main loop, a few milliseconds of work.
+/// Number of samples that are replayed in one turn, which takes a few milliseconds.
 const SLICE: usize = 256;
 
 /// The progress of the replay of a log.
@@ -18,12 +18,12 @@ pub struct Replay {
     done: usize,
     /// Number of samples processed at the last report.
     reported: usize,
-    /// Clock cycles that the tracker took to compute the attitudes, including interrupts during this work.
+    /// Clock cycles of the tracker's computations, including interrupts.
     cycles: u64,
 }
 
 impl Replay {
-    /// The replay of a log with this number of samples.
+    /// Makes the replay of a log with this number of samples.
     pub const fn new(tracker: Tracker, samples: usize) -> Self {
         Self {
             tracker,
@@ -72,7 +72,7 @@ impl Replay {
         HEADER_BYTES..HEADER_BYTES + RECORD_BYTES * self.samples
     }
 
-    /// Replays the next slice of the log in `memory`.
+    /// Replays the next samples of the log in `memory`.
     pub fn advance(&mut self, memory: &mut [u8]) {
         let records = memory.get_mut(self.range()).unwrap_or_default();
         // The cast is possible, because the memory is aligned and header and records are whole words. The values are right,
@@ -90,7 +90,7 @@ impl Replay {
 // The linker script places this function next to the code of the tracker.
 #[inline(never)]
 pub fn track(tracker: &mut Tracker, time: &mut u64, records: &mut [Record]) -> u64 {
-    // Measures the cost of a reading: the cycles between two consecutive readings of the cycle counter.
+    // Measures the overhead of a measurement: the cycles between two consecutive reads of the cycle counter.
     let start = cpu::cycles_low();
     let own = cpu::cycles_low().wrapping_sub(start);
     let mut all = 0;

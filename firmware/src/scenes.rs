@@ -1,4 +1,4 @@
-//! Scenes and lists of scenes by their names: those of the flash, and the built-in ones.
+//! Scenes and lists of scenes, from the flash and built-in, by name.
 
 mod built_in;
 #[rustfmt::skip]
@@ -11,9 +11,9 @@ pub use built_in::BuiltIn;
 use built_in::Content;
 pub use table::SCENES;
 
-/// Name of the scene at start, which every gateware has.
+/// Name of the default scene, which every gateware can show.
 pub const DEFAULT: &str = "default";
-/// Name of the built-in list of a board that runs alone.
+/// Name of the built-in demo list.
 const ALONE: &str = "demo";
 
 /// The built-in scene or list with this name.
@@ -24,7 +24,7 @@ pub fn named(name: &str) -> Option<&'static BuiltIn> {
 /// A scene or a list of scenes.
 #[derive(Clone, Copy, Debug)]
 pub enum Found {
-    /// One of the flash.
+    /// A scene or list of the flash.
     Flash(Item<'static>),
     /// A built-in one.
     BuiltIn(&'static BuiltIn),
@@ -33,7 +33,7 @@ pub enum Found {
 /// Content of a scene or a list.
 #[derive(Clone, Copy, Debug)]
 pub enum Shows {
-    /// Console commands, a line each.
+    /// Console commands, one per line.
     Lines(&'static str),
     /// Scenes.
     Scenes(List),
@@ -61,14 +61,14 @@ impl Found {
 /// The names of a list of scenes.
 #[derive(Clone, Copy, Debug)]
 pub enum List {
-    /// A list of the flash: a line each.
+    /// A list of the flash: one name per line.
     Flash(&'static str),
     /// A built-in list.
     BuiltIn(&'static [&'static str]),
 }
 
 impl List {
-    /// The list of a board that runs alone and has none in its flash.
+    /// The built-in demo list, for a board without a list in its flash.
     pub fn built_in() -> Self {
         match named(ALONE).map(|built_in| &built_in.content) {
             Some(Content::Scenes(names)) => Self::BuiltIn(names),
@@ -93,15 +93,15 @@ impl List {
     }
 }
 
-/// The contents of the flash, which come before built-in scenes, lists and meshes of the same names.
+/// The contents of the flash, which have priority over built-in scenes, lists and meshes of equal names.
 pub struct Library {
     contents: Option<Contents<'static>>,
     error: Option<FlashError>,
 }
 
 impl Library {
-    /// The library of a board whose flash has these bytes where contents begin; `None` without a flash. Bytes that do not begin as
-    /// contents do are none: the flash is erased, or has something else.
+    /// Makes the library of a board from the flash's bytes at the address of the contents; `None` without a flash. Bytes without the
+    /// header of contents count as no contents: the flash is erased, or holds other data.
     pub fn new(flash: Option<&'static [u8]>) -> Self {
         let flash = flash.filter(|_| DEMO.is_built);
         let (contents, error) = match flash.map(Contents::new_checked) {

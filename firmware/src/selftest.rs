@@ -18,16 +18,16 @@ use crate::sensor::{self, SensorError};
 
 /// Number of bytes at the start of the memory test: four times the size of the data cache.
 const TESTED: usize = 16 << 10;
-/// Longest time until a vertical blanking.
+/// Timeout for a vertical blanking.
 const BLANKING: Duration = Duration::from_millis(100);
-/// Longest time until the motion sensor, which may be starting, sends a sample.
+/// Timeout for a sample of the motion sensor, which may still be starting.
 const SAMPLE: Duration = Duration::from_millis(300);
 
 /// Result of a test.
 pub enum Verdict {
     /// The part is present and works.
     Passed,
-    /// The board, the gateware or the firmware lacks the part.
+    /// The part is missing in the board, the gateware or the firmware.
     Absent,
     /// The part is present and does not work.
     Failed(Failure),
@@ -50,20 +50,20 @@ pub enum Failure {
     },
     /// No vertical blanking came in time.
     Blanking,
-    /// Number of lines of the screen since reset whose pixels came too late.
+    /// Number of screen lines since reset whose pixels came too late.
     Underflows(u32),
     /// The checksum of a picture.
     Checksum {
-        /// That of the model.
+        /// The model's checksum.
         expected: u32,
-        /// That of the gateware.
+        /// The gateware's checksum.
         found: u32,
     },
     /// The gateware did not draw a picture.
     Engine(Fallback),
     /// The motion sensor.
     Sensor(SensorError),
-    /// The motion sensor reports no error and sends no sample.
+    /// The motion sensor sends no sample, without reporting an error.
     NoSample,
     /// The image sensor.
     ImageSensor(SetUpError),
@@ -105,7 +105,7 @@ impl fmt::Display for Failure {
             Self::Sensor(error) if IMU.is_built => error.fmt(f),
             Self::NoSample => write!(f, "no sample for {} ms", whole_millis(SAMPLE)),
             Self::ImageSensor(error) if GESTURE.is_built => error.fmt(f),
-            // A failure of a part that this build leaves out.
+            // Stand-in for the failure type of a part that this build does not include.
             Self::Sensor(_) | Self::ImageSensor(_) => Ok(()),
         }
     }
@@ -138,7 +138,7 @@ pub fn run(machine: &mut Machine) -> u32 {
         let verdict = draw(machine, picture);
         report(machine, picture.name(), verdict);
     }
-    // After the pictures, which use the memory that scan-out reads.
+    // Runs after the pictures, which use the memory that scan-out reads.
     let verdict = underflow(machine);
     report(machine, "underflow", verdict);
     failed
@@ -146,7 +146,7 @@ pub fn run(machine: &mut Machine) -> u32 {
 
 type Test = fn(&mut Machine) -> Verdict;
 
-/// The tests before those of the engines, which need memory and scan-out.
+/// The tests that run before the tests of the engines, which depend on memory and scan-out.
 const TESTS: [(&str, Test); 7] = [
     ("identity", |machine| {
         Verdict::check(machine.identity.matches(), Failure::Identity)
@@ -165,8 +165,8 @@ const TESTS: [(&str, Test); 7] = [
     ("scan-out", scan_out),
 ];
 
-/// Tests `window`, a part of main memory: writes a different word to each address at its start and to one address for each address line,
-/// flushes the cache, and reads all words back. A window without a word is absent.
+/// Tests `window`, a part of main memory: writes different words to all addresses at the start of the window and to one address per
+/// address line, flushes the cache, and reads all words back. A window shorter than a word counts as absent.
 fn memory(window: &mut [u8]) -> Verdict {
     let (words, _) = window.as_chunks_mut::<4>();
     let count = words.len();
@@ -249,7 +249,7 @@ fn underflow(machine: &mut Machine) -> Verdict {
     }
 }
 
-/// Draws a picture by the gateware, and compares its checksum with that of the model.
+/// Draws a picture by the gateware, and compares its checksum with the model's.
 fn draw(machine: &mut Machine, picture: TestPicture) -> Verdict {
     if !picture.is_built() {
         return Verdict::Absent;

@@ -1,7 +1,7 @@
-//! The sensor's stream: a future that interrupts poll, and a queue of its events for the main loop.
+//! The sensor's stream: a future that is polled in interrupts, and the queue of its events for the main loop.
 //!
 //! The end of a transfer, of a batch of samples or of a pause raises an interrupt, whose handler polls the stream.
-//! Therefore samples are read on time even while the main program is busy for long, and wait in the queue.
+//! Samples are therefore read on time, and wait in the queue, even while the main program is busy.
 
 use core::cell::{Cell, RefCell};
 use core::mem;
@@ -19,7 +19,7 @@ use litex_pac::cpu;
 /// Samples, attitude and calibration of the sensor.
 pub type Imu = glint_core::imu::Imu<i2c::BusError>;
 
-/// Reason why the sensor gives no samples.
+/// Reason why the sensor sends no samples.
 pub type SensorError = Error<i2c::BusError>;
 
 /// Reason why a calibration failed.
@@ -32,8 +32,7 @@ enum Event {
     Error(SensorError),
 }
 
-/// Capacity of the queue of events: a second of samples, which arrive while a task takes its longest turn, such as the check of an
-/// uploaded mesh.
+/// Capacity of the queue of events: one second of samples, the longest turn of a task, such as the check of an uploaded mesh.
 const QUEUE: usize = 1024;
 
 /// The future that reads the sensor and never ends.
@@ -47,7 +46,7 @@ static EVENTS: Mutex<RefCell<Deque<Event, QUEUE>>> = Mutex::new(RefCell::new(Deq
 /// Clock cycles spent by the stream, and by the processing of its samples.
 static CYCLES: Mutex<Cell<[u64; 2]>> = Mutex::new(Cell::new([0; 2]));
 
-/// The receiver of the stream's events. It puts them into the queue.
+/// The receiver of the stream's events, which puts them into the queue.
 pub struct Inbox;
 
 impl Inbox {
@@ -73,7 +72,7 @@ impl Sink<i2c::BusError> for Inbox {
     }
 }
 
-/// Starts the stream: from now on, interrupts poll the future `stream`, which gives its events to the [`Inbox`].
+/// Starts the stream: from now on, interrupts poll the future `stream`, which passes its events to the [`Inbox`].
 ///
 /// # Safety
 /// The caller must never return.
@@ -92,8 +91,8 @@ pub unsafe fn start(stream: Pin<&mut dyn Future<Output = ()>>) {
     advance(cpu::cycles_low());
 }
 
-/// Polls the stream. Call this after an interrupt at the end of a transfer or pause. The cycles since `start` are added to
-/// the cycles of the stream.
+/// Polls the stream. Call this after an interrupt at the end of a transfer or pause. Adds the cycles since `start` to the cycles of the
+/// stream.
 pub fn advance(start: u32) {
     if !IMU.is_built {
         return;
@@ -118,13 +117,12 @@ fn count(which: usize, start: u32) {
     });
 }
 
-/// Clock cycles spent by the stream, and by the processing of its samples, since the start of the machine. They include
-/// interrupts during this work.
+/// Clock cycles spent by the stream, and by the processing of its samples, since reset, including interrupts.
 pub fn cycles() -> [u64; 2] {
     critical_section::with(|token| CYCLES.borrow(token).get())
 }
 
-/// Gives all queued events to `imu`.
+/// Passes all queued events to `imu`.
 pub fn deliver(imu: &mut Imu) -> Turn {
     let mut turn = Turn::Wait;
     if !IMU.is_built {

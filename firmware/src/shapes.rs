@@ -1,4 +1,4 @@
-//! The built-in meshes: the cube, and shapes that are made when they are first used.
+//! The built-in meshes: the cube, and shapes that are made on first use.
 
 use core::mem;
 
@@ -8,7 +8,7 @@ use glint_scene::CUBE;
 
 use crate::cube;
 
-/// The built-in meshes, and memory for those that have not been made.
+/// The built-in meshes, and memory for shapes that have not been made.
 pub struct Shapes {
     cube: Mesh<'static>,
     shapes: [Option<Mesh<'static>>; Shape::ALL.len()],
@@ -56,7 +56,7 @@ impl Shapes {
         *self.shapes.get(shape as usize)?
     }
 
-    /// A shape; `None` if there is no memory for it, which the windows of main memory exclude.
+    /// A shape, made on first use; `None` if its memory is too small, which the sizes of the memory windows exclude.
     pub fn shape(&mut self, shape: Shape) -> Option<Mesh<'static>> {
         let place = self.shapes.get_mut(shape as usize)?;
         if place.is_none() {

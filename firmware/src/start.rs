@@ -34,7 +34,7 @@ use crate::renderer::Renderer;
 use crate::scenes::Library;
 use crate::transfer::Downloads;
 
-/// Build id of the gateware that the firmware was built for. Tools find this value by its symbol.
+/// Build id of the gateware that the firmware was built for. Tools find this value by the name of the symbol.
 #[unsafe(no_mangle)]
 static GLINT_BUILD_ID: u32 = BUILD_ID;
 
@@ -42,22 +42,22 @@ static GLINT_BUILD_ID: u32 = BUILD_ID;
 pub enum StartError {
     /// The machine was started before.
     Started,
-    /// The gateware states a clock frequency that the firmware does not support.
+    /// The gateware reports a clock frequency that the firmware does not support.
     Frequency(NotAFrequency),
     /// Main memory is smaller than the memory map of the firmware. Both sizes are in bytes.
     MainRam {
         /// Size that the memory map needs.
         needed: u32,
-        /// Size that the gateware states.
+        /// Size that the gateware reports.
         found: u32,
     },
     /// The uptime counter does not advance.
     Clock(Stopped),
-    /// The built-in model is not a mesh.
+    /// The built-in cube is not a valid mesh.
     Cube(MeshError),
-    /// The built-in program is not a wireframe program.
+    /// The built-in program is not a valid wireframe program.
     Program(ProgramError<'static>),
-    /// The camera at start is out of range.
+    /// The initial camera is out of range.
     Camera(ViewError),
 }
 
@@ -85,12 +85,12 @@ impl fmt::Display for StartError {
 
 /// Starts the machine.
 ///
-/// The banner is printed first and needs only the UART, so that later errors are visible. If the build id of the gateware
-/// differs from that of the firmware, only the console is started, and the clock is assumed to have its default frequency.
+/// The banner is printed first and needs only the UART, so that later errors are visible. If the build ids of gateware and firmware
+/// differ, only the console is started, and the clock is assumed to have its default frequency.
 ///
 /// # Errors
-/// The gateware states a clock frequency that is not supported, or less memory than the firmware's memory map needs; or the timer,
-/// the built-in model or the camera at start fails.
+/// The gateware reports an unsupported clock frequency, or less memory than the firmware's memory map needs; or the timer, the built-in
+/// cube or program, or the initial camera is faulty.
 pub fn machine() -> Result<Machine, StartError> {
     // SAFETY: the UART has no owner yet.
     let mut banner = unsafe { Direct::seize() };

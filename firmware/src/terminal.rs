@@ -19,7 +19,7 @@ const SEND_QUEUE: usize = 4 << 10;
 /// The UART of the SoC.
 pub type ConsoleUart = Uart<RECEIVE_QUEUE, SEND_QUEUE>;
 
-/// Longest time to wait for a serial line that accepts no text, before the text is dropped.
+/// Longest time to wait for a serial line that accepts no text; then the text is dropped.
 const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Input from the user.
@@ -30,19 +30,19 @@ const SEND_TIMEOUT: Duration = Duration::from_millis(500);
 pub enum Input {
     /// A complete line.
     Line(String<LINE_MAX>),
-    /// A line longer than [`LINE_MAX`], without its text.
+    /// A line longer than [`LINE_MAX`], whose text is dropped.
     Overlong,
     /// The key Ctrl-C.
     Interrupt,
 }
 
-/// The line editor, between the UART and the commands.
+/// The console: the line editor between the UART and the commands.
 pub struct Terminal {
     uart: &'static ConsoleUart,
     editor: LineEditor,
     output: Output,
     waiting: Option<Input>,
-    /// Whether a transfer has the line.
+    /// Whether the serial line is lent to a transfer.
     is_lent: bool,
 }
 
@@ -61,12 +61,12 @@ impl Terminal {
         }
     }
 
-    /// The UART of the line.
+    /// The UART of the console.
     pub const fn uart(&self) -> &'static ConsoleUart {
         self.uart
     }
 
-    /// Lends the line to a transfer, or takes it back. While it is lent, no input is received, and text is dropped.
+    /// Lends the serial line to a transfer, or takes it back. While the line is lent, the console receives no input, and drops its text.
     pub const fn lend(&mut self, is_lent: bool) {
         self.is_lent = is_lent;
     }
@@ -88,7 +88,7 @@ impl Terminal {
         Turn::worked(has_worked)
     }
 
-    /// Takes the complete line or key, if there is one.
+    /// Takes the complete line or key, if any.
     pub fn input(&mut self) -> Option<Input> {
         self.waiting.take()
     }
@@ -98,7 +98,7 @@ impl Terminal {
         self.print(format_args!("{PROMPT}"));
     }
 
-    /// Prints a line above the prompt and the typed line.
+    /// Prints a line above the prompt and the line being typed.
     pub fn notify(&mut self, text: fmt::Arguments) {
         if self.is_lent {
             return;

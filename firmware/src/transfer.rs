@@ -1,6 +1,6 @@
-//! Uploads and downloads as tasks: `glint-core`'s transfer between lent memory and the UART, a part of it in each turn.
+//! Uploads and downloads as tasks: runs `glint-core`'s transfers between lent memory and the UART, a part in each turn.
 //!
-//! During a transfer the line carries no other text. A transfer ends when it is complete, when the other side cancels it,
+//! During a transfer the serial line carries no other text. A transfer ends when it is complete, when the other side cancels it,
 //! or after a timeout.
 
 use core::mem;
@@ -16,15 +16,15 @@ use glint_scene::Name;
 use crate::arena::Loan;
 use crate::terminal::{ConsoleUart, Terminal};
 
-/// Number of bytes whose CRC-32 is computed in a turn.
+/// Number of bytes added to the CRC-32 in a turn.
 const SUMMED: usize = 4 << 10;
-/// Largest number of times in a turn that bytes are exchanged with the UART's queues, up to 256 received ones each time.
+/// Largest number of exchanges with the UART's queues in a turn, each of up to 256 received bytes.
 const EXCHANGES: u32 = 8;
 
 /// Timeouts of all transfers.
 const TIMING: Timing = Timing::CONSOLE;
 
-/// What a transfer is for.
+/// The purpose of a transfer.
 pub enum Purpose {
     /// An upload of a mesh under this name.
     Mesh(Name),
@@ -38,9 +38,9 @@ pub enum Purpose {
 
 /// A transfer in progress.
 pub struct Transfer {
-    /// What it is for.
+    /// The purpose.
     pub purpose: Purpose,
-    /// Of an upload, length and CRC-32 that the host has announced.
+    /// The length and CRC-32 that the host has announced for an upload.
     announced: Option<Manifest>,
     /// The session number of a download.
     session: u8,
@@ -49,9 +49,9 @@ pub struct Transfer {
 }
 
 enum Stage {
-    /// Computes the CRC-32 of the memory: of a download's data, or of the bytes that the memory holds before an upload. These may be the
-    /// announced data already: a tool may have written them there, bypassing the cache, or a transfer may have been interrupted near its
-    /// end.
+    /// Computes the CRC-32 of the memory: of a download's data, or of the bytes that the memory holds before an upload. The memory may
+    /// already hold the announced data: a tool may have written them, bypassing the cache, or a transfer may have been interrupted near
+    /// its end.
     Sum(Sum),
     Receive(Party<Receiving<Loan>>),
     Send(Party<Sending<Loan>>),
@@ -76,7 +76,7 @@ impl Transfer {
         memory: Loan,
         terminal: &mut Terminal,
     ) -> Self {
-        // What the host sends from now on belongs to the transfer.
+        // All bytes that the host sends from now on belong to the transfer.
         terminal.lend(true);
         Self {
             purpose,
@@ -139,7 +139,7 @@ impl Transfer {
         matches!(self.stage, Stage::Over(..))
     }
 
-    /// Takes memory and result of a transfer that has ended.
+    /// Returns memory and result of a transfer that has ended.
     pub fn take_result(&mut self) -> Option<(Loan, Result<(), Failure>)> {
         match &mut self.stage {
             Stage::Over(memory, result) => Some((mem::take(memory), *result)),
@@ -164,7 +164,7 @@ impl Sum {
         }
     }
 
-    /// Adds the next part. Returns the memory, its length and its CRC-32 after the last one.
+    /// Adds the next part. After the last part, returns the memory, its length and its CRC-32.
     fn advance(&mut self) -> Option<(Loan, Manifest)> {
         let bytes = self.memory.as_ref();
         let length = bytes.len();
@@ -183,7 +183,7 @@ impl Sum {
     }
 }
 
-/// The line between a side of a transfer and the UART's queues.
+/// The connection of a transfer to the UART's queues.
 struct Line {
     uart: &'static ConsoleUart,
     frame: [u8; MAX_FRAME],
@@ -200,7 +200,7 @@ impl Line {
         }
     }
 
-    /// Exchanges bytes with the queues. Returns the result of the transfer once it has ended.
+    /// Exchanges bytes with the queues. Returns the result of the transfer after its end.
     fn exchange(
         &mut self,
         party: &mut Party<impl Role>,
@@ -209,7 +209,7 @@ impl Line {
         let mut received = [0; 256];
         let mut has_worked = false;
         for _ in 0..EXCHANGES {
-            // All bytes that wait, before the other side counts as silent. Bytes after the end do not belong to the transfer.
+            // Reads all waiting bytes before the timeout is checked. Bytes after the end do not belong to the transfer.
             let mut count = 0;
             while party.state() == State::Running {
                 let next = self.uart.receive(&mut received);
@@ -235,8 +235,8 @@ impl Line {
             State::Failed(failure) if self.unsent.is_empty() => Some(Err(failure)),
             State::Running | State::Done | State::Failed(_) => None,
         };
-        // The end of a transfer waits a few milliseconds for a quiet line. Longer timeouts are looked at after the interrupt of each
-        // vertical blanking.
+        // The end of a transfer waits a few milliseconds for a quiet line. Longer timeouts are checked after each vertical blanking
+        // interrupt.
         (Turn::worked(has_worked || party.is_ending()), result)
     }
 }
@@ -245,12 +245,12 @@ impl Line {
 #[derive(Default)]
 pub struct Downloads {
     session: u8,
-    /// Memory for a copy of what is downloaded; empty while it is lent.
+    /// Memory for a copy of the downloaded data; empty while it is lent.
     copy: Loan,
 }
 
 impl Downloads {
-    /// A sender before its first transfer, with memory for copies.
+    /// Makes a sender with memory for copies.
     pub const fn new(copy: &'static mut [u8]) -> Self {
         let copy = Loan::new(copy);
         Self { session: 0, copy }
@@ -262,7 +262,7 @@ impl Downloads {
         Transfer::begin(Purpose::Download, None, self.session, memory, terminal)
     }
 
-    /// Begins to send a copy of `data`, which may change from now on. The memory for copies has room for every picture.
+    /// Begins to send a copy of `data`, which may then change. The memory for copies suffices for every picture.
     pub fn send_copy(&mut self, data: &[u8], terminal: &mut Terminal) -> Transfer {
         let mut copy = mem::take(&mut self.copy);
         copy.narrow(0..data.len());

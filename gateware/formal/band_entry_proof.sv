@@ -1,7 +1,7 @@
 // Proof of band_entry, which places each triangle at its first row in a band, with any pattern of valid and ready on its input
 // and output. Triangles are numbered and carry their number in every field. Each triangle with a row in its band comes out once,
-// in order, with all its fields and computed results; a triangle without such a row never comes out. No triangle waits without
-// limit, and `holds` names the bands to which the triangles inside the module belong.
+// in order, with all its fields and computed results; a triangle without such a row never comes out. Every wait of a triangle is bounded,
+// and `holds` has a bit for each band with a triangle inside the module.
 
 `default_nettype none
 
@@ -24,7 +24,7 @@ module band_entry_proof (
     logic [BITS-1:0] in_band_0 = '0, in_band_1 = '0;
     logic [3:0]      unseen = '0, refused = '0;
 
-    // The triangle at the output in the previous clock, whose late fields are there now.
+    // The triangle at the output in the previous clock, whose late fields are valid now.
     logic            was_valid = 1'b0, was_odd;
     logic [BITS-1:0] was_number;
 
@@ -32,7 +32,7 @@ module band_entry_proof (
     raster_pkg::placed_t       placed;
     raster_pkg::placed_late_t  late;
 
-    // Triangles without a row in their band carry the number `'1`, which the proof never expects at the output.
+    // Triangles without a row in their band have the number `'1`, which must never reach the output.
     assign number = in_kept ? kept : '1;
 
     always_comb begin

@@ -1,11 +1,11 @@
 // Proof of band_extents, which computes for each line of a band the span of words that the flush of the band writes. The size is
 // small: bands of one to four lines with one to three columns (words of eight pixels), and two frame buffers of four lines.
-// Groups, each of which draws one column of a line, and bands are arbitrary, and so is the time at which a span is taken.
+// Bands, groups (each draws one column of a line), and the times at which spans are taken are arbitrary.
 //
-// The proof keeps two sets of columns: for each line of the current band the columns drawn so far, and for each line of a frame
-// buffer the columns drawn in the last band that was flushed there. The expected span of a line goes from the first to the last
-// column in either set. After reset, and after a cancelled band, the second set is unknown for the lines concerned, and a band
-// with such a line must be flushed `whole`.
+// The proof keeps a set of columns for each line of the current band (the columns drawn so far), and for each line of a frame buffer (the
+// columns drawn in the last band flushed to it). The expected span of a line goes from the first to the last column in either set. After
+// reset, and after a cancelled band, the second set is unknown for the lines concerned, and a band with such a line must be flushed
+// `whole`.
 
 `default_nettype none
 
@@ -42,14 +42,14 @@ module band_extents_proof (
         .clk, .rst(rst || sweep), .valid(span_valid), .ready(span_ready), .data({span_first, span_last})
     );
 
-    // Sets of columns of each line. Of the lines of the band: `marked` holds the columns drawn in it, `to_come` the columns of a
-    // span that is still expected. Of the lines of each frame buffer: `left` holds the columns drawn in the last band there.
+    // Sets of columns of each line. For the band: `marked` holds the drawn columns, `to_come` the columns of a span that is still
+    // expected. For each frame buffer: `left` holds the columns drawn in the last band there.
     logic [3:0][2:0]      marked, to_come;
     logic [1:0][3:0][2:0] left;
     logic [1:0][3:0]      known;
     logic [2:0]           all;
-    // First line and slot (number of the frame buffer) of the band whose spans come, and the number of clocks since the sweep,
-    // which clears the extents after a reset or restart, began.
+    // First line and slot (number of the frame buffer) of the band whose spans come, and the number of clocks since the start of the
+    // sweep, which clears the extents after a reset or restart.
     logic [1:0]           band_line, swept;
     logic                 band_slot, all_known;
 
@@ -59,8 +59,7 @@ module band_extents_proof (
         hull = columns == 3'b101 ? 3'b111 : columns;
     endfunction
 
-    // Whether a span is expected (`comes`), and of the next one: its line, the number of the line's first word in the band, and
-    // its set of columns.
+    // Whether a span is expected (`comes`), and the next span's line, number of the line's first word in the band, and set of columns.
     logic       comes;
     logic [1:0] next_line;
     logic [3:0] next_row;
@@ -84,8 +83,8 @@ module band_extents_proof (
     end
 
     logic [3:0] without_span, without_end;
-    // Condition of the cover `both`: in a band that is not `whole`, a line has drawn columns, but lacks a column that was drawn
-    // in the last band at this line of the frame buffer.
+    // Condition of the cover `both`: in a band that is not `whole`, a line has drawn columns, but not a column that the last band drew in
+    // this line of the frame buffer.
     logic       united;
 
     always_ff @(posedge clk) begin

@@ -1,10 +1,9 @@
 // Proof of band_flush, which writes the rows of a band from a bank of the band buffer to memory and clears them. The size is
 // small: any of four rows in any spans (ranges of rows), and four words in flight. Back-pressure and restarts come at any time.
 //
-// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. So the expected words are
-// known: first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. Afterwards
-// these rows are clear and the other rows are not. The model of the bank has the latencies of band_bank; a cleared row loses its
-// pixels.
+// Row r of the bank holds r in every colour and r + 1 in every depth, and all rows have drawn pixels. The expected words are therefore:
+// first the colours of the rows in the spans, in order, each once; then both halves of each row's depths. Afterwards these rows are clear
+// and the other rows are not. The model of the bank has the latencies of band_bank; a cleared row loses its pixels.
 
 `default_nettype none
 
@@ -22,7 +21,7 @@ module band_flush_proof (
     input wire       out_ready
 );
     localparam logic [15:0] BACKGROUND = 16'h8421;
-    // Upper bound on the clocks between two words while memory takes all words.
+    // Upper bound on the clocks between two words while memory accepts all words.
     localparam int unsigned WITHIN = 10;
 
     (* anyconst *) logic [5:0] base, depth_base;
@@ -81,8 +80,8 @@ module band_flush_proof (
         first_of = of_rows[0] ? 2'd0 : of_rows[1] ? 2'd1 : of_rows[2] ? 2'd2 : 2'd3;
     endfunction
 
-    // `to_give`: the rows that the module has not yet taken in a span. `lingering`: keeps `spans_busy` high, so that the module
-    // must wait for more spans even when no row is left.
+    // `to_give`: the rows that the module has not yet taken in a span. `lingering`: keeps `spans_busy` high, so that the module must wait
+    // for more spans even when no rows remain.
     logic [3:0] to_give;
     logic       offered, pieces, lingering;
 
@@ -123,8 +122,8 @@ module band_flush_proof (
     assign colour_row = first_of(colour_rows);
     assign depth_row  = first_of(depth_rows);
     assign none_left  = colour_rows == '0 && depth_rows == '0;
-    // Whether a word holds depths, as its lowest 32 bits show: these are a depth whose two halves differ, or two neighbouring
-    // colours, which are equal.
+    // Whether a word holds depths. Its lowest 32 bits are either a depth, whose halves differ, or two neighbouring colours, which are
+    // equal.
     assign is_depth   = out_data[31:16] != out_data[15:0];
 
     logic [127:0] expected;

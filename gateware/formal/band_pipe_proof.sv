@@ -1,9 +1,8 @@
-// Proof that band_pipe handles its read-modify-write hazard: the result equals that of a memory without latency.
+// Proof that band_pipe handles its read-modify-write hazard: the result equals the result with a memory without latency.
 //
-// The pipe works on two rows of a depth memory, with a bit per pixel that tells whether it was written, and with the latencies
-// of band_bank; any groups (eight pixels for one row) come at any time. The proof follows one pixel, an arbitrary lane of an
-// arbitrary row: each accepted group updates a copy of this pixel at once. When the pipe is empty, the copy and the memory must
-// agree.
+// The pipe works on two rows of a depth memory with the latencies of band_bank and a bit per pixel for written pixels; any groups (eight
+// pixels of a row) come at any time. The proof tracks one pixel, an arbitrary lane of an arbitrary row: each accepted group updates a copy
+// of this pixel at once. When the pipe is empty, the copy and the memory must agree.
 
 `default_nettype none
 
@@ -17,7 +16,7 @@ module band_pipe_proof (
     // Tag in all colours of the group, which distinguishes groups of equal depth.
     input wire [1:0]      group_tag
 );
-    // The pipe holds back a group for fewer clocks than this.
+    // Upper bound (exclusive) on the clocks for which the pipe holds back a group.
     localparam int unsigned WITHIN = 4;
 
     logic rst = 1'b1;
@@ -37,8 +36,8 @@ module band_pipe_proof (
         .read_row, .stored, .stored_written, .write_row, .write_lanes, .write_halves(), .write_codes, .write_colours, .empty, .held()
     );
 
-    // Model of the memory. It stores the followed pixel only; every other pixel reads as an arbitrary value, since the result must
-    // not depend on it.
+    // Model of the memory. It stores only the tracked pixel; every other pixel reads as an arbitrary value, because the result must not
+    // depend on other pixels.
     logic        from_row, to_row, to_lane, latched_written, read_written, written;
     logic [17:0] to_store, latched, read, code;
     logic        latched_here, read_here;
@@ -78,7 +77,7 @@ module band_pipe_proof (
         end
     end
 
-    // Copy of the followed pixel, which accepted groups update without latency.
+    // Copy of the tracked pixel, which accepted groups update without latency.
     logic        taken, drawn;
     logic [17:0] nearest, given;
     logic [1:0]  nearest_tag;

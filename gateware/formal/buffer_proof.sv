@@ -1,4 +1,4 @@
-// Proof that a buffer keeps the contract of streams and the order of its items, with any pattern of valid and ready on its input
+// Proof that a buffer follows the stream protocol and keeps the order of its items, with any pattern of valid and ready on its input
 // and output. The buffer is the skid buffer, a FIFO of DEPTH places, or a pipeline of FLIGHT clocks that ends in a credit_fifo.
 
 `default_nettype none
@@ -9,7 +9,7 @@ module buffer_proof #(
     parameter int unsigned DEPTH = 0,
     // The FIFO is in block RAM.
     parameter bit BLOCK = 1'b0,
-    // A clock without an item follows each item of that FIFO.
+    // Each item of the FIFO in block RAM is followed by a clock without an item.
     parameter bit PAUSE = 1'b0,
     // Clocks of the pipeline in front of the credit_fifo; 0 selects another buffer.
     parameter int unsigned FLIGHT = 0

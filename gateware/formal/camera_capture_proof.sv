@@ -1,6 +1,6 @@
-// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO after it. A token that is
-// not taken is reported by the next one, and no other is reported. After a frame has ended, four clocks after the start or later, no
-// frame ends inside a line, and each line that ends has bytes.
+// Proof of `camera_capture` from any state of its registers, for any behaviour of the pins and of the FIFO at its output. The next token
+// reports the loss of a token that was not taken, and no other loss is reported. After a frame has ended, four clocks after the start or
+// later, no frame ends inside a line, and each line that ends has bytes.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module camera_capture_proof (
 );
     logic                beat, valid;
     gesture_pkg::token_t token;
-    // Whether a token has been shown, and whether the last one was not taken.
+    // Whether a token has been offered, and whether the last token was not taken.
     logic                shown = 1'b0, missing = 1'b0;
     // Whether a frame has ended, and whether the last token was a pixel; clocks since the start, at most 4.
     logic                began = 1'b0, inside = 1'b0;

@@ -1,6 +1,6 @@
 // Proof of `cdc_fifo` with two clocks that tick in any order, at any rate, and may stop, and with any pattern of valid and ready. A
-// pointer that changes while it crosses arrives with any of its changed bits. Items are numbered: each comes out once, unchanged
-// and in order, whatever the clocks do.
+// pointer that changes during its crossing arrives with any subset of its changed bits. Items are numbered: each comes out once, unchanged
+// and in order, for any clocks.
 
 `default_nettype none
 
@@ -17,7 +17,7 @@ module cdc_fifo_proof (
     logic [BITS-1:0] out_data, shown = '0;
     logic            waiting = 1'b0;
     logic [BITS-1:0] came = '0, went = '0, inside;
-    // Clocks of the output since an item is inside, and of the input since none is, at most 7.
+    // Number of output clocks since the FIFO became non-empty, and of input clocks since it became empty, at most 7.
     logic [2:0]      unseen = '0, refused = '0;
 
     cdc_fifo #(.WIDTH(BITS), .DEPTH(DEPTH)) dut (

@@ -1,4 +1,4 @@
-// Proof of the control of the stage `cull`, with a FIFO of 8 places at its end, for any triangles in any order. The limits count
+// Proof of the control logic of the stage `cull`, with a FIFO of 8 entries at its output, for any triangles in any order. The limits count
 // only clocks in which no triangle waits at the output for the consumer. A triangle at the input waits for at most 12 such clocks.
 // Each triangle leaves once, culled or drawn; while triangles are inside, one leaves after at most 21 such clocks. The FIFO does not
 // overflow.

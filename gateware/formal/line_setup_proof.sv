@@ -1,7 +1,7 @@
 // Proof of `line_setup`, which makes pieces of segments, for any pattern of valid and ready on both sides. Segments are at most a few
 // pixels long, and the multiplier returns any sums, so errors and depths are arbitrary.
-// A piece belongs to the segment at the input, stays until it is taken, and is the only one in its band. A segment moves once,
-// within a bound of clocks in which no piece waits, and at most one step of the program is made at a time.
+// A piece belongs to the segment at the input, stays until it is taken, and is the only one in its band. A segment is taken once, within a
+// bound on the clocks in which no piece waits, and at most one step of the program runs at a time.
 
 `default_nettype none
 
@@ -29,7 +29,7 @@ module line_setup_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(piece)
     );
 
-    // Within the first two columns and rows, of which the first band has 45.
+    // The coordinates are within the first two columns and rows; the first band has 45 rows.
     assign near = {in_segment.a_x[19:9], in_segment.a_y[19:9], in_segment.b_x[19:9], in_segment.b_y[19:9]} == '0;
 
     always_ff @(posedge clk) if (!rst) begin

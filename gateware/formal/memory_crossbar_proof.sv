@@ -1,8 +1,8 @@
-// Proof of the crossbar of the memory between three ports (both ways, read, write) and two banks, for any commands, any times at
-// which banks complete theirs, at most one command in a clock, and any data. A model keeps the commands that each bank has not
-// completed. A command in a clock passes from one port to the queue of its bank, unchanged. No queue gets a command for which it
-// has no room. The answer of each command goes to its port, and the commands of a port are answered in their order. An idle memory
-// takes a command at once, and a port waits only for commands of the bank it requests, for its own, and a few clocks for its turn.
+// Proof of the memory crossbar between three ports (read and write, read only, write only) and two banks, for any commands and data, any
+// completion times of the banks, and at most one command per clock. A model keeps the pending commands of each bank. A command in a clock
+// passes from one port to the queue of its bank, unchanged. A full queue never gets a command. The answer to each command goes to the
+// command's port, and the commands of a port are answered in order. An idle memory takes a command at once, and a port only waits for
+// pending commands of the bank that it requests, for its own pending commands, and a few clocks for its turn.
 
 `default_nettype none
 
@@ -10,7 +10,8 @@ module memory_crossbar_proof #(
     localparam int unsigned PORTS   = 3,
     localparam int unsigned BANKS   = 2,
     localparam int unsigned PLACES  = 5,
-    // Upper bounds on the clocks in which a port waits for its turn, and in which no command passes though no bank has one.
+    // Upper bounds on the clocks in which a port waits for its turn, and in which no command passes although no bank has a pending
+    // command.
     localparam int unsigned WITHIN  = 5,
     localparam int unsigned IDLE_WITHIN = 3,
     localparam int unsigned COMMAND_BITS = 2 + 1 + 3
@@ -35,7 +36,7 @@ module memory_crossbar_proof #(
     logic [BANKS-1:0][3:0]  bank_addr;
     logic [7:0]             memory_wdata;
 
-    // The column of a command is its number among those of its port.
+    // The column of a command is its number among the port's commands.
     logic [PORTS-1:0][2:0] kept, went;
 
     memory_crossbar dut (
@@ -43,7 +44,7 @@ module memory_crossbar_proof #(
         .bank_valid, .bank_we, .bank_addr, .bank_wdata_ready, .bank_rdata_valid, .memory_wdata, .memory_rdata
     );
 
-    // A command that is not taken stays as it is.
+    // A command that is not taken stays unchanged.
     logic [PORTS-1:0] waiting, was_we, was_row, was_bank, changes;
 
     assign changes = ~cmd_valid | (cmd_we ^ was_we) | (cmd_row ^ was_row) | (cmd_bank ^ was_bank);
@@ -64,7 +65,7 @@ module memory_crossbar_proof #(
     assign taken = cmd_valid & cmd_ready;
     assign from  = taken[2] ? 2'd2 : taken[1] ? 2'd1 : 2'd0;
 
-    // Commands that the banks have not completed, the oldest one in place 0: {port, write, number}.
+    // Pending commands of each bank, the oldest at index 0: {port, write, number}.
     typedef struct packed {
         logic [1:0] port;
         logic       write;
@@ -94,7 +95,7 @@ module memory_crossbar_proof #(
         end
     end
 
-    // The command that was done, one and two clocks ago.
+    // The command that was completed one clock ago and two clocks ago.
     logic [2:1] was_done;
     command_t   done_1, done_2;
 
@@ -103,8 +104,8 @@ module memory_crossbar_proof #(
         {done_2, done_1} <= {done_1, oldest};
     end
 
-    // Waiting of each port. `blocked`: its bank has commands of another port, or one had the bank last and asks for it too; or the
-    // port itself has as many commands as it may, or some in another bank.
+    // Waiting time of each port. `blocked`: the requested bank has commands of another port, or another port used this bank last and
+    // requests it again; or the port itself has the maximum number of commands, or commands in another bank.
     logic [PORTS-1:0][2:0] inside, waited;
     logic [PORTS-1:0]      blocked, last_bank;
     logic [2:0]            unused_for;

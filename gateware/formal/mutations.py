@@ -188,7 +188,7 @@ MUTATIONS = {
         _flush("address   <= address_2;", "address   <= address_1;", "in_their_places"),
         # Fault: a span begins where the previous span ended instead of at its own first row.
         _flush("row       <= span_first;", "row       <= row + 1'b1;", "in_their_places"),
-        # Fault: the flush admits more words than the FIFO has places.
+        # Fault: the flush admits more words than fit the FIFO.
         _flush("in_span && places != '0;", "in_span;", "words_in_order"),
         # Fault: the flush clears a row before it reads the row's depth.
         _flush("clears <= part == last_part;", "clears <= 1'b1;", "words_in_order"),
@@ -316,7 +316,7 @@ MUTATIONS = {
     "memory_crossbar": [
         _crossbar("((turn == number) & may)", "(may)", "one_at_a_time"),
         _crossbar("Array(allowed)[turn]", "allowed[0]", "as_it_came"),
-        # Fault: a port asks a second bank before the first one is done.
+        # Fault: a port requests a second bank before the first bank has completed its commands.
         _crossbar("~level[0] & ~Array(owned", "~Array(owned", "in_order"),
         _crossbar("Mux(stays, ~level[-1],", "Mux(stays, 1,", "room_in_queue"),
         _crossbar("level[0] & (place == done)", "level[0]", "read_answered"),

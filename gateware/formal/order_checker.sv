@@ -1,4 +1,4 @@
-// Checks that a buffer gives out its items in order, unchanged, each once, and in time.
+// Checks that a buffer outputs its items in order, unchanged, each once, and in time.
 //
 // Items are numbered: item n carries n, and the n-th output must be n. A buffer does not depend on its payload, so the proof
 // holds for any payload, as long as no two items in the buffer have the same number. A buffer that has an item must make it

@@ -1,5 +1,5 @@
 // Stand-ins for the arithmetic parts of the triangle setup in proofs. Each part passes on one of its operands, which identifies
-// the triangle. The stand-in for `cull` takes the decision to cull, and the triangle's number, from the colour.
+// the triangle. The stand-in for `cull` derives the cull decision and the triangle's number from the colour.
 
 `default_nettype none
 
@@ -110,7 +110,7 @@ module flat_shade (
 );
     assign lit = colour;
 
-    // `enable` stops the arithmetic exactly as often as the last clock of a beat, here number 2, is repeated.
+    // `enable` is low exactly when the last clock of a beat, here number 2, is repeated.
     logic       running = 1'b0;
     logic [3:0] step = '0;
 

@@ -1,5 +1,5 @@
-// Proof that the ray generator gives the rays of a small frame for any pattern of `out_ready`: each once, in order, unchanged
-// while it waits, and in time. Products are 0, and the tables of inverses are arbitrary.
+// Proof that the ray generator outputs the rays of a small frame for any pattern of `out_ready`: each once, in order, unchanged while it
+// waits, and in time. Products are 0, and the tables of inverses are arbitrary.
 
 `default_nettype none
 
@@ -36,7 +36,7 @@ module ray_generator_proof (
         .clk, .rst, .valid(out_valid), .ready(out_ready), .data(ray)
     );
 
-    // The place of the next ray.
+    // The position of the next ray.
     raymarch_pkg::place_t place = '0;
     logic                 finished = 1'b0, was_finished = 1'b0;
     logic [5:0]           unseen = '0;
@@ -62,7 +62,7 @@ module ray_generator_proof (
         shown_in_time:     assert (unseen < 6'd30);
 
         all_came: cover (finished && !busy);
-        // Rays enter while there are credits, with two places for rays after the pipeline and one at its output.
+        // Rays enter the pipeline while credits are left: two for the FIFO after the pipeline, and one for the output.
         waits:    cover (begun && out_valid && !out_ready && place.column == 11'd1 && stereo);
     end
 endmodule

@@ -1,7 +1,7 @@
-// Checks the side of one client of read_port: addresses become commands in their order, each once, and words come in the same
-// order, each once, and in time.
+// Checks the interface of read_port to one client: addresses become commands, and words arrive, in the order of the addresses, each once,
+// and in time.
 //
-// `delayed` is high in clocks in which memory or a client keeps the port waiting. Words that come during a drop are lost.
+// `delayed` is high in clocks in which the port waits for memory or for a client. Words that come during a drop are discarded.
 
 `default_nettype none
 
@@ -31,11 +31,11 @@ module read_client_checker #(
 );
     // Upper bound on the clocks until a word that memory has answered is valid.
     localparam int unsigned SHOWN_WITHIN = 3;
-    // Upper bound on the clocks until an address is taken if nothing is delayed: a burst of the other client, the time until half of
-    // this client's FIFO is empty, and the turn.
+    // Upper bound on the clocks until an address is taken while `delayed` is low: a burst of the other client, the time until half of this
+    // client's FIFO is empty, and the arbitration.
     localparam int unsigned TAKEN_WITHIN = 11;
 
-    // Number of the commands that memory has taken, and of the words that the client has taken.
+    // Number of commands that memory has taken, and of words that the client has taken.
     logic [NUMBER_BITS-1:0] commanded, went, inside;
     logic [3:0]             refused;
     logic [2:0]             unseen;

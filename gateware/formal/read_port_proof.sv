@@ -1,7 +1,7 @@
-// Proof of read_port, at a small size: two clients with FIFOs of two places. Clients ask and take words at any time, and memory
-// takes commands and answers at any time.
+// Proof of read_port, at a small size: two clients with FIFOs of two entries. Clients send addresses and take words at any time, and
+// memory takes commands and answers at any time.
 //
-// Addresses are numbered: the n-th address of a client is n, with the client's number above it, and the word at an address is the
+// Addresses are numbered: the n-th address of a client is n, with the client's number in the bits above, and the word at an address is the
 // address. The port does not depend on its payload, so the proof holds for any addresses and words.
 
 `default_nettype none

@@ -1,6 +1,6 @@
-// Proof of ring_lane, a lane of the raymarcher, with room for the ends of two rays, for any rays, fields and back-pressure.
+// Proof of ring_lane, a lane of the raymarcher, with an output FIFO for the ends of two rays, for any rays, fields and back-pressure.
 //
-// The proof follows one arbitrary ray. Rays are numbered in their column, which no result of a lane depends on. The field returns
+// The proof tracks one arbitrary ray. The column of a ray, which does not affect the results of a lane, is its number. The field returns
 // any distance, so a ray takes any number of rounds (evaluations of the field) up to the limit `cap`, here two.
 
 `default_nettype none
@@ -11,8 +11,8 @@ module ring_lane_proof (
     input wire [9:0] in_length,
     input wire       out_ready
 );
-    // PLACES: number of ends for which the lane has room. WITHIN: upper bound on the clocks with a ready consumer from the entry
-    // of a ray until its end is taken: two rounds of 9 clocks, then the wait in the FIFO after the end of the other ray.
+    // PLACES: capacity of the lane's FIFO of ends. WITHIN: upper bound on the clocks with a ready consumer from the entry of a ray until
+    // its end is taken: two rounds of 9 clocks, then the wait in the FIFO behind the other ray's end.
     localparam int unsigned PLACES = 2, WITHIN = 22;
 
     logic rst = 1'b1;

@@ -31,7 +31,7 @@ _PROGRAMS = Path(sys.executable).parent
 _AT_A_TIME = 2
 
 
-# Replacements of modules in gateware/rtl, used by the proofs that name them.
+# Stand-ins for modules of gateware/rtl, for the proofs that list them.
 _STAND_INS = ("any_colour", "any_field", "any_level", "any_product", "any_tables", "any_stepper", "no_product", "plain_setup")
 _PROPERTIES = [path for path in sorted(FORMAL.glob("*.sv")) if path.stem not in _STAND_INS]
 
@@ -63,9 +63,9 @@ class Proof:
         return [label for source in self.sources for label in re.findall(r"(\w+):\s*assert\b", source.read_text())]
 
 
-# The longest proofs come first: two run at a time, and a long one should not run alone at the end. A further clock can double the time,
-# so ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker end with the clock that shows the deepest fault of their
-# mutations.
+# The longest proofs come first: two run at a time, and a long proof should not run alone at the end. An additional clock can double the
+# run time, so the depth of ring_lane, line_raster, band_flush, band_extents, smooth_shader and walker is the smallest that detects all of
+# their mutations.
 PROOFS = [
     Proof("ring_lane", "ring_lane_proof", 35, ("any_product", "any_field")),
     Proof("line_raster", "line_raster_proof", 23),
@@ -95,9 +95,9 @@ PROOFS = [
     Proof("classify", "classify_proof", 14),
 ]
 
-# Yosys removes, across modules, what no property depends on, and bits of memories that are only written with one value, as if they had
-# this value from the start. Other undefined values stay, and may be any value. `cdc_fifo` takes longer that way, so proofs with several
-# clocks are left as they are.
+# Yosys removes, across modules, logic on which no property depends, and memory bits to which only one value is written, as if they had
+# this value initially. Other undefined values stay arbitrary. This makes `cdc_fifo` slower, so proofs with several clocks are not
+# flattened.
 _FLATTENED = """flatten
 opt -keepdc
 opt_mem

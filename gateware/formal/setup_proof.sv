@@ -1,13 +1,13 @@
 // Proof of the control logic of `setup`, the triangle setup, with beats (steps of its pipeline) of three clocks and any pattern
-// of valid and ready on both sides. Each drawn triangle comes out once, in order, with its own value in every field. No triangle
-// waits without limit, whether or not other triangles follow it. `culled` and `drawn` count each triangle once, and `busy` is
-// high while triangles are inside.
+// of valid and ready on both sides. Each drawn triangle comes out once, in order, with its own value in every field. Every wait of a
+// triangle is bounded, with or without following triangles. `culled` and `drawn` count each triangle once, and `busy` is high while
+// triangles are inside.
 
 `default_nettype none
 
 module setup_proof #(
-    // Upper bound on the clocks, without back-pressure, in which no triangle enters or leaves while one is inside: five beats and
-    // a clock.
+    // Upper bound on the clocks, without back-pressure, in which no triangle enters or leaves while a triangle is inside: five beats and a
+    // clock.
     parameter int unsigned WITHIN = 16
 ) (
     input wire clk,
@@ -27,7 +27,7 @@ module setup_proof #(
 
     records_pkg::descriptor_t descriptor;
 
-    // Culled triangles carry the number `'1`, which the proof never expects at the output.
+    // Culled triangles have the number `'1`, which must never reach the output.
     assign number = in_culled ? '1 : kept;
 
     setup #(.LAST(4'd2)) dut (

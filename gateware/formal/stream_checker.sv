@@ -1,6 +1,6 @@
-// Checks the contract of one stream: an item that is valid and not taken stays valid and unchanged in the next clock.
+// Checks the protocol of a stream: an item that is valid and not taken stays valid and unchanged in the next clock.
 //
-// GIVEN = 1 assumes the contract, for an input stream of the module under proof; GIVEN = 0 asserts it, for an output stream.
+// GIVEN = 1 assumes the protocol, for an input stream of the module under proof; GIVEN = 0 asserts the protocol, for an output stream.
 
 `default_nettype none
 

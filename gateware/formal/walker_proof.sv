@@ -2,7 +2,7 @@
 // and any pattern of valid and ready on both sides. Triangles are numbered in their colour; their bounds are up to three groups
 // wide and two lines high.
 //
-// Groups come out in the order of the accepted triangles, within the lines and bounds of their triangle, none twice. If no edge
+// Groups come out in the order of the accepted triangles, each at most once, within the lines and bounds of their triangle. If no edge
 // fails anywhere, every group of the bounds comes out. The walk over each triangle ends within a fixed number of clocks.
 
 `default_nettype none
@@ -32,8 +32,8 @@ module walker_proof (
     raster_pkg::candidate_t   group;
     raster_pkg::late_t        late;
 
-    // A group's line and colour come a clock after the group, so groups are checked a clock late: `was_*` and `goes` are from the
-    // clock before.
+    // A group's line and colour come one clock after the group, so groups are checked one clock late: `was_*` and `goes` are from the
+    // previous clock.
     logic       was_taken = 1'b0, was_idle = 1'b0, was_two, goes = 1'b0;
     logic [3:0] was_columns;
     logic [7:0] was_group;
@@ -106,8 +106,8 @@ module walker_proof (
             within_bounds:   assert (late.line[5:1] == '0 && was_group[7:2] == '0 && (group_bit & bounds) != '0);
             none_twice:      assert ((group_bit & gone) == '0);
         end
-        // In a line of three groups, the walker may try two groups in which an edge fails before it finds the line's first group,
-        // and may try these two again afterwards.
+        // In a line of three groups, the walker may visit two groups in which an edge fails before it finds the line's first group, and
+        // may visit these two again afterwards.
         left_in_time:  assert (!walking || walked < 5'd10);
         none_left_out: assert (!solid || !some || !(was_taken || was_idle) || (gone | (goes ? group_bit : '0)) == bounds);
         busy_while_it_walks: assert (idle || came != '0);

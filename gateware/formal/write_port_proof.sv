@@ -1,8 +1,8 @@
-// Proof of write_port, at a small size: FIFOs of four places, and bursts of two words. Words come at any time, and memory takes
+// Proof of write_port, at a small size: FIFOs of four entries, and bursts of two words. Words come at any time, and memory takes
 // commands and data at any time.
 //
 // The words are numbered: word n has address n and data n. The port does not depend on its payload, so the proof holds for
-// any address and data. Memory takes the data of a command at any time, without looking at valid.
+// any address and data. Memory takes the data of a command at any time, and ignores valid.
 
 `default_nettype none
 
@@ -14,8 +14,8 @@ module write_port_proof (
     input wire wdata_ready
 );
     localparam int unsigned DEPTH = 4, NUMBER_BITS = 5;
-    // Upper bound on the clocks without a transfer of data while memory takes all words: the time of a word through both FIFOs
-    // when all their places are full.
+    // Upper bound on the clocks without a transfer of data while memory takes all words: the time of a word through both FIFOs when they
+    // are full.
     localparam int unsigned WITHIN = 8;
 
     logic rst = 1'b1;
@@ -39,8 +39,8 @@ module write_port_proof (
         .clk, .rst, .valid(cmd_valid), .ready(cmd_ready), .data(cmd_addr)
     );
 
-    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` counts those in which the port holds
-    // words and must not wait for a full burst (`hurry` is high), `refused` those in which the port accepts no word.
+    // Clocks in a row without a transfer of data, although memory takes all words: `unmoved` counts clocks in which the port holds words
+    // and must not wait for a full burst (`hurry` is high), `refused` counts clocks in which the port accepts no word.
     logic [3:0] unmoved, refused;
 
     always_ff @(posedge clk) begin

@@ -15,7 +15,7 @@ from .register_map import OPTIONAL_BLOCKS
 
 
 def make_soc(board, build_id, blocks=None, **options):
-    """Returns the SoC of `board`, not yet finalized, with `blocks` or else those that the board has by default."""
+    """Returns the SoC of `board`, not yet finalized, with `blocks` or the board's default blocks."""
     if board == "virtual":
         from .virtual import VirtualSoC as BoardSoC
     elif board == "urbana":
@@ -34,7 +34,7 @@ def main():
                         help="optional blocks of this build (default: all; for the ulx3s: all but flash and raymarch)")
     parser.add_argument("--smooth", action="store_true", help="build smooth shading into the triangle engine")
     parser.add_argument("--no-depths", dest="depths", action="store_false",
-                        help="leave out the memory of depths, which a build without `triangle` does not need for pictures")
+                        help="omit the depth buffer, which a build without `triangle` does not need for pictures")
     parser.add_argument("--fields", help="build of the raymarcher, or its features: `raymarch.build` (default: all; for a board with "
                                          "an FPGA: faces)")
     parser.add_argument("--lanes", type=int, choices=[1, 2, 4], help="lanes of the raymarcher (default: those of its build)")
@@ -45,7 +45,7 @@ def main():
     # The build of the BIOS calls meson and ninja, which are in the virtual environment that runs this program.
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
 
-    # LiteX asks git for LiteX's own version. Without this limit it would get the version of this project.
+    # LiteX asks git for LiteX's own version. Without this limit git would return the version of this project.
     os.environ["GIT_CEILING_DIRECTORIES"] = sys.prefix
 
     full = make_soc("virtual", 0)
@@ -67,12 +67,11 @@ def main():
     output = arguments.output.resolve()
     builder = Builder(
         soc, output_dir=str(output), gateware_dir=str(output / "gateware"), software_dir=str(output / "software"),
-        # Link-time optimisation inlines the calls in the loop of the BIOS's serial boot, so that the loop stays in the
-        # instruction cache.
+        # Link-time optimisation inlines the calls in the serial boot loop of the BIOS, so that the loop fits the instruction cache.
         bios_lto=True,
-        # Without its history of commands the BIOS fits in six block RAMs.
+        # Without its command history the BIOS fits into six block RAMs.
         bios_console="no-history",
-        # The tools of the FPGA are run separately: by `gateware/ecp5`, or by hand on a computer with the vendor tool.
+        # The FPGA tools run separately: through `gateware/ecp5`, or by hand on a computer with the vendor's tools.
         compile_gateware=False)
     builder.build()
     # The SVD and CSV files that the builder writes contain the build time, so equal SoCs would give different files.

@@ -1,10 +1,10 @@
-"""When a block needs its clock, for a board that stops the clock of idle blocks."""
+"""Clock requests of blocks, for a board that stops the clock of idle blocks."""
 
 from litex.gen import LiteXModule
 from migen import If, ResetSignal, Signal
 
 LINGER = 31
-"""Clocks after the last work. The path of an event to its counter and that of an access through a register bank are shorter."""
+"""Number of clocks after a block's last work: more than the latency from an event to its counter, and through a register bank."""
 
 
 class ClockControl(LiteXModule):

@@ -12,7 +12,7 @@ from .rtl import CORE, RTL
 
 @dataclass(frozen=True)
 class Size:
-    """A picture size. A band is a number of whole lines with at most `BAND_PIXELS` pixels, and whole bands fill the picture."""
+    """A picture size. A band consists of whole lines, with at most `BAND_PIXELS` pixels in total; a picture consists of whole bands."""
 
     width: int
     height: int
@@ -20,7 +20,7 @@ class Size:
 
     @property
     def name(self):
-        """Name of the size's code in registers."""
+        """Name of the size's register value."""
         return f"w{self.width}"
 
     @property
@@ -46,22 +46,22 @@ GROUP = 8
 """Number of neighbouring pixels of a line in a group, which is one 128-bit word of a frame and one row of the band buffer."""
 
 BAND_PIXELS = 15360
-"""Largest number of pixels in a band: those of a bank of the band buffer."""
+"""Largest number of pixels in a band: the capacity of a bank of the band buffer."""
 
 LISTS = 64
 """Number of band lists, at least the number of bands of every picture."""
 
 LIST_TABLE_WORDS = LISTS // 4
-"""Number of 128-bit words before the first band list of a set, which hold the lengths of the lists."""
+"""Number of 128-bit words before the first band list of a set: the table of list lengths."""
 
 LIST_GAP_WORDS = 128
 """Number of 128-bit words between two band lists: a row of a DDR3 bank, so that neighbouring lists lie in different banks."""
 
 CONES = (160, 90)
-"""Number of cones of the raymarcher across and down, for one eye at a size above the first. Otherwise half of each number."""
+"""Largest number of cones across and down, for one eye at a size above the first; half of each for two eyes or the first size."""
 
 FLASH_BYTES = 16 << 20
-"""Bytes of the window of the SPI flash."""
+"""Size in bytes of the address window of the SPI flash."""
 
 FLASH_FIRMWARE = 3 << 20
 """Offset of the firmware in the SPI flash."""

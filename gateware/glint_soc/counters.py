@@ -14,7 +14,7 @@ from .packed import Struct
 
 _BITS = 32
 _DELAY = 3
-"""Most clocks from an event to its counter, beside the wait for the counter's turn."""
+"""Largest number of clocks from an event to its counter, not including the wait for the counter's turn."""
 
 
 class Counters(LiteXModule):
@@ -54,9 +54,9 @@ class Counters(LiteXModule):
         grown = []
         self.sync += turn.eq(Mux(turn == count - 1, 0, turn + 1))
         for place, (name, event) in enumerate(members.items()):
-            # `step` registers each event before its sum, because events come from all parts of the block.
+            # `step` registers each event before it is added, because events come from all parts of the block.
             step = Signal(len(event), name=f"step_{name}")
-            # A turn comes after `count` clocks.
+            # Each counter has its turn once in `count` clocks.
             growth = Signal(max=count * (2**len(event) - 1) + 1, name=f"grown_{name}")
             grown.append(growth)
             self.sync += [step.eq(event), growth.eq(Mux(turn == place, 0, growth) + step)]

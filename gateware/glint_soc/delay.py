@@ -1,10 +1,10 @@
-"""A signal some clocks later."""
+"""Delay of a signal by a number of clocks."""
 
 from migen import Signal
 
 
 def delayed(module, value, clocks):
-    """Returns `value` as it was `clocks` ago, in registers of `module`; without any for 0 clocks."""
+    """Returns `value` delayed by `clocks` clocks, through registers of `module`; `value` itself for 0 clocks."""
     for _ in range(clocks):
         later = Signal.like(value)
         module.sync += later.eq(value)

@@ -57,6 +57,6 @@ def _register(register):
 
 
 def _values(field):
-    """Returns the named values of `field`. LiteX also allows values without a name, which are documentation only."""
+    """Returns the named values of `field`. Values without a name, which LiteX allows as documentation, are omitted."""
     named = [entry for entry in field.values or [] if len(entry) == 3]
     return [{"value": int(value, 0), "name": name, "text": text} for value, name, text in named]

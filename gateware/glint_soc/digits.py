@@ -1,4 +1,4 @@
-"""Register block of two displays of four digits, each digit of seven segments and a point."""
+"""Register block of two four-digit displays; a digit has seven segments and a point."""
 
 from litex.gen import LiteXModule
 from migen import Case, If, Signal

@@ -1,4 +1,4 @@
-"""HDMI from the ordinary outputs of an ECP5: TMDS channels of ten bits a pixel, serialized by registers and DDR outputs."""
+"""HDMI from general-purpose outputs of an ECP5: TMDS channels of ten bits per pixel, serialized by registers and DDR outputs."""
 
 from litex.build.io import DDROutput
 from litex.gen import ClockDomainsRenamer, LiteXModule
@@ -18,12 +18,12 @@ class Serializer(LiteXModule):
 
     def __init__(self, words):
         self.pairs = []
-        # A change of `toggle` begins new words. `load` is high in the third or fourth clock after that, far from the next change.
+        # `toggle` changes when new words begin. `load` is high in the third or fourth clock after a change, far from the next change.
         toggle, seen, load = Signal(), Signal(2), Signal()
         self.sync.pix += toggle.eq(~toggle)
         self.sync.pix5x += [seen.eq(Cat(toggle, seen[0])), load.eq(seen[0] ^ seen[1])]
         for word in words:
-            # The pair has registers of its own, since the outputs are far from each other and from the rest.
+            # Each channel has its own shift register, because the outputs are far from each other and from the other logic.
             bits, pair = Signal(10), Signal(2)
             self.sync.pix5x += [If(load, bits.eq(word)).Else(bits.eq(bits[2:])), pair.eq(bits[:2])]
             self.pairs.append(pair)

@@ -98,7 +98,7 @@ def _package():
 
 
 def _host(flat):
-    """Number of the field whose module serves a field in builds with both."""
+    """Number of the field whose module also computes this field, in builds with both."""
     return NAMES.index(flat.inside)
 
 
@@ -130,7 +130,7 @@ def _instance(number, flat):
 
 
 def _is_kind(number):
-    """Condition that a field, or one that its module serves, is drawn."""
+    """Condition that the drawn field is a field of this module."""
     served = [other for other, flat in enumerate(FLAT_FIELDS) if flat.inside == NAMES[number]]
     return " || ".join(f"solid.kind == {_number(kind)}" for kind in (number, *served))
 

@@ -1,4 +1,4 @@
-"""A SPI flash as memory that the CPU reads (rtl/flash)."""
+"""SPI flash as memory-mapped, read-only memory of the CPU (rtl/flash)."""
 
 from litex.gen import LiteXModule
 from litex.soc.interconnect import wishbone
@@ -48,11 +48,11 @@ class FlashReader(LiteXModule):
                 If(sending, pads.dq_out[0].eq(command)),
             ]
         else:
-            # Without it, the unused pin would reset the flash.
+            # Otherwise the unused pin would reset the flash.
             self.comb += pads.reset_n.eq(1)
             self.specials += [
                 *(Tristate(pads.dq[k], o=command if k == 0 else 1, oe=sending, i=lines[k]) for k in range(4)),
-                # The pin of the clock is CCLK, that of the configuration.
+                # The clock pin is the configuration clock CCLK.
                 Instance("STARTUPE2",
                     i_CLK       = 0,
                     i_GSR       = 0,

@@ -218,7 +218,7 @@ class GestureEngine(LiteXModule):
             self.counters.events])
 
         wires = {name: Signal() for name in ("scl", "sda")}
-        # A high PCLK says that the image sensor runs.
+        # A high PCLK shows that the image sensor runs.
         camera, state = self._camera.fields, self._status.fields
         self.clock_control = ClockControl(
             control.enable | state.running | state.waiting | pads.pclk | camera.clock | ~camera.scl | ~camera.sda)

@@ -11,7 +11,7 @@ from .packed import Enumeration, Package, Struct
 from .rtl import add_sources
 
 BIT_RATE = 400_000
-"""Largest number of bits a second on the bus, that of the I2C fast mode."""
+"""Largest bit rate of the bus in bit/s: I2C fast mode."""
 
 OPERATIONS = Enumeration("operation", "Operations of a command.", {
     "start": "start condition, or repeated start within a transaction",
@@ -31,7 +31,7 @@ ERRORS = Enumeration("error", "Errors.", {
 
 COMMANDS = 32
 ANSWERS = 128
-"""Number of places in the FIFO of commands and in that of received bytes, without their output registers."""
+"""Depth of the command FIFO and of the FIFO of received bytes, without their output registers."""
 
 
 class I2CMaster(LiteXModule):
@@ -63,7 +63,7 @@ class I2CMaster(LiteXModule):
             CSRField("failed", offset=4, description="An error has ended the transaction; commands wait for `clear`."),
             CSRField("error", size=ERRORS.bits, offset=8, values=ERRORS.values, description="Error."),
         ], description="State.")
-        # A queue holds one entry more than its FIFO has places, because one entry is in the output register.
+        # A queue holds one entry more than its FIFO, because of the output register.
         self.constants = {
             "command_places": (COMMANDS + 1, "Places in the queue of commands."),
             "answer_places": (ANSWERS + 1, "Places in the queue of received bytes."),
@@ -82,7 +82,7 @@ class I2CMaster(LiteXModule):
         wires = {name: Signal() for name in ("scl_in", "scl_out", "sda_in", "sda_out")}
         self.comb += reset.eq(ResetSignal("sys") | self._control.fields.clear)
         self.specials += Instance("i2c_engine", name="i2c_core",
-            # A bit has three phases. The clocks of a phase are rounded up, so that the bit rate is at most BIT_RATE.
+            # A bit has three phases. The number of clocks per phase is rounded up, so that the bit rate is at most BIT_RATE.
             p_PHASE         = -int(-sys_clk_freq // (3 * BIT_RATE)),
             p_COMMANDS      = COMMANDS,
             p_ANSWERS       = ANSWERS,

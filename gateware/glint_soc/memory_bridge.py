@@ -32,16 +32,16 @@ class MemoryBridge(LiteXModule):
         if port.data_width not in (32, 64, 128):
             raise ValueError(f"expected a memory port of 32, 64 or 128 bits, got {port.data_width}")
 
-        # Words of the bus in a word of the port, and words of the port in a line.
+        # Number of bus words per port word, and of port words per cache line.
         words, line = port.data_width // _BUS_BITS, _LINE_BITS // port.data_width
         address = Signal.like(bus.adr)
         beat = address[:log2_int(words)] if words > 1 else Constant(0)
         word = address[log2_int(words):]
         self.comb += address.eq(bus.adr - base_address // (_BUS_BITS // 8))
 
-        # Data of writes wait here from the acceptance of their command until the controller requests them.
+        # Holds write data from the acceptance of their command until the controller requests the data.
         self.writes = writes = stream.SyncFIFO([("data", _BUS_BITS), ("sel", _BUS_BITS // 8), ("beat", len(beat))], depth=8)
-        # FIFO with room for all words of a cache line, which the controller sends without back-pressure.
+        # FIFO for all words of a cache line, because the controller sends them without back-pressure.
         self.reads = reads = stream.SyncFIFO([("data", port.data_width)], depth=line)
         self.comb += [
             writes.sink.data.eq(bus.dat_w),
@@ -56,13 +56,13 @@ class MemoryBridge(LiteXModule):
             bus.dat_r.eq(Array(reads.source.data[_BUS_BITS * place:][:_BUS_BITS] for place in range(words))[beat]),
         ]
 
-        # Address of the next word of the line, kept because the bus access may have ended before memory takes its command.
+        # Address of the next word of the line, stored because the bus access may end before memory takes the word's command.
         next_word = Signal.like(port.cmd.addr)
         is_last = Signal()
-        # The bus abandoned the burst before all commands of its line were taken.
+        # The bus ended the burst before all commands of its line were taken.
         given_up = Signal()
 
-        # Number of words of the port that were requested and not yet taken out of `reads`.
+        # Number of requested port words that have not been removed from `reads`.
         owed = Signal(max=line + 1)
         asked = Signal()
         taken = Signal()
@@ -118,7 +118,7 @@ class MemoryBridge(LiteXModule):
         fsm.act("SERVE",
             bus.ack.eq(bus.cyc & bus.stb & ~bus.we & reads.source.valid),
             If(bus.ack,
-                # Takes the word of the port out of `reads` when the bus gets the last of its 32-bit parts, or when the burst ends.
+                # Removes the port word from `reads` when the bus gets the last of the word's 32-bit parts, or when the burst ends.
                 # After the last requested word, the bus needs a new request.
                 reads.source.ready.eq(~more | (beat == words - 1)),
                 If(~more | ((beat == words - 1) & (owed == 1)),
@@ -132,7 +132,7 @@ class MemoryBridge(LiteXModule):
                 NextState("DROP"),
             )
         )
-        # Discards the words that were requested for a burst and not taken before the burst ended.
+        # Discards the words of a burst that the bus did not take before the burst ended.
         fsm.act("DROP",
             reads.source.ready.eq(1),
             If((owed == 0) | ((owed == 1) & reads.source.valid),

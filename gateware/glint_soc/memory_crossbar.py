@@ -1,4 +1,4 @@
-"""Crossbar of the memory: shares LiteDRAM's controller among the ports, one command a clock."""
+"""Memory crossbar: shares LiteDRAM's controller among the ports, one command per clock."""
 
 from functools import reduce
 from operator import or_
@@ -36,13 +36,13 @@ class MemoryCrossbar(LiteDRAMCrossbar):
             raise ValueError("expected one rank of memory and addresses ROW_BANK_COL")
         column_bits = settings.geom.colbits - controller.address_align
         banks = [getattr(controller, f"bank{number}") for number in range(self.nbanks)]
-        # The queues have room for all commands of a port. With fewer, a port waits less for its last command before it changes to
-        # another bank; a command takes four clocks at least from its port until it is done.
+        # Each queue holds all commands of a port. With fewer commands, a port waits less for its last command before it changes to another
+        # bank; a command takes at least four clocks from its port to its completion.
         most = 5
         if most > self.cmd_buffer_depth:
             raise ValueError(f"expected queues of {most} commands, got {self.cmd_buffer_depth}")
 
-        # The bank of the command that is done: the multiplexer has at most one in a clock.
+        # The bank of the command that completes: at most one per clock, in the multiplexer.
         done, done_read, done_write = Signal(self.bank_bits), Signal(), Signal()
         self.comb += [
             done.eq(reduce(or_, (Mux(bank.rdata_valid | bank.wdata_ready, number, 0) for number, bank in enumerate(banks)))),
@@ -50,12 +50,12 @@ class MemoryCrossbar(LiteDRAMCrossbar):
             done_write.eq(reduce(or_, (bank.wdata_ready for bank in banks))),
         ]
 
-        # Banks that a port owns, and the port whose turn it is.
+        # The banks that ports own, and the port selected by the arbiter.
         owned = Signal(self.nbanks)
         turn = Signal(max=max(len(ports), 2))
         wanted, allowed, answered, released = [], [], [], []
         for number, port in enumerate(ports):
-            # The bank that the port owns. Bit n of `level` is set while more than n of its commands there are not done.
+            # The bank that the port owns. Bit n of `level` is set while the port has more than n pending commands for its bank.
             owner, place, level = Signal(), Signal(self.bank_bits), Signal(most)
             bank, stays, may, taken, ended, leaves = Signal(self.bank_bits), Signal(), Signal(), Signal(), Signal(), Signal()
             self.comb += [
@@ -65,10 +65,10 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                 port.cmd.ready.eq((turn == number) & may),
                 taken.eq(port.cmd.valid & port.cmd.ready),
                 ended.eq(level[0] & (place == done) & (done_read | done_write)),
-                # Without a command for its bank, the port leaves it to others.
+                # The port releases the bank when it has no command for it.
                 leaves.eq(owner & ~level[0] & ~(port.cmd.valid & stays)),
             ]
-            # Written without clock enables: flip-flops with an enable of their own take a slice of the FPGA.
+            # Written without clock enables: flip-flops with different enables cannot share a slice of the FPGA.
             grown, shrunk = Cat(1, level[:-1]), Cat(level[1:], 0)
             self.sync += [
                 If(taken, place.eq(bank)),
@@ -80,8 +80,8 @@ class MemoryCrossbar(LiteDRAMCrossbar):
             answered.append(ended)
             released.append(Mux(leaves, 1 << place, 0))
 
-        # Passes the command of the port whose turn it is. The next turn is that of the next port with a command that is allowed,
-        # unless the command that passes takes its bank.
+        # Passes the command of the selected port. The arbiter then selects the next port with a permitted command whose bank the passed
+        # command does not take.
         self.arbiter = arbiter = roundrobin.RoundRobin(len(ports), roundrobin.SP_CE)
         self.submodules += arbiter
         valid, bank = Signal(), Signal(self.bank_bits)
@@ -109,7 +109,7 @@ class MemoryCrossbar(LiteDRAMCrossbar):
                 self.comb += port.wdata.ready.eq(delayed(self, ended & done_write, self.write_latency))
                 writer |= Mux(ended, len(writers), 0)
                 writers.append(port)
-        # Memory ignores data and strobes that no port writes, so they may be those of any port.
+        # Memory ignores data and strobes outside of writes, so any port's may be selected then.
         writer = delayed(self, writer, self.write_latency)
         self.comb += [
             controller.wdata.eq(Array(port.wdata.data for port in writers)[writer]),

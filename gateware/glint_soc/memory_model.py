@@ -7,7 +7,7 @@ from migen import Cat, If, Memory, Mux, Signal, log2_int
 
 from .delay import delayed
 
-# Levels of ras_n, cas_n and we_n, from the lowest bit on, that make a command.
+# Commands by their levels of ras_n, cas_n and we_n, ras_n in the lowest bit.
 _ACTIVATE, _READ, _WRITE = 0b110, 0b101, 0b001
 
 
@@ -51,7 +51,7 @@ class MemoryModel(LiteXModule):
         reading, before, writing = memory.get_port(async_read=True), memory.get_port(async_read=True), memory.get_port(write_capable=True)
         self.specials += memory, reading, before, writing
 
-        # The data of a read leave `read_latency` cycles after it, those of a write come `write_latency` cycles after it.
+        # Read data are output `read_latency` cycles after the command; write data come `write_latency` cycles after the command.
         data, place = Signal(width), Signal(len(writing.adr))
         self.comb += [
             reading.adr.eq(address(read_bank, read_column)),

@@ -64,7 +64,7 @@ def _type(value):
 
 
 class Enumeration:
-    """Enumerated values of a register field: name and text of each, in the order of their numbers from 0."""
+    """Enumerated values of a register field: a list of names and texts; the index of an entry is its value."""
 
     def __init__(self, name, text, values):
         self.name = name
@@ -148,7 +148,7 @@ def _comment(text):
 
 
 def lines_of(text):
-    """Returns a text divided into lines of about 120 characters, each after a blank."""
+    """Returns a text split into lines of about 120 characters, each preceded by a blank."""
     words, lines = text.split(), [""]
     for word in words:
         if len(lines[-1]) + len(word) > 120:

@@ -1,4 +1,4 @@
-"""Registers that only the gateware reads."""
+"""Parameter registers that only the gateware reads."""
 
 from functools import reduce
 from itertools import pairwise
@@ -12,7 +12,7 @@ from .register_map import CSR_PAGING
 
 
 _LOADS = 128
-"""Most flip-flops that one enable controls."""
+"""Largest number of flip-flops per enable."""
 
 
 class Parameter(CSRStorage):
@@ -24,7 +24,7 @@ class Parameter(CSRStorage):
 
     def __init__(self, *arguments, description, **options):
         super().__init__(*arguments, description=f"{description} Reads as 0.", reset_less=True, **options)
-        # Whether the register is a word of a `PassParameters`, which sets `storage` then.
+        # Whether the register is a word of a `PassParameters`, which then sets `storage`.
         self.in_memory = False
 
     def do_finalize(self, busword, ordering):
@@ -43,7 +43,7 @@ def without_reading(storage):
     register.storage, register.re = storage.storage, storage.re
     if hasattr(storage, "fields"):
         register.fields = storage.fields
-    # LiteX puts the registers of a core into the order of these numbers.
+    # LiteX sorts the registers of a core by these numbers.
     register.duid = storage.duid
     return register
 
@@ -79,7 +79,7 @@ class PassParameters(LiteXModule):
         self._write, self._read = words.get_port(write_capable=True), words.get_port(mode=READ_FIRST)
         self.specials += words, self._write, self._read
 
-        # `turn` is the position of the word that is read in `order`. The word moves into its chain one clock later.
+        # `turn` is the index in `order` of the word that is being read. The word moves into its chain one clock later.
         self._order = [register for chain in chains for register in chain]
         self._turn = turn = Signal(max=len(self._order))
         waiting, reading, moving = (Signal(len(chains)) for _ in range(3))
@@ -94,7 +94,7 @@ class PassParameters(LiteXModule):
             loads = _LOADS
             for copy, wider in pairwise([*copies.values(), self._read.dat_r]):
                 if loads + len(copy) > _LOADS:
-                    # Another `moving[k]`. It depends on itself, because synthesis would merge flip-flops with the same input.
+                    # Another `moving[k]`. It depends on itself, because synthesis would otherwise merge it with flip-flops of equal input.
                     moves, loads = Signal(name=f"moves_{k}", reset_less=True, attr={"keep"}), 0
                     self.sync += moves.eq(reading[k] & (moves | ~moving[k]))
                 loads += len(copy)

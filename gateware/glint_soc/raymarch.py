@@ -220,14 +220,14 @@ class Raymarcher(LiteXModule):
             "zenith": palette[7].storage, "undecided": palette[6].storage,
             "faces": [*_contents(palette[:6]), *self._octants(fields)]})
         self.package = Package("raymarch", structs=[constants, sphere, lights, limits, colours, self.counters.events])
-        # The registers that this build reads, without those whose writes have an effect at once.
+        # The registers that this build reads, without registers whose writes take effect at once.
         eyes = 2 if fields.stereo else 1
         registers = [self._cube_half, *box_half, self._tuning, self._far, self._near, *origins[:3*eyes], *outside[:3*eyes],
                      *first[:3*eyes], *bounds, *across, *down, self._depth_scale, *palette, self._horizon, self._fog_shift]
         if fields.prepass:
             registers += [*offset, self._cone_spread]
         self.parameters = PassParameters(registers)
-        # Parameters are copied while the block is disabled too.
+        # Parameters are also copied while the block is disabled.
         self.clock_control = ClockControl(
             engine.raster_load | self.parameters.loading | (enable & engine.clock_control.enable))
         self.comb += [

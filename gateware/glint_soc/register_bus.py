@@ -1,4 +1,4 @@
-"""Register banks and their bridge on the CPU's bus, with one clock more than LiteX's, for the decoder of the address."""
+"""Register banks and their bridge on the CPU's bus, with one more clock of latency than LiteX's, for the address decoder."""
 
 from litex.soc.interconnect.csr_bus import CSRBank, Interface
 from litex.soc.interconnect.wishbone import Wishbone2CSR
@@ -43,7 +43,7 @@ class RegisterBank(CSRBank):
 
 
 class RegisterBridge(Wishbone2CSR):
-    """LiteX's bridge, for banks whose data come one clock later."""
+    """LiteX's bridge, modified for banks whose data come one clock later."""
 
     def __init__(self, bus_wishbone=None, bus_csr=None, register=True):
         if not register:

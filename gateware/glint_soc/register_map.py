@@ -46,7 +46,7 @@ PINNED = {
 
 BOARD_SPECIFIC = ("ddrphy", "uart_phy")
 
-# Registers that follow from the kind of memory. Only the BIOS, which is built with the gateware, uses them.
+# Registers that depend on the type of memory. Only the BIOS uses them, which is built with the gateware.
 MEMORY_SPECIFIC = ("sdram",)
 
 # The optional blocks in the order of their bits in the register `identity_blocks`, each with its text.

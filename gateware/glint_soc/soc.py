@@ -30,13 +30,13 @@ from .triangle import TriangleEngine
 from .video import CEA_1280X720
 
 SYS_CLK_FREQ = 81.25e6
-"""System clock in Hz. With it DDR3-650 and the fabric meet the specification of the -1 speed grade."""
+"""System clock in Hz. With this clock, DDR3-650 and the logic meet the specification of the -1 speed grade."""
 
 CLOCK_UNIT = 250e3
-"""The firmware converts between time and cycles with a whole number of cycles in 4 µs: the clock must be a multiple of this."""
+"""The clock must be a multiple of this, because the firmware converts between time and cycles by a whole number of cycles per 4 µs."""
 
 _FLASH = 0x4000_0000 - FLASH_BYTES
-"""Address of the window of the SPI flash. Main memory follows, so the BIOS reads a memory whatever length of the firmware it finds."""
+"""Address of the window of the SPI flash. Main memory follows, so a wrong firmware length never makes the BIOS read beyond memory."""
 
 _PORT_BITS = 128
 """Width of the memory ports of the accelerators."""
@@ -55,9 +55,9 @@ class GlintSoC(SoCCore):
 
     csr_map = CSR_MAP
     possible_blocks = frozenset(OPTIONAL_BLOCKS)
-    """The optional blocks that the board has pins for."""
+    """The optional blocks for which the board has pins."""
     default_blocks = possible_blocks
-    """The optional blocks of a build that names none."""
+    """The default optional blocks of a build."""
 
     def __init__(self, platform, crg, build_id, blocks, uart_name, smooth=False, depths=True, fields=None,
                  sys_clk_freq=SYS_CLK_FREQ, mode=CEA_1280X720):
@@ -76,13 +76,13 @@ class GlintSoC(SoCCore):
         self.smooth = smooth
         self.depths = depths
         self.fields = fields or Fields()
-        # Set before SoCCore adds `uart` and `timer0`, because SoCCore keeps an interrupt number that is already set.
+        # Comes before SoCCore adds `uart` and `timer0`, because SoCCore keeps interrupt numbers that are already set.
         self.interrupt_map = {
             name: location.irq for name, location in PINNED.items()
             if location.irq is not None and (name not in OPTIONAL_BLOCKS or name in self.blocks)
         }
         self.crg = crg
-        # LiteX has no parameters for these classes.
+        # LiteX has no parameters to select these classes.
         csr_bus.CSRBank, wishbone.Wishbone2CSR = RegisterBank, RegisterBridge
         SoCCore.__init__(
             self, platform, clk_freq=int(sys_clk_freq),
@@ -92,7 +92,7 @@ class GlintSoC(SoCCore):
             uart_name=uart_name, uart_baudrate=115200,
             timer_uptime=True,
         )
-        # The serial line would take 60 ms for the BIOS's greeting, whose build time would make every build different.
+        # The BIOS's banner would take 60 ms on the serial line, and its build time would make every build different.
         self.add_config("BIOS_NO_PROMPT")
         # The interrupt handler of the BIOS drops bytes that do not fit its buffer. With polling, unread bytes stay in the UART
         # and stall the sender.
@@ -114,7 +114,7 @@ class GlintSoC(SoCCore):
         if "flash" in self.blocks:
             self.flash = FlashReader(platform, platform.request("flash"))
             self.bus.add_slave("flash", self.flash.bus, SoCRegion(origin=_FLASH, size=FLASH_BYTES, mode="rx"))
-            # The BIOS starts the firmware there, if no host answers.
+            # If no host answers, the BIOS starts the firmware at this address.
             self.add_constant("FLASH_BOOT_ADDRESS", _FLASH + FLASH_FIRMWARE)
 
     def do_finalize(self):
@@ -127,12 +127,12 @@ class GlintSoC(SoCCore):
                 self.comb += control.accessed.eq(bank.addressed)
 
     def _inputs(self, name, bits):
-        """The input pins `name` with `bits` bits: those that the board lacks are 0."""
+        """The input pins `name` with `bits` bits; bits without a pin on the board are 0."""
         pads = self.platform.request(name)
         return Cat(pads, Constant(0, bits - len(pads))) if len(pads) < bits else pads
 
     def _outputs(self, name, bits):
-        """`bits` bits that drive the output pins `name`: those that the board lacks have no effect."""
+        """`bits` bits that drive the output pins `name`; bits without a pin on the board have no effect."""
         pads = self.platform.request(name)
         if len(pads) == bits:
             return pads
@@ -142,20 +142,19 @@ class GlintSoC(SoCCore):
 
     def add_dram(self, phy, module):
         """Adds the controller of the memory `module` over the board's PHY, then the blocks that access memory."""
-        # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory turns less often between reads and writes, which
-        # takes a dozen clocks each time.
-        # LiteX has no parameter for the class of the crossbar.
+        # With longer runs of reads and writes than LiteDRAM's 32 and 16, memory switches less often between reads and writes, which takes
+        # a dozen clocks each time. LiteX has no parameter for the class of the crossbar.
         litedram.core.LiteDRAMCrossbar = MemoryCrossbar
         self.add_sdram("sdram", phy=phy, module=module, with_soc_interconnect=False,
                        controller_settings=ControllerSettings(read_time=64, write_time=128, cmd_buffer_depth=8))
-        # The BIOS does not read back what it writes to these registers of each phase.
+        # The BIOS does not read back these registers of each phase.
         for injector in (getattr(self.sdram.dfii, f"pi{phase}") for phase in range(phy.settings.nphases)):
             for name in ("_command", "_address", "_baddress", "_wrdata"):
                 setattr(injector, name, without_reading(getattr(injector, name)))
         size = module.nbanks * module.nrows * module.ncols * phy.settings.databits // 8
         main_ram = SoCRegion(origin=self.mem_map["main_ram"], size=size, mode="rwx")
         bus = wishbone.Interface(data_width=32, address_width=32, addressing="word")
-        # LiteDRAM puts a converter between a port and a narrower memory.
+        # LiteDRAM inserts a width converter between a port and a narrower memory.
         width = self.sdram.crossbar.controller.data_width
         port = self.sdram.crossbar.get_port("both", max(width, bus.data_width))
         self.identity.add_main_ram(size)
@@ -174,7 +173,7 @@ class GlintSoC(SoCCore):
             self.raymarch = Raymarcher(self.platform, self.fields, self.triangle)
 
     def _port(self, mode, main_ram, built=True):
-        """Returns a port of the memory for an accelerator: one without a memory behind it if the part that uses it is not built."""
+        """Returns a memory port for an accelerator; an unconnected port if the part that uses the port is not built."""
         if built:
             return self.sdram.crossbar.get_port(mode, _PORT_BITS)
         return LiteDRAMNativePort(mode, log2_int(main_ram.size * 8 // _PORT_BITS), _PORT_BITS)

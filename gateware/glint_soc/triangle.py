@@ -225,9 +225,9 @@ class TriangleEngine(LiteXModule):
              self._near_low, self._near_high, self._depth_scale, *light, self._light_colour, self._ambient,
              self._colour],
             [self._frame, self._depth, self._clear, self._list_shift, *chain(*sets.values())])
-        # A raymarcher copies its parameters at the same time as the raster pass, which waits for both.
+        # A raymarcher copies its parameters when the raster pass starts; the pass waits until both have copied theirs.
         self.raster_load, self.field_loading = Signal(), Signal()
-        # A request that is refused leaves the parameters of the running pass as they are.
+        # A refused request does not change the parameters of the running pass.
         self.comb += [
             self.raster_load.eq(self._raster.fields.start & ~self._status.fields.raster_busy),
             self.parameters.load.eq(Cat(self._geometry.fields.start & ~self._status.fields.geometry_busy, self.raster_load)),
@@ -359,7 +359,7 @@ class TriangleEngine(LiteXModule):
 
 
 def _read_port(port):
-    """Returns the connections of a native read port of the memory, in both directions."""
+    """Returns the port connections of a native read port of the memory, in both directions."""
     return {
         "request": Struct("read_request_t", "A read port of the memory: to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": _address(port)}),
@@ -375,7 +375,7 @@ def _address(port):
 
 
 def _write_port(port):
-    """Returns the connections of a native write port of the memory, in both directions."""
+    """Returns the port connections of a native write port of the memory, in both directions."""
     return {
         "request": Struct("write_request_t", "A write port of the memory: to the memory.", {
             "cmd_valid": port.cmd.valid, "cmd_addr": _address(port),

@@ -21,7 +21,7 @@ _CLK25_FREQ = 25e6
 
 
 class _PLL(ECP5PLL):
-    """A PLL whose outputs, and the one for its feedback, stay below the largest frequency of an output: half of the VCO's."""
+    """A PLL whose outputs, including the feedback output, have at most half of the VCO's frequency, the limit of an output."""
 
     clko_div_range = (2, 128 + 1)
 
@@ -46,12 +46,12 @@ class CRG(LiteXModule):
         self.sys_pll = sys_pll = _PLL()
         sys_pll.register_clkin(platform.request("clk25"), _CLK25_FREQ)
         sys_pll.create_clkout(self.cd_sys, sys_clk_freq, margin=0, with_reset=False)
-        # The memory takes commands and data a quarter of a clock after they have changed.
+        # The memory samples commands and data a quarter of a clock after they change.
         sys_pll.create_clkout(self.cd_sys_ps, sys_clk_freq, phase=90, margin=0, with_reset=False)
         restart = Signal()
         self.comb += self.cd_por.clk.eq(self.cd_sys.clk)
         self.sync.por += restart.eq(self.rst)
-        # A global buffer takes the reset to its thousands of loads; on ordinary wires it would be among the slowest paths.
+        # A global buffer distributes the reset to its thousands of loads; on ordinary wires the reset would be among the slowest paths.
         reset = ClockDomain("reset", reset_less=False)
         self.comb += reset.clk.eq(self.cd_sys.clk)
         self.specials += [
@@ -70,9 +70,9 @@ class CRG(LiteXModule):
 class Ulx3sSoC(GlintSoC):
     """The SoC on the board."""
 
-    # The flash of this board is not set to four data lines: the FPGA loads from it on one.
+    # The flash of this board is not configured for four data lines: the FPGA loads from it on one line.
     possible_blocks = GlintSoC.possible_blocks - {"flash"}
-    # With the raymarcher nextpnr takes twice the time, and ends late (see docs/boards.md).
+    # With the raymarcher, nextpnr takes twice as long, and the result does not reach the clock frequency (see docs/boards.md).
     default_blocks = possible_blocks - {"raymarch"}
 
     def __init__(self, build_id, blocks, smooth=False, depths=True, fields=None, sys_clk_freq=SYS_CLK_FREQ):

@@ -10,26 +10,25 @@ _TMDS = (IOStandard("LVCMOS33D"), Misc("DRIVE=4"))
 _io = [
     ("clk25", 0, Pins("G2"), _3V3),
 
-    # Fire 1, fire 2, left, right: the button for power has another polarity, and up and down have no use.
+    # Fire 1, fire 2, left, right: the power button has the other polarity, and up and down are not used.
     ("buttons", 0, Pins("R1 T1 U1 H16"), Misc("PULLMODE=DOWN"), _3V3),
     ("switches", 0, Pins("E8 D8 D7 E7"), Misc("PULLMODE=DOWN"), _3V3),
     ("leds", 0, Pins("B2 C2 C1 D2 D1 E2 E1 H3"), Misc("DRIVE=4"), _3V3),
 
-    # `rx` and `tx` are as seen from the FPGA. The board's file names these pins as seen from the USB bridge.
+    # `rx` and `tx` are named from the FPGA's side. The board's constraint file names them from the side of the USB bridge.
     ("serial", 0,
         Subsignal("rx", Pins("M1"), Misc("PULLMODE=UP")),
         Subsignal("tx", Pins("L4"), Misc("DRIVE=4")),
         _3V3),
 
-    # An external MPU-6050 at the first pair of the pin header, GP0 and GN0. Its module has pull-up resistors; those of the FPGA
-    # keep the bus idle while no module is connected.
+    # An external MPU-6050 at the first pair of the pin header, GP0 and GN0. Its module has pull-up resistors; the FPGA's pull-ups keep the
+    # bus idle while no module is connected.
     ("i2c", 0,
         Subsignal("sda", Pins("B11")),
         Subsignal("scl", Pins("C11")),
         Misc("PULLMODE=UP"), _3V3),
 
-    # An image sensor at the following pins of the header, GP1 to GN8: its clock is at one of the pins that reach the FPGA's clock
-    # network.
+    # An image sensor at the following pins of the header, GP1 to GN8: its clock is at a pin that reaches the FPGA's clock network.
     ("camera", 0,
         Subsignal("pclk", Pins("A10")),
         Subsignal("xclk", Pins("A11"), Misc("DRIVE=4")),
@@ -42,7 +41,7 @@ _io = [
         Subsignal("power_down", Pins("A5"), Misc("DRIVE=4")),
         _3V3),
 
-    # Only the positive pin of each pair is named: the FPGA drives the negative one with it.
+    # Only the positive pin of each pair is listed: the FPGA also drives the negative pin of the pair.
     ("hdmi_out", 0,
         Subsignal("clk_p", Pins("A17"), *_TMDS),
         Subsignal("data0_p", Pins("A16"), *_TMDS),
@@ -62,13 +61,13 @@ _io = [
         Subsignal("dq", Pins("J16 L18 M18 N18 P18 T18 T17 U20 E19 D20 D19 C20 E18 F18 J18 J17")),
         Misc("SLEWRATE=FAST"), _3V3),
 
-    # High: the ESP32 on the board starts its own program, and does not wait for one.
+    # High: the ESP32 on the board starts its own program, and does not wait for a download.
     ("wifi_gpio0", 0, Pins("L2"), _3V3),
 ]
 
 
 class Platform(LatticeECP5Platform):
-    """Writes Verilog and constraints; `gateware/ecp5` makes a bitstream of them."""
+    """Writes Verilog and constraints; `gateware/ecp5` makes a bitstream from these files."""
 
     default_clk_name = "clk25"
     default_clk_period = 1e9 / 25e6

@@ -61,7 +61,7 @@ class CRG(LiteXModule):
         sys_mmcm.create_clkout(self.cd_sys, sys_clk_freq, margin=0)
         sys_mmcm.create_clkout(self.cd_sys4x, 4 * sys_clk_freq, margin=0)
         sys_mmcm.create_clkout(self.cd_sys4x_dqs, 4 * sys_clk_freq, phase=90, margin=0)
-        # The reset of the domain `sys` also resets the generator of its clock, which runs in the domain of the input clock.
+        # The reset of the domain `sys` also resets the generator of the domain's clock, which runs in the domain of the input clock.
         platform.add_false_path_constraints(self.cd_sys.clk, "clk100")
 
         self.idelay_pll = idelay_pll = S7PLL(speedgrade=_SPEED_GRADE)
@@ -75,7 +75,7 @@ class CRG(LiteXModule):
         pixel_mmcm.create_clkout(self.cd_pix, CEA_1280X720.clk_freq)
         pixel_mmcm.create_clkout(self.cd_pix5x, 5 * CEA_1280X720.clk_freq)
 
-        # Every path between these two clocks goes through a crossing of rtl/common, or through two flip-flops that LiteX adds.
+        # Every path between these two clocks goes through a crossing module of rtl/common, or through two flip-flops that LiteX adds.
         platform.add_false_path_constraints(self.cd_sys.clk, self.cd_pix.clk)
 
 
@@ -99,7 +99,7 @@ class UrbanaSoC(GlintSoC):
         self.ddrphy = A7DDRPHY(
             platform.request("ddram"), memtype="DDR3", nphases=4,
             sys_clk_freq=sys_clk_freq, iodelay_clk_freq=_IDELAY_CLK_FREQ, csr_cdc=_without_write_bitslip)
-        # The BIOS leaves the phases of commands as they are, so the controller needs no multiplexer for them.
+        # The BIOS does not change the phases of commands, so the controller needs no multiplexer for them.
         self.ddrphy.settings.rdphase = self.ddrphy.settings.rdphase.reset.value
         self.ddrphy.settings.wrphase = self.ddrphy.settings.wrphase.reset.value
         # The termination is set directly, because `add_electrical_settings` stores the value under a name that the initialisation

@@ -27,7 +27,7 @@ _io = [
         Subsignal("right_segments_n", Pins("F3 G5 J3 H4 F4 H3 E5 J4")),
         _BANK_35),
 
-    # `rx` and `tx` are as seen from the FPGA. The vendor's file names these pins as seen from the USB bridge.
+    # `rx` and `tx` are named from the FPGA's side. The vendor's constraint file names them from the side of the USB bridge.
     ("serial", 0,
         Subsignal("rx", Pins("B16")),
         Subsignal("tx", Pins("A16")),
@@ -40,8 +40,8 @@ _io = [
         Subsignal("scl", Pins("K14")),
         Misc("PULLUP=TRUE"), IOStandard("LVCMOS33")),
 
-    # An OV5640 or OV7670 on the camera adapter at PMOD A and JAB, which leaves PMOD B to the motion sensor. The adapter has neither
-    # the sensor's reset nor its power-down.
+    # An OV5640 or OV7670 on the camera adapter at PMOD A and JAB, which leaves PMOD B to the motion sensor. The adapter does not connect
+    # the sensor's reset and power-down pins.
     ("camera", 0,
         Subsignal("d", Pins("J13 F14 J14 F15 E14 H13 E15 H14")),
         Subsignal("pclk", Pins("D10")),
@@ -70,7 +70,7 @@ _io = [
         Subsignal("data2_n", Pins("T14")),
         IOStandard("TMDS_33")),
 
-    # The memory is DDR3L, 1 Gbit, 16 bits wide. Its chip select is tied on the board.
+    # The memory is DDR3L, 1 Gbit, 16 bits wide. Its chip select is tied low on the board.
     ("ddram", 0,
         Subsignal("a", Pins("V3 R4 P6 T3 T6 T1 V5 U7 R7 U6 U3 P5 V6"), IOStandard("SSTL135")),
         Subsignal("ba", Pins("V2 V4 R3"), IOStandard("SSTL135")),
@@ -100,7 +100,7 @@ class Platform(Xilinx7SeriesPlatform):
             "CFGBVS VCCO",
             "CONFIG_VOLTAGE 3.3",
             "BITSTREAM.CONFIG.SPI_BUSWIDTH 4",
-            # MHz. With the default of 3, the configuration takes up to 1.5 s.
+            # MHz. With the default clock of 3 MHz, the configuration takes up to 1.5 s.
             "BITSTREAM.CONFIG.CONFIGRATE 33",
             "BITSTREAM.GENERAL.COMPRESS TRUE",
         ):
@@ -108,8 +108,8 @@ class Platform(Xilinx7SeriesPlatform):
         self.add_platform_command("set_property INTERNAL_VREF 0.675 [get_iobanks 34]")
 
     def build(self, *arguments, **options):
-        # The threshold is the largest number of loads that leave the pins. LiteX has no parameter for it, and writes the
-        # directive into the command of the synthesis as it is.
+        # Up to this number of loads, a control signal becomes logic instead of a control pin. LiteX has no parameter for this threshold,
+        # but copies the directive verbatim into the synthesis command.
         directive = f"default -control_set_opt_threshold {CONTROL_PIN_LOADS - 1}"
         return Xilinx7SeriesPlatform.build(self, *arguments, vivado_synth_directive=directive, **options)
 

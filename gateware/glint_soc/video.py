@@ -31,7 +31,7 @@ class VideoMode:
 
     @property
     def frame_ticks(self):
-        """Ticks of the pixel clock in a frame, with its blanking."""
+        """Ticks of the pixel clock per frame, including blanking."""
         return sum(self.pixels) * sum(self.lines)
 
     @property

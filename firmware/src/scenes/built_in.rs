@@ -2,12 +2,12 @@
 
 use glint_core::feature::Feature;
 
-/// A built-in scene, or a list of some.
+/// A built-in scene or list of scenes.
 #[derive(Debug)]
 pub struct BuiltIn {
     /// Name on the console.
     pub name: &'static str,
-    /// The parts of the firmware that it needs.
+    /// The parts of the firmware that it requires.
     pub features: &'static [Feature],
     /// Its content.
     pub content: Content,
@@ -16,14 +16,14 @@ pub struct BuiltIn {
 /// Content of a built-in scene.
 #[derive(Debug)]
 pub enum Content {
-    /// The console commands that set the picture and start what moves the camera, a line each, from the state at start on.
+    /// The console commands, one per line, that set the picture and start camera motion, on top of the default scene.
     Lines(&'static str),
-    /// The names of other scenes, each of which has lines.
+    /// The names of other built-in scenes; lists do not nest.
     Scenes(&'static [&'static str]),
 }
 
 impl BuiltIn {
-    /// A scene with a picture. A build without one of its features leaves the lines out.
+    /// A scene with a picture. A build without one of its features does not include the lines.
     pub const fn picture(
         name: &'static str,
         features: &'static [Feature],
@@ -50,7 +50,7 @@ impl BuiltIn {
         }
     }
 
-    /// The parts of the firmware that the scene needs and this build lacks.
+    /// The parts of the firmware that the scene requires and this build does not include.
     pub fn lacks_features(&self) -> impl Iterator<Item = &'static Feature> {
         self.features.iter().filter(|feature| !feature.is_built)
     }

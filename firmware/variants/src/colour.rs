@@ -1,4 +1,4 @@
-//! Colours of eight bits a channel, packed to the pixels of a frame buffer.
+//! Packing of colours with eight bits per channel to pixels of a frame buffer.
 
 use glint_core::colour::Rgb565;
 
@@ -11,7 +11,7 @@ pub struct Pixel {
     pub pack: Kernel<u32, u64>,
     /// Number of bits of a pixel.
     pub bits: u32,
-    /// Red, green and blue as the display shows them.
+    /// The displayed red, green and blue of a pixel.
     pub shown: fn(u64) -> [u8; 3],
 }
 
@@ -35,12 +35,12 @@ pub const PIXELS: &[Pixel] = &[
     },
 ];
 
-/// Returns the input of a phase.
+/// Returns the input for a phase.
 pub const fn input(phase: u32) -> u32 {
     phase >> 8
 }
 
-/// The pixel format with these numbers of bits of red, green and blue, each the highest ones.
+/// The pixel format with the highest bits of red, green and blue, in these numbers.
 const fn truncated<const R: u32, const G: u32, const B: u32>(
     name: &'static str,
     config: &'static str,

@@ -1,4 +1,4 @@
-//! Filters for the camera's control by a hand, in the formats of the one in use, [`glint_core::gesture::OneEuro`].
+//! Filters for gesture control, in the formats of the filter in use, [`glint_core::gesture::OneEuro`].
 
 use glint_core::fixed::{Q4_28, U16_16};
 use glint_core::gesture::{Step, low_pass_gain, towards};
@@ -21,7 +21,7 @@ impl<const N: usize> Average<N> {
         }
     }
 
-    /// Takes the next input, and returns the output, rounded down.
+    /// Processes the next input, and returns the output, rounded down.
     pub fn next(&mut self, input: Q4_28) -> Q4_28 {
         self.place = (self.place + 1) % N;
         let oldest = &mut self.inputs[self.place];
@@ -31,7 +31,7 @@ impl<const N: usize> Average<N> {
     }
 }
 
-/// A low pass of first order: exponential smoothing.
+/// A first-order low-pass filter: exponential smoothing.
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass {
     cutoff: U16_16,
@@ -47,7 +47,7 @@ impl LowPass {
         }
     }
 
-    /// Takes the next input, and returns the output.
+    /// Processes the next input, and returns the output.
     pub fn next(&mut self, input: Q4_28, step: Step) -> Q4_28 {
         let gain = low_pass_gain(self.cutoff, step);
         self.output = towards(self.output, input.to_bits(), gain);
@@ -55,13 +55,13 @@ impl LowPass {
     }
 }
 
-/// The α-β filter: the Kalman filter of a position with constant velocity, in its steady state. It knows no times: the steps are equal.
+/// The α-β filter: the Kalman filter of a position with constant velocity, in its steady state. It assumes equal time steps.
 #[derive(Clone, Copy, Debug)]
 pub struct AlphaBeta {
     /// Gains with 16 fraction bits.
     gains: [u32; 2],
     place: i32,
-    /// Change of the place in a step.
+    /// Velocity: change of the position per step.
     speed: i32,
 }
 
@@ -75,7 +75,7 @@ impl AlphaBeta {
         }
     }
 
-    /// Takes the next input, and returns the output.
+    /// Processes the next input, and returns the output.
     pub fn next(&mut self, input: Q4_28) -> Q4_28 {
         let predicted = self.place.saturating_add(self.speed);
         let [alpha, beta] = self.gains;

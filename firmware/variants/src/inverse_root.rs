@@ -59,9 +59,9 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
     ),
 ];
 
-/// Returns the input of a phase.
+/// Returns the input for a phase.
 pub const fn input(phase: u32) -> u32 {
-    // [1, 4) has three quarters of the numbers of 24 bits.
+    // Three quarters of the 24-bit numbers are in [1, 4).
     (1 << 22) + (phase >> 8) * 3 / 4
 }
 

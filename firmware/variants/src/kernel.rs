@@ -1,6 +1,6 @@
 //! Kernels of one family: functions that compute the same value, from cheap to exact.
 
-/// A function with the names under which the report lists it.
+/// A kernel: a function and its names in reports.
 pub struct Kernel<I, O> {
     /// Name in the firmware's `bench kernels`.
     pub name: &'static str,
@@ -17,9 +17,9 @@ pub struct Kernel<I, O> {
 /// Number format of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
-    /// Inputs in the fixed-point format of the family, outputs with this number of fraction bits.
+    /// Fixed point: inputs in the format of the family, outputs with this number of fraction bits.
     Fixed(u32),
-    /// The bits of f32.
+    /// The bit patterns of f32 numbers.
     Float,
 }
 
@@ -41,7 +41,7 @@ impl Format {
     }
 }
 
-/// Returns a function as a kernel of f32, from bits to bits.
+/// Converts a function on f32 to a function on bit patterns.
 macro_rules! float {
     ($run:expr) => {
         |x: u32| {

@@ -30,7 +30,7 @@ pub const KERNELS: &[Kernel<[i32; 3], u64>] = &[
     }),
 ];
 
-/// Returns the input of a phase: directions and lengths in an order without a pattern.
+/// Returns the input for a phase: pseudo-random directions and lengths.
 pub fn input(phase: u32) -> [i32; 3] {
     let mixed = [0x85EB_CA6B, 0xC2B2_AE35, 0x27D4_EB2F_u32].map(|odd| {
         let x = phase.wrapping_mul(odd);
@@ -45,7 +45,7 @@ fn square(q: [i32; 3]) -> f32 {
     x * x + y * y + z * z
 }
 
-/// The three numbers, the largest first.
+/// Sorts three numbers, the largest first.
 fn sorted([a, b, c]: [u32; 3]) -> [u32; 3] {
     let (high, low) = if a > b { (a, b) } else { (b, a) };
     let (most, middle) = if high > c { (high, c) } else { (c, high) };

@@ -1,7 +1,7 @@
 //! Kernels that Glint does not use: other word lengths, other methods, and other libraries.
 //!
-//! The report measures their errors on the host and their cycles on the soft core (`cargo xtask report`), from this one
-//! source. Nothing else uses them.
+//! The report measures their errors on the host and their cycles on the soft core (`cargo xtask report`), from this single source. No
+//! other code uses them.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,6 +1,6 @@
 //! Products of 3×3 matrices whose entries are within ±16.
 
-/// A 3×3 matrix by its rows.
+/// A 3×3 matrix as an array of rows.
 pub type Rows<T> = [[T; 3]; 3];
 
 /// a·b with `BITS` fraction bits, at most 10: all sums of products fit 32 bits. Each entry is rounded once, to nearest.

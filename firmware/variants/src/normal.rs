@@ -1,9 +1,9 @@
-//! Normals turned by the inverse transpose of a model matrix, in 32 bits.
+//! Transformation of normals by the inverse transpose of a model matrix, in 32 bits.
 
 use crate::matrix::Rows;
 use crate::unit::unit_32;
 
-/// The cofactors of a matrix with 24 fraction bits and entries within ±16, cut so that the largest has 14 bits.
+/// The cofactors of a matrix with 24 fraction bits and entries within ±16, truncated so that the largest has 14 bits.
 pub fn cofactors(rows: &Rows<i32>) -> Rows<i32> {
     let at = |i: usize, j: usize| i64::from(rows[i % 3][j % 3]);
     let exact = [0, 1, 2].map(|i| {
@@ -15,7 +15,7 @@ pub fn cofactors(rows: &Rows<i32>) -> Rows<i32> {
     exact.map(|row| row.map(|x| (x >> cut) as i32))
 }
 
-/// Turns a normal with `BITS` fraction bits, at most 14, by [`cofactors`], and scales it to length 1. The zero vector stays.
+/// Transforms a normal with `BITS` fraction bits, at most 14, by [`cofactors`], and normalises it. The zero vector stays unchanged.
 #[inline(never)]
 pub fn turned<const BITS: u32>(cofactors: &Rows<i32>, normal: [i16; 3]) -> [i16; 3] {
     let [x, y, z] = normal.map(i32::from);

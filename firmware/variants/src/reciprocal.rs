@@ -52,13 +52,13 @@ pub const KERNELS: &[Kernel<u32, u64>] = &[
     other("reciprocal_f32", "f32 division", Float, float!(|x| 1.0 / x)),
 ];
 
-/// Returns the input of a phase: a mantissa.
+/// Returns the input for a phase: a mantissa.
 pub const fn input(phase: u32) -> u32 {
     1 << 23 | phase >> 9
 }
 
-/// Approximates 2^47/m for a mantissa m in [2^23, 2^24) by the table of seeds and `STEPS` Newton steps, at most 2. Two steps are
-/// the reciprocal in use, [`recip`]; the others are its intermediate results.
+/// Approximates 2^47/m for a mantissa m in [2^23, 2^24) by the table of seeds and `STEPS` Newton steps, at most 2. Two steps give the
+/// reciprocal in use, [`recip`]; fewer steps give its intermediate results.
 #[inline(never)]
 pub fn reciprocal<const STEPS: u32>(m: u32) -> u32 {
     if STEPS == 2 {

@@ -1,4 +1,4 @@
-//! Vectors of three integers scaled to length 1, in units of 2^−30 or in coarser ones. Inputs are those of [`crate::length`].
+//! Normalisation of vectors of three integers to length 1, with at most 30 fraction bits. Inputs are as in [`crate::length`].
 
 use glint_core::vector;
 use micromath::F32Ext;
@@ -63,7 +63,8 @@ fn corrected<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     vector::unit::<BITS>(q.map(i64::from)).unwrap_or_default()
 }
 
-/// Scales to `BITS` fraction bits, at most 30, by a root and three quotients of 64 bits, rounded to nearest. The zero vector stays.
+/// Scales to `BITS` fraction bits, at most 30, by a root and three quotients of 64 bits, rounded to nearest. The zero vector stays
+/// unchanged.
 fn divided<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     let size = q.map(i32::unsigned_abs);
     let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
@@ -78,7 +79,8 @@ fn divided<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     })
 }
 
-/// Scales to `BITS` fraction bits, at most 14, with products and quotients of 32 bits, rounded to nearest. The zero vector stays.
+/// Scales to `BITS` fraction bits, at most 14, with products and quotients of 32 bits, rounded to nearest. The zero vector stays
+/// unchanged.
 #[inline(always)]
 pub fn unit_32<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     let size = q.map(i32::unsigned_abs);
@@ -100,13 +102,14 @@ pub fn unit_32<const BITS: u32>(q: [i32; 3]) -> [i32; 3] {
     })
 }
 
-/// Scales to 30 fraction bits by the reciprocal square root with `STEPS` Newton steps. The zero vector stays.
+/// Scales to 30 fraction bits by the reciprocal square root with `STEPS` Newton steps. The zero vector stays unchanged.
 fn by_inverse<const STEPS: u32>(q: [i32; 3]) -> [i32; 3] {
     let size = q.map(i32::unsigned_abs);
     let Some(lead) = (size[0] | size[1] | size[2]).checked_ilog2() else {
         return q;
     };
-    // The largest component has 30 bits, so the sum of the squares has at most 62; it becomes x·4^n with 22 fraction bits.
+    // The largest component has 30 bits, so the sum of the squares has at most 62 bits; it is written as x·4^n, where x has 22 fraction
+    // bits.
     let up = 29_u32.saturating_sub(lead);
     let scaled = q.map(|x| x << up);
     let square: u64 = scaled

@@ -1,6 +1,6 @@
 // The band buffer: block RAM for colour and depth of a band (a horizontal strip of the picture, at most 15,360 pixels), shared
-// by all renderers. While one band is drawn, the previous band is flushed to memory. Of each line the flush writes only the
-// words that were drawn in this frame or in the last frame of the same frame buffer.
+// by all renderers. While one band is drawn, the previous band is flushed to memory. The flush only writes words of a line that were drawn
+// in this frame or in the last frame of the same frame buffer.
 //
 //                        ┌────────────┐  drawn  ┌─────────────────┐ flushed  ┌────────────┐
 //   groups ─▶ band_pipe ─┤            ├────────▶│ colour bank 0/1 │─────────▶│            │
@@ -12,35 +12,35 @@
 //                        └──────────────┘
 //
 // A row of these memories holds eight neighbouring pixels. Its address is line * (W/8) + column, with W the width of the
-// picture, line = y in the band, and column = x/8. Beside its colour each pixel has a written bit; a bank is clear when none of
-// these bits is set. A pixel whose bit is 0 has depth 0 and the clear colour, but neither value is stored. So one depth memory
-// serves both banks, and the clear colour may change from band to band. The flush resets the bits of each row that it has read,
-// so no clock is spent on clearing. The buffer takes 25 RAMB36.
+// picture, line = y in the band, and column = x/8. Besides its colour each pixel has a written bit; a bank is clear when no written bit is
+// set. A pixel whose bit is 0 has depth 0 and the clear colour, but neither value is stored. Both banks can therefore share one depth
+// memory, and the clear colour may change from band to band. The flush resets the bits of each row that it has read, so no clock is spent
+// on clearing. The buffer takes 25 RAMB36.
 //
 // Groups: {row, line, column, mask, eight depth codes u18, eight colours RGB565}, lane 0 (the leftmost) in the lowest bits.
 // Lane i is written if mask[i] is set and code[i] is at least the stored depth code. With STEREO a group may belong to one eye:
-// `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is
-// written without a depth test, and the stored depth is that of the left eye. The flush composes the colours of both eyes, see
-// band_flush; every pixel must then be drawn for both eyes. Without DEPTHS there is no memory of depths: each stored depth is 0, so
-// every lane of the mask is written. Throughput one group per clock; band_pipe explains the hazards.
+// `halves` is 1 for the left eye and 2 for the right one, and that half of each colour is the eye's luminance. Such a group is written
+// without a depth test, and only the depth of the left eye is stored. The flush composes the colours of both eyes, see band_flush; every
+// pixel must then be drawn for both eyes. Without DEPTHS there is no depth memory: each stored depth counts as 0, so every lane of the
+// mask is written. Throughput one group per clock; band_pipe explains the hazards.
 //
 // Bands: an item of the stream `band_*` ends the drawing of a band and has the parameters of its flush: the address of its first
 // 128-bit word, its `lines` (at least 1), `stride` (rows of a line) and clear colour. Groups taken up to and including the first
 // clock of `band_valid` belong to the band. After that no group is taken until the item has moved. The item moves when the last
-// group is written and the previous band is in memory; in this clock the banks change places.
+// group is written and the previous band is in memory; in this clock the banks are exchanged.
 //
-// There are two frame buffers in memory, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer
-// remembers one extent: the words of the line that may differ from the clear colour since the last flush to this slot. The
-// union of that extent and of the words drawn now goes to memory. With `whole` all words go to memory. `whole` is required
-// unless the lines in the frame buffer are as the last flush to this slot left them, with the same clear colour and stride.
+// There are two frame buffers in memory, `slot` 0 and 1. For each line of their pictures (from `first_line` on) the band buffer stores one
+// extent: the words of the line that may differ from the clear colour since the last flush to this slot. The union of that extent and of
+// the words drawn now is written to memory. With `whole` all words are written to memory. `whole` is required unless the lines in the
+// frame buffer are as the last flush to this slot left them, with the same clear colour and stride.
 //
-// `with_depth` is for debugging: the depths of the whole band go to memory too, as 32-bit words from `depth_base` on, and
-// `whole` is implied. The next band is drawn only after this flush, which takes three words a row.
+// `with_depth` is for debugging: the depths of the whole band are also written to memory, as 32-bit words from `depth_base` on, and
+// `whole` is implied. The next band is drawn only after this flush, which writes three words per row.
 //
 // `restart` (and reset) drops the band being drawn and stops the flush; words already read, at most 16, still come out. Then
-// both banks are cleared: for 2,048 clocks `clearing` is high and no group or band is taken, whether memory takes words or not.
+// both banks are cleared: for 2,048 clocks `clearing` is high and no group or band is taken, even if memory accepts no words.
 // The next flush to the interrupted slot of the lines that were being flushed (after reset: of all lines, in both slots) must
-// be `whole`. The renderers must be restarted too, because groups and bands that they offer afterwards are accepted.
+// be `whole`. The renderers must also be restarted, because the band buffer accepts all groups and bands that they offer afterwards.
 //
 // Streams: an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds
 // until it has moved. Words for memory: see band_flush. `flushed` is high when memory has taken all words of all bands.
@@ -90,7 +90,7 @@ module band_buffer #(
     localparam int unsigned ROW_BITS = 11;
 
     // `drawn` is the number of the colour bank that is drawn; the other bank is flushed. `closing` is high while the drawn band
-    // waits for its end, and `swap` in the clock in which the banks change places.
+    // waits for its end, and `swap` in the clock in which the banks are exchanged.
     logic drawn, closing, swap;
 
     // State of band_pipe, which draws, and its signals to and from the memories.
@@ -113,8 +113,8 @@ module band_buffer #(
     always_ff @(posedge clk) begin
         closing <= band_valid && !swap && !clearing;
         if (swap) drawn <= !drawn;
-        // `open` is the register of !clearing && !closing && !flush_reads_depth, and rises a clock later than that after a
-        // clearing and after a flush of depths.
+        // `open` is the register of !clearing && !closing && !flush_reads_depth, and rises one clock later after clearing and after a
+        // flush of depths.
         open    <= !(clearing || flush_reads_depth || rst || restart || (swap ? band_with_depth : band_valid));
 
         if (rst || restart) closing <= 1'b0;
@@ -160,7 +160,7 @@ module band_buffer #(
     for (genvar bank = 0; bank < 2; bank++) begin : banks
         logic                    flushes;
         logic [8*PIXEL_BITS-1:0] store;
-        // While the banks are cleared, groups that are still in the pipe are not written.
+        // During clearing, groups that are still in the pipe are not written.
         assign flushes = clearing || drawn != 1'(bank);
 
         for (genvar lane = 0; lane < 8; lane++) begin : lanes
@@ -217,7 +217,7 @@ module band_buffer #(
         for (int i = 0; i < 8; i++) ones = ones + 4'(lanes[i]);
     endfunction
 
-    // Masks of the pixels that were covered and drawn, and the other events, a clock before they leave the module.
+    // Masks of the covered and drawn pixels, and the other events, one clock before they leave the module.
     logic [7:0] covered_mask, drawn_mask;
     logic       group_taken, was_held, waited, waited_for_flush;
 

@@ -1,5 +1,5 @@
-// Plans the flush of a band: finds in each line the words to write, from the first to the last word that was drawn in this band
-// or in the last frame of the same frame buffer. All other words of the line already hold the clear colour in memory.
+// Plans the flush of a band: finds the words to write in each line, from the first to the last word that was drawn in this band or in the
+// last frame of the same frame buffer. All other words of the line already hold the clear colour in memory.
 //
 //               ┌───────────────┐
 //   groups ────▶│ now, bank 0/1 │──┬──────────────▶ union ─▶ + line's first row ─▶ skid_buffer ─▶ spans
@@ -10,20 +10,18 @@
 //
 // The extent of a line is its first and its last drawn column, a column being eight pixels. The memory `now` in LUTs holds the
 // extents of the lines of a band, once for each colour bank. A group updates the extent of its line in two clocks, a read and a
-// write; an extent that is written goes straight to a read of the same line in that clock. The last update ends 2 clocks after
+// write; an extent that is being written is forwarded to a read of the same line in that clock. The last update ends 2 clocks after
 // its group. The memory `last` in a block RAM holds the extents of all lines of both frame buffers. An empty extent goes from the
-// largest column down to 0, which is the neutral element of the union; so the largest column, all ones, must not be drawn.
+// largest column down to 0, which is the neutral element of the union; the largest column, all ones, must therefore not be drawn.
 //
-// `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on its
-// bank is the one that is not drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line
-// `first_line` of the picture. For every line that is not empty, the output has a span: the line's first and last row in the
-// band buffer, in order of lines. With `whole` the span has all rows, for every line. `busy` falls when the last span has been
-// taken. The extents of the lines have then moved from `now` to `last`. Latency 6 clocks from `start` to the first span;
-// throughput one line per clock, empty or not.
+// `start` (one clock, not while `busy` or `sweep` is high) plans the band that has just been drawn; from the next clock on, the other bank
+// is drawn. The band has `lines` lines (at least 1) of `stride` columns each, and begins at the line `first_line` of the picture. For
+// every non-empty line, in order, the output has a span: the first and the last row to write in the band buffer. With `whole` every line
+// has a span of all its rows. `busy` falls when the last span has been taken. The extents of the lines have then moved from `now` to
+// `last`. Latency 6 clocks from `start` to the first span; throughput one line per clock, empty or not.
 //
-// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a plan that is under
-// way. The extents of its lines in `last` are then unknown (after reset: the extents of all lines), and the next band with such
-// lines must be `whole`.
+// `sweep` empties the memory `now`; it must be high for at least 2^LINE_BITS clocks. Sweep and reset cancel a running plan. The extents of
+// its lines in `last` are then unknown (after reset: the extents of all lines), and the next band with any of these lines must be `whole`.
 
 `default_nettype none
 
@@ -69,7 +67,7 @@ module band_extents #(
         united = {a_last > b_last ? a_last : b_last, a_first < b_first ? a_first : b_first};
     endfunction
 
-    // Progress of a plan: the current line in the band, its place in `last`, and the number of columns in a line.
+    // Progress of a plan: the current line in the band, its address in `last`, and the number of columns in a line.
     logic                    planning, plan;
     logic [LINE_BITS-1:0]    line, last_line;
     logic [PLACE_BITS-1:0]   place;
@@ -142,7 +140,7 @@ module band_extents #(
         if (rst || sweep) planning <= 1'b0;
     end
 
-    // The extent that is read from `last` is replaced by the new extent in the clock after the read.
+    // In the clock after its read, the extent in `last` is replaced by the new extent.
     (* ram_style = "block", rw_addr_collision = "no", no_rw_check *)
     logic [EXTENT_BITS-1:0] last [0:2**PLACE_BITS-1];
     logic [PLACE_BITS-1:0]  from, to;

@@ -4,31 +4,31 @@
 //   span ─▶ row ─▶ ┄┄ band_bank's read ┄┄ ─▶ compose ─▶ fifo ─▶ out
 //            └──▶ clear_row, a clock later, ─▶ address ──┘
 //
-// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour where a pixel is
-// not written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose`
-// is 1, the left luminance becomes red, the right one blue, and the smaller of the two green. If it is 2, the left one becomes
-// red, and the right one green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a
-// span are read again after its colours: each row gives two words of four 32-bit depths, 0 where a pixel is not written, for the
-// addresses `depth_base` + 2r and `depth_base` + 2r + 1. Words with neighbouring addresses follow each other, so the DDR3 memory
-// seldom has to open another bank.
+// One row is one 128-bit word: eight RGB565 pixels, the leftmost in the lowest bits, with the clear colour for pixels that are not
+// written. With `compose` other than 0 (STEREO only) a pixel holds the luminances of two eyes, {right, left}. If `compose` is 1, the left
+// luminance becomes red, the right luminance blue, and the smaller of the two green. If it is 2, the left luminance becomes red, and the
+// right luminance green and blue. The colour word of row r goes to address `base` + r. With `with_depth`, the rows of a span are read
+// again after its colours: each row gives two words of four 32-bit depths, 0 for pixels that are not written, for the addresses
+// `depth_base` + 2r and `depth_base` + 2r + 1. Words come in the order of their addresses, so the DDR3 memory rarely has to open another
+// bank.
 //
 // `start` (only while `idle`) takes these parameters and begins a flush; `idle` is low until the last word has been taken.
 // Spans are items {first, last}, last >= first; `spans_busy` must be high until the last span has been taken. Throughput one
-// word per clock as far as spans and memory keep up; the first word comes 6 clocks after the first span is taken.
+// word per clock unless spans or memory are slower; the first word comes 6 clocks after the first span is taken.
 //
-// Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A place in the FIFO
-// is reserved before a row is read, so `out_ready` may stay low for any time.
+// Output: a stream of {address, data}; valid does not wait for ready, and a word holds until it has moved. A FIFO entry is reserved before
+// a row is read, so `out_ready` may stay low for any time.
 //
-// `restart` and reset abandon the band and clear all 2^ROW_BITS rows of both banks, one row per clock, while `sweeping` is high.
-// Nothing may be drawn then. Words that were already read are output meanwhile or later.
+// `restart` and reset cancel the band and clear all 2^ROW_BITS rows of both banks, one row per clock, while `sweeping` is high.
+// Nothing may be drawn then. Words that were already read are output during the sweep or later.
 
 `default_nettype none
 
 module band_flush #(
     parameter int unsigned ADDRESS_BITS = 23,
     parameter int unsigned ROW_BITS     = 11,
-    // Places in the FIFO of words, a power of two: the largest number of words that are requested and not yet taken. If words
-    // are taken at once, a place is free again 7 clocks after the request of its row.
+    // Depth of the word FIFO, a power of two: the largest number of words that are requested and not yet taken. If words are taken at
+    // once, an entry is free again 7 clocks after the request of its row.
     parameter int unsigned WORDS        = 16,
     parameter bit          STEREO       = 1'b0
 ) (
@@ -79,7 +79,7 @@ module band_flush #(
     logic [15:0]           background;
     logic [1:0]            composing;
     logic [ADDRESS_BITS-1:0] colour_base, depth_words_base;
-    // Number of words that may still be requested, which is the number of FIFO places that are not reserved.
+    // Number of words that may still be requested: the number of FIFO entries that are not reserved.
     logic [COUNT_BITS-1:0] places;
 
     assign idle        = state == IDLE && places == COUNT_BITS'(WORDS);
@@ -92,7 +92,7 @@ module band_flush #(
     assign span_ends   = issue && part_ends && part == last_part;
     assign span_ready  = state == FLUSH && (!in_span || span_ends);
 
-    // Requests one row of the bank in each clock, and clears it a clock later, when its read is under way.
+    // Requests one row of the bank in each clock, and clears it one clock later, when the read has started.
     always_ff @(posedge clk) begin
         clears    <= 1'b0;
         clear_row <= row;
@@ -206,7 +206,7 @@ module band_flush #(
         endcase
     end
 
-    // A place in the FIFO is reserved for each requested word, so `word_ready` is high whenever a word comes.
+    // A FIFO entry is reserved for each requested word, so `word_ready` is high whenever a word comes.
     fifo #(.WIDTH(ADDRESS_BITS + 128), .DEPTH(WORDS)) words (
         .clk, .rst,
         .in_valid(word_valid), .in_ready(word_ready), .in_data({address, word}),

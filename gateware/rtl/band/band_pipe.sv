@@ -12,7 +12,7 @@
 // of the three groups before it is held until at least four clocks after that group. Groups that share a row but no lane, as
 // neighbouring triangles do along their common edge, pass without a stall, because each lane is a separate memory.
 //
-// Stream contract on the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
+// Stream protocol at the input: an item moves in a clock in which valid and ready are high; `group_ready` comes from registers
 // and from `open`, which admits groups. `empty` is high when every accepted group is written, so that a read of any row
 // includes it.
 
@@ -45,7 +45,7 @@ module band_pipe #(
     output logic                empty,
     output logic                held
 );
-    // The place of a group, with which later groups are compared on the way, and its pixels.
+    // The row and mask of a group in the pipe, with which later groups are compared, and its pixels.
     typedef struct packed {
         logic [ROW_BITS-1:0] row;
         logic [7:0]          mask;
@@ -84,7 +84,7 @@ module band_pipe #(
             else if (conflict_0) hold <= 3'b011;
             else if (conflict_1) hold <= 3'b001;
         end
-        // Without a group this loads a payload that is not valid, so that only one register drives the enable.
+        // Loads an invalid payload if there is no group, so that only one register drives the enable.
         if (!held) begin
             issued_valid <= group_valid && open;
             issued       <= {group_row, group_mask};

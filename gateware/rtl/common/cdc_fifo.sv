@@ -1,7 +1,7 @@
-// A FIFO between two clock domains, with DEPTH + 1 places: DEPTH in LUTRAM and one in the output register.
+// A FIFO between two clock domains, for DEPTH + 1 items: DEPTH in LUTRAM and one in the output register.
 //
-// Latency 1 clock of `in_clk` and 3 to 4 of `out_clk`, throughput one item per clock of the slower domain. Stream contract on both
-// sides, as in `fifo`. Either clock may stop at any time. DEPTH is a power of two, at least 4.
+// Latency 1 clock of `in_clk` and 3 to 4 of `out_clk`, throughput one item per clock of the slower domain. Stream protocol on both sides,
+// as in `fifo`. Either clock may stop at any time. DEPTH is a power of two, at least 4.
 //
 //            in_clk │ out_clk
 //   in ─▶ places ───┼──────────▶ output ─▶ out
@@ -9,8 +9,8 @@
 //         head ─────┼─▶ head_seen ─┤        the pointers cross in Gray code, through cdc_level: one bit changes at a time, so the
 //      tail_seen ◀──┼───────────  tail      other side sees the pointer from before or after the change
 //
-// A place is read at the earliest when its pointer has crossed, so its content is stable. The pointers have no reset, because a
-// reset of one side alone would bring stale items.
+// An entry is not read before its pointer has crossed, so its content is stable. The pointers have no reset, because a reset of only one
+// side would output stale items.
 
 `default_nettype none
 
@@ -31,8 +31,8 @@ module cdc_fifo #(
 
     typedef logic [PLACE_BITS:0] pointer_t;
 
-    // The pointers have one bit more than the number of a place. Pointers DEPTH apart differ in the two highest bits of their Gray
-    // codes, and in no others.
+    // The pointers have one bit more than the index of an entry. The Gray codes of pointers DEPTH apart differ in exactly the two highest
+    // bits.
     localparam pointer_t FULL = pointer_t'(3) << (PLACE_BITS - 1);
 
     /* verilator lint_off PROCASSINIT */ // The configuration of the FPGA sets these registers.

@@ -1,14 +1,14 @@
-// A request from one clock domain to another and its completion back, as a four-phase handshake of two levels.
+// Request from one clock domain to another, and completion back: a four-phase handshake of two levels.
 //
 //   start ──▶ request (level, until done) ──▶ done ──▶ finished (one clock) ──▶ busy falls
 //
-// Payloads do not pass through this module: the other side reads the registers directly. Data from the source must be stable
-// from `start` until `finished`, data from the destination from the clock of `done` at the latest until the next `request`.
-// Data are then stable for at least one clock of the receiving side before their use.
+// Payloads do not pass through this module: the other side reads the registers directly. Data from the source must be stable from `start`
+// until `finished`; data from the destination must be stable from `done` until the next `request`. Data are then stable for at least one
+// clock of the receiving side before their use.
 //
-// The signals are levels, not toggles, because each side may be reset alone: a destination after reset sees the request again,
-// a source after reset withdraws it. One request at a time; `start` is ignored while `busy`. Latency of a round trip: about 3
-// clocks of each side, plus the work.
+// The signals are levels, not toggles, because each side may be reset alone: after a reset, a destination sees the request again, and a
+// source withdraws the request. One request at a time; `start` is ignored while `busy`. Latency of a round trip: about 3 clocks of each
+// side, plus the work.
 
 `default_nettype none
 

@@ -1,4 +1,4 @@
-// Gates a clock: `gated` stops without a glitch while `enable` is low, since the gate changes at the falling edge. For
+// Gates a clock: Clock gate: `gated` stops while `enable` is low, without glitches, because the gate changes at the falling edge. For
 // simulation only; an FPGA has cells for this purpose.
 
 `default_nettype none

@@ -1,10 +1,10 @@
-// A FIFO with DEPTH + 1 places: DEPTH in LUTRAM and one in the output register. With BLOCK it has DEPTH + 2 places: DEPTH in block
-// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE
-// the last two are one place: the block RAM holds the item at the output, whose register then needs no enable.
+// A FIFO for DEPTH + 1 items: DEPTH in LUTRAM and one in the output register. With BLOCK it holds DEPTH + 2 items: DEPTH in block
+// RAM, one in the read register of the block RAM, whose output comes late in the clock, and one in the output register. With PAUSE, read
+// register and output register hold one item together: the block RAM keeps the item at the output, whose register then needs no enable.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with PAUSE. Stream contract on both sides:
+// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with PAUSE. Stream protocol on both sides:
 // an item moves in a clock in which valid and ready are high; valid does not wait for ready, and a payload holds until it has
-// moved. `in_ready` and `out_valid` come from registers alone. DEPTH is a power of two.
+// moved. `in_ready` and `out_valid` come directly from registers. DEPTH is a power of two.
 //
 //            ┌──────────────┐    ┌───────────────────┐    ┌──────────┐
 //   in ─────▶│ DEPTH places │───▶│ read (BLOCK only) │───▶│  output  │──▶ out
@@ -30,7 +30,7 @@ module fifo #(
 );
     localparam int unsigned PLACE_BITS = $clog2(DEPTH);
 
-    // The pointers have one bit more than the number of a place: equal pointers mean empty, pointers DEPTH apart mean full.
+    // The pointers have one bit more than the index of an entry: equal pointers mean empty, pointers DEPTH apart mean full.
     logic [PLACE_BITS:0] head, tail;
     logic                stored, load, read_valid, read_ready;
 

@@ -1,11 +1,11 @@
-// A register of many bits that takes its input in each clock while it is free, and then holds an item until that item leaves. For
-// every LOADS flip-flops the enable has a copy, so that none drives more than LOADS.
+// A wide register that loads its input in each clock while it is free, and then holds an item until the item leaves. The enable has a copy
+// for every LOADS flip-flops, so that no copy drives more than LOADS.
 //
 //   in_valid, leaves ─▶ copies of `free` ─┬─┬─┬─▶
 //   in ──────────────────────────────────▶ register ──▶ out
 //
-// An item moves in with `in_valid` while `free` is high; `leaves` is high in the last clock in which it must hold. Each copy of
-// the enable depends on itself, because synthesis would merge flip-flops with the same input into one.
+// An item moves in with `in_valid` while `free` is high; `leaves` is high in the last clock in which the item must hold. Each copy of the
+// enable depends on itself, because synthesis would otherwise merge flip-flops with equal inputs.
 
 `default_nettype none
 

@@ -1,18 +1,18 @@
-// A FIFO at the end of a pipeline that cannot be stopped. The start of the pipeline sends items only in clocks with `room`, so
-// that all items inside the pipeline find a place. No signal stops the stages between: only valid bits travel with the items.
+// A FIFO at the end of a pipeline that cannot be stopped. The start of the pipeline sends items only in clocks with `room`, so that the
+// FIFO has a free entry for every item in the pipeline. The stages of the pipeline have no enable: only valid bits travel with the items.
 //
 //            ┌───────────────────────┐    ┌────────────┐
 //   start ──▶│ at most FLIGHT clocks │───▶│ FIFO       │──▶ out
 //     ▲      └───────────────────────┘    └────────────┘
 //     └───────────────── room ──────────────────┘
 //
-// FLIGHT: the number of clocks from the clock in which an item is sent to the clock in which it arrives here, `in_valid`. An
-// item may also be dropped on the way. `room` comes from a register. Between the count of an item and its effect on `room` are
-// two clocks, so `room` falls while FLIGHT + 2 places are still free.
+// FLIGHT: the number of clocks from the clock in which an item is sent to the clock in which it arrives here, `in_valid`. An item may also
+// be dropped in the pipeline. `room` comes from a register. `room` follows the count of items two clocks later, so it falls while FLIGHT +
+// 2 entries are still free.
 //
-// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two; more
-// than 2 * (FLIGHT + 2) places keep the output busy while `room` comes back. `idle` is high while the FIFO is empty; it knows
-// nothing of items on the way.
+// Latency 2 clocks, or 3 with BLOCK; throughput one item per clock, or one in two clocks with BLOCK. DEPTH is a power of two; more than 2
+// * (FLIGHT + 2) entries keep the output busy until `room` is high again. `idle` is high while the FIFO is empty; it does not count items
+//   in the pipeline.
 
 `default_nettype none
 
@@ -20,7 +20,7 @@ module pipeline_fifo #(
     parameter int unsigned WIDTH  = 8,
     parameter int unsigned DEPTH  = 16,
     parameter int unsigned FLIGHT = 4,
-    // The FIFO is in block RAM, and a clock without an item follows each item.
+    // BLOCK: the FIFO is in block RAM, and each item is followed by a clock without an item.
     parameter bit          BLOCK  = 1'b0
 ) (
     input  wire              clk,

@@ -1,17 +1,17 @@
 // Shares one native read port of the memory among CLIENTS clients. Each client has an input stream of word addresses and an
 // output stream of words, in the order of its addresses.
 //
-// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes in the commands' order, some
-// time later, and cannot be held back. A client is therefore served only while the FIFO of DEPTH places for its words has room
-// for all words under way. Throughput one word per clock.
+// Memory side, the LiteDRAM native read port: commands by valid/ready, one word each; data comes later, in the order of the commands, and
+// without back-pressure. A client is therefore only served while its FIFO of DEPTH words has a free entry for every outstanding word.
+// Throughput one word per clock.
 //
-// The DDR3 memory takes four clocks to turn to another of its banks, and a dozen to turn from writes to reads and back. So a
-// client is served in bursts: a burst ends when the client has no request or its FIFO is full, and a new one begins when half
-// of the FIFO is empty. Other clients are served between the bursts.
+// The DDR3 memory takes four clocks to switch to another bank, and a dozen to switch between writes and reads. A client is therefore
+// served in bursts: a burst ends when the client has no request or its FIFO is full, and a new burst begins when half of the FIFO is
+// empty. Other clients are served between the bursts.
 //
-// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client, or 4 with BLOCK. `ask_ready` comes from
-// registers alone, because the ready of the memory's command is the end of a long path in LiteDRAM.
-// `drop`, held until `idle`, cancels everything: no further commands are made, and words still to come from memory are discarded.
+// Latency: 2 clocks from `ask` to the command, 3 from the memory's data to the client, or 4 with BLOCK. `ask_ready` comes directly from
+// registers, because the ready of the memory's command is the end of a long path in LiteDRAM. `drop`, held until `idle`, cancels all
+// requests: no further commands are sent, and words still to come from memory are discarded.
 //
 //   ask ──┐           ┌──▶ skid_buffer ──▶ command
 //   ask ──┼──▶ turn ──┤
@@ -52,9 +52,9 @@ module read_port #(
     // At most CLIENTS * DEPTH words are requested and not yet delivered.
     localparam int unsigned OWNER_BITS  = $clog2(CLIENTS * DEPTH);
 
-    // The client of the next command (`turn`) is chosen one clock before the command: the same client while it may continue,
-    // otherwise the next client with a request. The choice does not depend on requests in the clock of the command. If the
-    // chosen client then has no request, no command is sent.
+    // The client of the next command (`turn`) is chosen one clock before the command: the current client while it may continue, otherwise
+    // the next client with a request. The choice does not depend on requests in the clock of the command. If the chosen client then has no
+    // request, no command is sent.
     logic [CLIENT_BITS-1:0] turn, first, chosen;
     logic [CLIENTS-1:0]     servable;
     logic                   given, any, moves, commands;
@@ -90,7 +90,7 @@ module read_port #(
         .out_valid(cmd_valid), .out_ready(cmd_ready), .out_data(cmd_addr)
     );
 
-    // Queue of the clients of all words that have a command and have not come, in the order of the commands.
+    // Queue of the clients of all outstanding words, in the order of the commands.
     (* ram_style = "distributed" *) logic [CLIENT_BITS-1:0] owners [0:2**OWNER_BITS-1];
     logic [OWNER_BITS:0]    asked, answered;
     logic [CLIENT_BITS-1:0] owner;
@@ -119,7 +119,7 @@ module read_port #(
     end
 
     for (genvar i = 0; i < CLIENTS; i++) begin : client
-        // Number of free places in the client's FIFO, without those that are reserved for requested words.
+        // Number of free entries of the client's FIFO that are not reserved for requested words.
         logic [ROOM_BITS-1:0] room;
         logic                 has_turn, asks, taken, bursting;
 
@@ -128,7 +128,7 @@ module read_port #(
         assign ask_ready[i] = moves && has_turn;
         assign asks         = ask_valid[i] && ask_ready[i];
 
-        // A place counts as free a clock after its word has left, so that `data_ready` ends at the FIFO.
+        // An entry counts as free one clock after its word has left, so that the path of `data_ready` ends at the FIFO.
         always_ff @(posedge clk) begin
             taken <= data_valid[i] && data_ready[i];
             room     <= room + (asks == taken ? '0 : asks ? '1 : ROOM_BITS'(1));
@@ -141,7 +141,7 @@ module read_port #(
             end
         end
 
-        // A place is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
+        // An entry is reserved for each requested word, so the FIFO's `in_ready` is high whenever a word comes.
         /* verilator lint_off PINCONNECTEMPTY */
         fifo #(.WIDTH(128), .DEPTH(DEPTH), .BLOCK(BLOCK[i])) words (
             .clk       (clk),

@@ -1,7 +1,7 @@
 // A buffer of two items in a valid/ready stream, so that no combinational path crosses it: neither from `out_ready` to
 // `in_ready`, nor from `in_valid` to `out_valid`.
 //
-// Latency 1 clock, throughput one item per clock. Stream contract on both sides: an item moves in a clock in which valid
+// Latency 1 clock, throughput one item per clock. Stream protocol on both sides: an item moves in a clock in which valid
 // and ready are high; valid does not wait for ready, and a payload holds until it has moved.
 //
 //            ┌────────┐  spare   ┌──────────┐
@@ -26,8 +26,8 @@ module skid_buffer #(
 );
     logic [WIDTH-1:0] spare;
 
-    // `in_ready` is high exactly while the spare place is free. Both flags are written without a clock enable, since a flip-flop
-    // with an enable of its own takes a slice of the FPGA.
+    // `in_ready` is high exactly while the spare register is free. Both flags are written without a clock enable, because flip-flops with
+    // different enables cannot share a slice of the FPGA.
     always_ff @(posedge clk) begin
         out_valid <= in_valid || !in_ready || !out_ready && out_valid;
         in_ready  <= !out_valid || out_ready || in_ready && !in_valid;

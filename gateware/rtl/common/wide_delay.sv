@@ -1,5 +1,5 @@
-// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs: for words so wide that this saves more than
-// the counter of the places takes. The shift registers of the module delay take a LUT for each bit.
+// Delays its input by CLOCKS clocks in LUT memory, which stores three bits in two LUTs: for words so wide that this saves more LUTs than
+// the address counter takes. The shift registers of the module delay take a LUT for each bit.
 //
 //   in ─▶ ring of CLOCKS - 1 places in LUT memory ─▶ output register ─▶ out
 //
